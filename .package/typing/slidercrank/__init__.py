@@ -1,0 +1,1 @@
+../../slidercrank/__init__.py

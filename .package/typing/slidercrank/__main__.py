@@ -1,0 +1,1 @@
+../../slidercrank/__main__.py

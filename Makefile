@@ -1,0 +1,55 @@
+# What a fresh machine needs: make and Python 3.11 or newer with its venv module (Debian: python3-venv).
+# Another interpreter: make run PYTHON=python3.12
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: run test lint benchmark clean
+.DELETE_ON_ERROR:
+
+run: $(VENV)/.installed $(VENV)/.kernels
+	$(BIN)/slidercrank optimise runs/feeder.toml
+
+# At most 8 workers: each one loads its own numba.
+test: $(VENV)/.installed-test
+	$(BIN)/python -m pytest -n auto --maxprocesses 8
+
+lint: $(VENV)/.installed-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+benchmark: $(VENV)/.installed-benchmark $(VENV)/.kernels
+	$(BIN)/python -m benchmarks
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
+
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
+	  "Python 3.11 or newer is needed, this is %d.%d; name another one: make PYTHON=python3.12" % sys.version_info[:2])'
+	@$(PYTHON) -m venv --clear $(VENV) || \
+	  { rm -rf $(VENV); echo 'Python without venv; on Debian: apt install python3-venv' >&2; exit 1; }
+	@touch $@
+
+# Editable: the folders are used where they are, so that a change needs no new installation.
+define install
+	@echo 'Installing into $(VENV) (about a minute) ...'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)'
+	@touch $(VENV)/.installed $@
+endef
+
+$(VENV)/.installed: $(VENV)/.created pyproject.toml constraints.txt
+	$(call install)
+
+$(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
+	$(call install,[test])
+
+$(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
+	$(call install,[benchmark])
+
+# numba renews a compiled kernel when its own file changes, not when a formula that it calls does.
+$(VENV)/.kernels: $(VENV)/.created $(shell find model objectives optimise -name '*.py')
+	@find model objectives optimise -name '*.nb[ic]' -delete
+	@touch $@

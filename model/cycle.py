@@ -1,0 +1,95 @@
+"""Every curve of one design over the cycle: what figures, tables and tests read."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arithmetic import kernel
+from .dynamics import forces
+from .linkage import Linkage
+from .mechanism import Mechanism
+from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .position_error import influences, root_sum_square, worst_case
+from .segments import Watch, enter, load_on_slider
+from .signals import design_motion
+
+Array = NDArray[np.float64]
+
+_COLUMNS = 15
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Curves of one design, each (n,), SI and radians; forces as components along x and y.
+
+    load: on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
+    pivot: force of the frame on the crank; crank_pin: of the crank on the rod; slider_pin: of the rod on the slider;
+    guide: of the guide on the slider, along +y.
+    """
+
+    crank_angle: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    transmission_angle: Array
+    load: Array
+    torque: Array
+    pivot_x: Array
+    pivot_y: Array
+    crank_pin_x: Array
+    crank_pin_y: Array
+    slider_pin_x: Array
+    slider_pin_y: Array
+    guide: Array
+    position_error: Array
+    position_error_rss: Array
+
+
+@kernel
+def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    d = design_at(block, 0)
+    for i in range(angles.shape[0]):
+        theta = angles[i]
+        sine, cosine = math.sin(theta), math.cos(theta)
+        _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+        m = design_motion(sine, cosine, d)
+        load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
+        f = forces(sine, cosine, m, d, load)
+        j = influences(sine, cosine, m, d.l)
+        out[0, i] = m.x
+        out[1, i] = m.x_1 * d.speed
+        out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
+        out[3, i] = math.atan2(abs(m.along), abs(m.across))
+        out[4, i] = load
+        out[5, i] = f.torque
+        out[6, i] = f.pivot_x
+        out[7, i] = f.pivot_y
+        out[8, i] = f.crank_pin_x
+        out[9, i] = f.crank_pin_y
+        out[10, i] = f.slider_pin_x
+        out[11, i] = f.slider_pin_y
+        out[12, i] = f.guide
+        out[13, i] = worst_case(j, d)
+        out[14, i] = root_sum_square(j, d)
+
+
+def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cycle:
+    """Return all curves of one fully turning linkage at crank angles (n,), rad.
+
+    The branch is the mechanism's. Where a load jumps (exactly on a dead centre) the inward stroke's value is given.
+    """
+    linkage.require_full_rotation()
+    angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
+    raw = raw_vector(mechanism)
+    raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    out = np.empty((_COLUMNS, len(angles)))
+    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out)
+    return Cycle(angles, *out)

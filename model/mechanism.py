@@ -1,0 +1,93 @@
+"""Everything about a machine but its three dimensions: speed, masses, gravity, loads, tolerances."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+from .errors import InputError
+from .links import Counterweight, Link, RigidLink
+from .loads import During, Load, require_word
+
+Branch = Literal["open", "crossed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerance:
+    """How far a dimension may be off: `absolute + fraction |dimension|`. absolute: m (rad for an angle)."""
+
+    absolute: float = 0.0
+    fraction: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("absolute", "fraction"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0.0:
+                raise InputError(f"a tolerance must be zero or more and finite; got {name} = {value:g}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Window:
+    """The part of the cycle over which the position error counts.
+
+    during: which stroke. start, end: fractions of the stroke counted outward from the inner dead centre, 0 to 1.
+    """
+
+    during: During = "cycle"
+    start: float = 0.0
+    end: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_word("during", self.during, During)
+        if not 0.0 <= self.start < self.end <= 1.0:
+            raise InputError(
+                "a part of the stroke needs 0 <= start < end <= 1, as fractions from the inner dead centre; "
+                f"got start {self.start:g}, end {self.end:g}"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances:
+    """Tolerances of the dimensions and of the crank angle, and where the position error counts."""
+
+    crank: Tolerance = Tolerance()
+    rod: Tolerance = Tolerance()
+    offset: Tolerance = Tolerance()
+    crank_angle: Tolerance = Tolerance()
+    window: Window = Window()
+
+    def __post_init__(self) -> None:
+        if self.crank_angle.fraction:
+            raise InputError("a tolerance of the crank angle is an angle, not a share; give it in rad or deg")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """A slider-crank but for crank, rod and offset.
+
+    speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
+    crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
+    """
+
+    speed: float = 0.0
+    acceleration: float = 0.0
+    crank: Link = RigidLink(mass=0.0)
+    rod: Link = RigidLink(mass=0.0)
+    counterweight: Counterweight = Counterweight(mass=0.0, radius=0.0)
+    slider_mass: float = 0.0
+    gravity: tuple[float, float] = (0.0, 0.0)
+    loads: tuple[Load, ...] = ()
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    branch: Branch = "open"
+
+    def __post_init__(self) -> None:
+        for name in ("speed", "acceleration"):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"{name} must be finite; got {getattr(self, name)}")
+        if not math.isfinite(self.slider_mass) or self.slider_mass < 0.0:
+            raise InputError(f"the slider mass must be zero or more and finite; got {self.slider_mass:g} kg")
+        if not all(math.isfinite(component) for component in self.gravity):
+            raise InputError(f"gravity must be finite; got {self.gravity}")
+        if self.branch not in ("open", "crossed"):
+            raise InputError(f"branch must be 'open' or 'crossed'; got {self.branch!r}")

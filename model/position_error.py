@@ -1,0 +1,50 @@
+"""How errors of the dimensions and of the crank angle move the slider, to first order.
+
+dx = (dx/dr) dr + (dx/dl) dl + (dx/de) de + (dx/dtheta) dtheta, with
+dx/dr = cos(theta - phi) / cos(phi), dx/dl = 1 / cos(phi), dx/de = -tan(phi),
+dx/dtheta = -r sin(theta - phi) / cos(phi).
+Source of the approach: Chetana R. and Vineeth Kumar T.V., "Analysis of Position Error in Offset Slider Crank
+Mechanism", Eq. (3), whose offset is the mirror image of the one here.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from .arithmetic import analytic, magnitude, root
+from .kinematics import Motion
+from .parameters import Design
+
+
+class Influences(NamedTuple):
+    """Slider displacement per unit error: crank, rod, offset (m/m) and crank angle (m/rad)."""
+
+    crank: Any
+    rod: Any
+    offset: Any
+    crank_angle: Any
+
+
+@analytic
+def influences(sine: Any, cosine: Any, m: Motion, l: Any) -> Influences:
+    """Return the exact first-order influences on the slider position."""
+    return Influences(cosine + m.tangent * sine, l * m.per_along, -m.tangent, m.x_1)
+
+
+@analytic
+def worst_case(i: Influences, d: Design) -> Any:
+    """Return the sum of the absolute contributions of all tolerances, m."""
+    return (
+        magnitude(i.crank) * d.crank_error
+        + magnitude(i.rod) * d.rod_error
+        + magnitude(i.offset) * d.offset_error
+        + magnitude(i.crank_angle) * d.angle_error
+    )
+
+
+@analytic
+def root_sum_square(i: Influences, d: Design) -> Any:
+    """Return the square root of the sum of squared contributions of all tolerances, m."""
+    a, b = i.crank * d.crank_error, i.rod * d.rod_error
+    c, f = i.offset * d.offset_error, i.crank_angle * d.angle_error
+    return root(a * a + b * b + c * c + f * f)

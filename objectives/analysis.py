@@ -1,0 +1,47 @@
+"""All numbers of designs, under the names and in the units that tables and JSON use."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from ..model.averages import average_torque
+from ..model.linkage import Linkage
+from ..model.mechanism import Mechanism
+from ..model.peaks import find_peaks
+from ..model.signals import Signal
+from .quantity import Array
+from .registry import QUANTITIES
+
+
+def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
+    """Return a table with every quantity of designs (n, 3): crank, rod, offset, m, each turning fully.
+
+    Columns carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction
+    of rotation. Raises `AssemblyError` for a linkage that does not turn fully.
+    """
+    dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
+    linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
+    linkage.require_full_rotation()
+    inner, outer = linkage.dead_centre_angles
+    torque = find_peaks(mechanism, Signal.TORQUE, dimensions, kept=1)
+    averages = average_torque(mechanism, dimensions)
+    columns: dict[str, object] = {
+        "crank_mm": 1e3 * dimensions[:, 0],
+        "rod_mm": 1e3 * dimensions[:, 1],
+        "offset_mm": 1e3 * dimensions[:, 2],
+        "stroke_mm": 1e3 * linkage.stroke,
+        "time_ratio": linkage.time_ratio,
+        "slow_stroke": linkage.slow_stroke(direction=mechanism.speed or 1.0),
+        "outer_dead_centre_deg": np.degrees(outer),
+        "inner_dead_centre_deg": np.degrees(inner),
+        "least_transmission_angle_deg": np.degrees(linkage.least_transmission_angle),
+        "peak_torque_Nm": torque.values[:, 0],
+        "peak_torque_angle_deg": np.degrees(torque.angles[:, 0]),
+        "rms_torque_Nm": averages.rms,
+        "mean_torque_Nm": averages.mean,
+    }
+    for quantity in QUANTITIES.values():
+        if quantity.field not in columns:
+            columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
+    return pd.DataFrame(columns)

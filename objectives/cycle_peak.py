@@ -1,0 +1,44 @@
+"""Quantities that are the greatest value of a curve over the cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..model.mechanism import Mechanism
+from ..model.peaks import find_peaks
+from ..model.screening import screen, screens
+from ..model.signals import Signal
+from .quantity import Array, Pieces, Unit, Values
+
+
+@dataclass(frozen=True)
+class CyclePeak:
+    """The greatest value of `signal` over the cycle, or over one stroke.
+
+    Exact over continuous crank angle. `screened` trades that for speed where thousands of designs are only sorted.
+    """
+
+    name: str
+    field: str
+    title: str
+    unit: Unit
+    signal: Signal
+    during: str = "cycle"
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3); see `Quantity`."""
+        found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
+        return Values(found.values[:, 0], None if found.gradients is None else found.gradients[:, 0])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the highest local peaks; see `Quantity`."""
+        found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=True)
+        assert found.gradients is not None
+        return Pieces(found.values, found.gradients, found.angles)
+
+    def screened(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity by vectorised screening; exact but for peaks that sit on a kink."""
+        if not screens(mechanism, self.signal, during=self.during):
+            return self.evaluate(mechanism, dimensions, gradients=gradients)
+        found = screen(mechanism, self.signal, dimensions, gradients=gradients)
+        return Values(found.values, found.gradients)

@@ -1,0 +1,218 @@
+"""Equality requirements eliminated exactly: the search moves only in what they leave free.
+
+Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
+free unknowns is chosen from which the rules, applied one after the other, give the rest. Requirements that no rule
+covers stay with the solver as equality constraints.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import geometry
+from ..model.arithmetic import STEP
+from .problem import Constraint, Problem, Range
+
+Array = NDArray[np.float64]
+UNKNOWNS = ("crank", "rod", "offset")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One way to compute an unknown: `target` from `sources`, by `formula`. `origin` names the requirement."""
+
+    origin: str
+    target: str
+    sources: tuple[str, ...]
+    formula: Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One sign of the offset with the free unknowns and the steps that give the others.
+
+    sign: of the offset. free: names. lower, upper: of the free unknowns, m. bounds: of all three unknowns, m.
+    eliminated: requirements that hold exactly wherever the roots taken are not spurious, which `evaluation` checks.
+    remaining: constraints left to the solver.
+    """
+
+    sign: float
+    free: tuple[str, ...]
+    lower: Array
+    upper: Array
+    bounds: dict[str, Range]
+    steps: tuple[Rule, ...]
+    eliminated: tuple[str, ...]
+    remaining: tuple[Constraint, ...]
+
+    def dimensions(self, u: Any) -> Any:
+        """Return crank, rod, offset (n, 3), m, for points (n, k) of the unit box; NaN where no linkage fulfils it.
+
+        Complex points give complex dimensions.
+        """
+        u = np.atleast_2d(u)
+        known: dict[str, Any] = {
+            name: np.full(len(u), bounds.lower, dtype=u.dtype) for name, bounds in self.bounds.items() if bounds.fixed
+        }
+        for column, name in enumerate(self.free):
+            known[name] = self.lower[column] + (self.upper[column] - self.lower[column]) * u[:, column]
+        with np.errstate(all="ignore"):
+            for step in self.steps:
+                known[step.target] = step.formula(*(known[name] for name in step.sources)) + 0.0 * u.sum(axis=1)
+        return np.stack([known["crank"], known["rod"], self.sign * known["offset"]], axis=1)
+
+    def jacobian(self, u: Array) -> Array:
+        """Return the derivatives (n, 3, k) of the dimensions by the unit-box coordinates, by complex step."""
+        columns = []
+        for column in range(u.shape[1]):
+            stepped = u.astype(np.complex128)
+            stepped[:, column] += 1j * STEP
+            columns.append(self.dimensions(stepped).imag / STEP)
+        return np.stack(columns, axis=2) if columns else np.zeros((len(u), 3, 0))
+
+
+def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
+    """Return the sheets of a problem: one for each sign that its offset may have.
+
+    eliminate: whether equality constraints are eliminated (fixed dimensions always are).
+    """
+    lower, upper = problem.offset.lower, problem.offset.upper
+    signed = []
+    if upper > 0.0 or lower == upper == 0.0:
+        signed.append((1.0, Range(lower=max(lower, 0.0), upper=upper)))
+    if lower < 0.0:
+        signed.append((-1.0, Range(lower=max(-upper, 0.0), upper=-lower)))
+    return tuple(_sheet(problem, sign, offset, eliminate=eliminate) for sign, offset in signed)
+
+
+def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> Sheet:
+    bounds = {"crank": problem.crank, "rod": problem.rod, "offset": offset}
+    wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
+    rules = _rules(wanted) if eliminate else []
+    fixed = tuple(name for name in UNKNOWNS if bounds[name].fixed)
+    # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
+    loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
+    best: tuple[tuple[int, int], tuple[str, ...], tuple[Rule, ...]] | None = None
+    for size in range(len(loose) + 1):
+        for free in itertools.combinations(loose, size):
+            steps = _propagate(set(free) | set(fixed), rules)
+            if steps is None:
+                continue
+            score = (len(wanted) - len(_fulfilled(steps)), size)
+            if best is None or score < best[0]:
+                best = (score, free, steps)
+    assert best is not None  # all unknowns free always works
+    _, free, steps = best
+    used = _fulfilled(steps)
+    return Sheet(
+        sign=sign,
+        free=free,
+        lower=np.array([bounds[name].lower for name in free]),
+        upper=np.array([bounds[name].upper for name in free]),
+        bounds=bounds,
+        steps=steps,
+        eliminated=tuple(name for name in wanted if name in used),
+        remaining=tuple(c for c in problem.constraints if c.quantity not in used),
+    )
+
+
+def _propagate(known: set[str], rules: list[Rule]) -> tuple[Rule, ...] | None:
+    """Apply rules until all unknowns are known; None if some stay unknown.
+
+    Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
+    them alone, which completes the pair.
+    """
+    steps: list[Rule] = []
+    while len(known) < len(UNKNOWNS):
+        spent = {step.origin for step in steps}
+        for rule in rules:
+            if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
+                steps.append(rule)
+                known = known | {rule.target}
+                break
+        else:
+            return None
+    return tuple(steps)
+
+
+def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:
+    """Return the requirements that hold exactly after these steps.
+
+    One rule of a combination alone fulfils one relation between two requirements, hence neither of them.
+    """
+    single = {step.origin for step in steps if "+" not in step.origin}
+    for step in steps:
+        parts = set(step.origin.split("+"))
+        if len(parts) > 1 and parts & single:
+            single |= parts
+    return single
+
+
+def _rules(wanted: dict[str, float]) -> list[Rule]:
+    """Return every rule that the wanted values give."""
+    rules: list[Rule] = []
+    if "rod_to_offset" in wanted:
+        k = wanted["rod_to_offset"]
+        rules += [
+            Rule("rod_to_offset", "rod", ("offset",), lambda a: k * a),
+            Rule("rod_to_offset", "offset", ("rod",), lambda l: l / k),
+        ]
+    if "rod_to_crank" in wanted:
+        q = wanted["rod_to_crank"]
+        rules += [
+            Rule("rod_to_crank", "rod", ("crank",), lambda r: q * r),
+            Rule("rod_to_crank", "crank", ("rod",), lambda l: l / q),
+        ]
+    if "transmission_angle" in wanted:
+        c = math.cos(wanted["transmission_angle"])
+        rules += [
+            Rule("transmission_angle", "rod", ("crank", "offset"), lambda r, a: (r + a) / c),
+            Rule("transmission_angle", "crank", ("rod", "offset"), lambda l, a: c * l - a),
+            Rule("transmission_angle", "offset", ("crank", "rod"), lambda r, l: c * l - r),
+        ]
+    if "time_ratio" in wanted:
+        b = math.pi * (wanted["time_ratio"] - 1.0) / (wanted["time_ratio"] + 1.0)
+        sine, cosine = math.sin(b), math.cos(b)
+        if "stroke" in wanted:
+            # Cosine rule in the triangle of crank pivot and dead centres: l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
+            half = 0.5 * wanted["stroke"] ** 2
+            rules.append(
+                Rule(
+                    "stroke+time_ratio",
+                    "crank",
+                    ("rod",),
+                    lambda l: np.sqrt((half - l * l * (1.0 - cosine)) / (1.0 + cosine)),
+                )
+            )
+            if cosine < 1.0:
+                rules.append(
+                    Rule(
+                        "stroke+time_ratio",
+                        "rod",
+                        ("crank",),
+                        lambda r: np.sqrt((half - r * r * (1.0 + cosine)) / (1.0 - cosine)),
+                    )
+                )
+        rules.append(
+            Rule(
+                "time_ratio",
+                "offset",
+                ("crank", "rod"),
+                lambda r, l: geometry.offset_from_excess_angle(r, l, sine, cosine),
+            )
+        )
+    if "stroke" in wanted:
+        s = wanted["stroke"]
+        rules += [
+            Rule("stroke", "crank", ("rod", "offset"), lambda l, a: geometry.crank_from_stroke(s, l, a)),
+            Rule("stroke", "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
+            Rule("stroke", "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
+        ]
+    return rules

@@ -1,0 +1,232 @@
+"""Objectives and constraints of a problem as functions of the free unknowns: quickly for many, exactly for few."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..objectives.cycle_peak import CyclePeak
+from ..objectives.quantity import Array, Quantity
+from ..objectives.registry import QUANTITIES
+from .elimination import UNKNOWNS, Sheet
+from .problem import Constraint, Objective, Problem
+
+FEASIBLE = 1e-9
+"""Relative violation of a constraint that counts as rounding."""
+LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
+"""Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
+
+    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
+    objective that a row belongs to.
+    """
+
+    values: Array
+    gradients: Array
+    labels: Array
+    owner: NDArray[np.int64]
+
+    def put(self, row: int, other: Rows, source: int) -> None:
+        """Overwrite a design's rows with those of a design of `other`."""
+        self.values[row] = other.values[source]
+        self.gradients[row] = other.gradients[source]
+        self.labels[row] = other.labels[source]
+
+
+def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
+    """Return the constraints of a problem with the transmission angle's default floor where none is set."""
+    for constraint in problem.constraints:
+        if constraint.quantity == "transmission_angle" and constraint.lower is not None:
+            return problem.constraints
+    kept = [c for c in problem.constraints if c.quantity != "transmission_angle"]
+    upper = next((c.upper for c in problem.constraints if c.quantity == "transmission_angle"), None)
+    floor = LEAST_TRANSMISSION_ANGLE if upper is None else min(LEAST_TRANSMISSION_ANGLE, 0.5 * upper)
+    return (*kept, Constraint(quantity="transmission_angle", lower=float(floor), upper=upper))
+
+
+def minimised(objective: Objective, values: Array) -> Array:
+    """Return an objective's values as they are minimised: negated if maximised, a distance if it has a target."""
+    if objective.sense == "maximise":
+        return -values
+    if objective.target is not None:
+        return np.abs(values - objective.target)
+    return values
+
+
+class Evaluator:
+    """Evaluates one sheet of a problem."""
+
+    def __init__(self, problem: Problem, sheet: Sheet) -> None:
+        """Prepare the constraints that remain on the sheet, cheapest first."""
+        self.problem = problem
+        self.sheet = sheet
+        self.mechanism = problem.mechanism
+        self.dimension = len(sheet.free)
+        remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
+        self.constraints = tuple(sorted(remaining, key=lambda c: _costly(QUANTITIES[c.quantity])))
+        self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
+        self.evaluations = 0
+
+    # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
+
+    def screen(self, u: Array) -> tuple[Array, Array, Array]:
+        """Return dimensions (n, 3), minimised objectives (n, m) and violation (n,) of points of the unit box.
+
+        The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
+        violate a constraint have NaN objectives. Peaks are screened (see `model.screening`).
+        """
+        dimensions = self.sheet.dimensions(u)
+        violation = self._geometry_violation(dimensions)
+        self.evaluations += len(u)
+        for constraint in self.constraints:
+            quantity = QUANTITIES[constraint.quantity]
+            # What is out of reach already needs no cycle computed.
+            rows = (
+                np.flatnonzero(violation <= FEASIBLE) if _costly(quantity) else np.flatnonzero(np.isfinite(violation))
+            )
+            if len(rows):
+                values = self._quick(quantity, dimensions[rows])
+                violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
+        rows = np.flatnonzero(violation <= FEASIBLE)
+        objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
+        if len(rows):
+            for column, objective in enumerate(self.problem.objectives):
+                values = self._quick(QUANTITIES[objective.quantity], dimensions[rows])
+                objectives[rows, column] = minimised(objective, values)
+            lost = ~np.isfinite(objectives[rows]).all(axis=1)
+            violation[rows[lost]] = np.inf
+            objectives[rows[lost]] = np.nan
+        return dimensions, objectives, violation
+
+    def _quick(self, quantity: Quantity, dimensions: Array) -> Array:
+        if isinstance(quantity, CyclePeak):
+            return quantity.screened(self.mechanism, dimensions).values
+        return quantity.evaluate(self.mechanism, dimensions).values
+
+    def _geometry_violation(self, dimensions: Array) -> Array:
+        """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
+        crank, rod, offset = dimensions.T
+        violation = np.zeros(len(dimensions))
+        with np.errstate(invalid="ignore"):
+            turns = (crank > 0.0) & (rod > crank + np.abs(offset))
+        violation[~turns] = np.inf
+        for name in self.computed:
+            bounds = self.sheet.bounds[name]
+            value = np.abs(dimensions[:, UNKNOWNS.index(name)])
+            scale = max(bounds.upper, 1e-300)
+            violation = np.fmax(violation, (value - bounds.upper) / scale)
+            violation = np.fmax(violation, (bounds.lower - value) / scale)
+        rows = np.flatnonzero(turns)
+        for constraint in self.problem.constraints:
+            if constraint.quantity in self.sheet.eliminated and len(rows):
+                values = QUANTITIES[constraint.quantity].evaluate(self.mechanism, dimensions[rows]).values
+                spurious = _violation(constraint, values) > FEASIBLE
+                violation[rows[spurious]] = np.inf
+        return violation
+
+    # ---- exact: for the polish and the proof ---------------------------------------------------------------------
+
+    def valid(self, u: Array) -> NDArray[np.bool_]:
+        """Return which points give a linkage that turns fully."""
+        return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
+
+    def exact(self, u: Array) -> tuple[Rows, Rows]:
+        """Return objective rows and constraint rows, in unit-box coordinates, of points where `valid` holds."""
+        dimensions = self.sheet.dimensions(u)
+        jacobian = self.sheet.jacobian(u)
+        self.evaluations += len(u)
+        cache: dict[str, tuple[Array, Array, Array]] = {}
+
+        def pieces(name: str) -> tuple[Array, Array, Array]:
+            if name not in cache:
+                found = QUANTITIES[name].pieces(self.mechanism, dimensions)
+                cache[name] = (found.values, np.einsum("npd,ndk->npk", found.gradients, jacobian), found.labels)
+            return cache[name]
+
+        parts = []
+        for index, objective in enumerate(self.problem.objectives):
+            parts += [(index, *part) for part in _objective_rows(objective, *pieces(objective.quantity))]
+        goals = _stack(parts, len(u), self.dimension)
+        parts = []
+        for index, constraint in enumerate(self.constraints):
+            parts += [(index, *part) for part in _constraint_rows(constraint, *pieces(constraint.quantity))]
+        count = len(self.constraints)
+        for name in self.computed:
+            column = UNKNOWNS.index(name)
+            sign = self.sheet.sign if name == "offset" else 1.0
+            value = sign * dimensions[:, column : column + 1]
+            slope = sign * jacobian[:, column : column + 1, :]
+            bounds = self.sheet.bounds[name]
+            scale = max(bounds.upper, 1e-300)
+            none = np.zeros_like(value)
+            parts.append((count, (value - bounds.upper) / scale, slope / scale, none))
+            parts.append((count, (bounds.lower - value) / scale, -slope / scale, none))
+            count += 1
+        return goals, _stack(parts, len(u), self.dimension)
+
+    def owner_name(self, owner: int) -> str:
+        """Return the name of the constraint or computed dimension that owns constraint rows."""
+        if owner < len(self.constraints):
+            return self.constraints[owner].quantity
+        return self.computed[owner - len(self.constraints)]
+
+
+def _costly(quantity: Quantity) -> bool:
+    return not type(quantity).__name__.startswith("ClosedForm")
+
+
+def _scale(bound: float) -> float:
+    return abs(bound) if bound else 1.0
+
+
+def _violation(constraint: Constraint, values: Array) -> Array:
+    """Relative violation (n,), zero or less where the constraint holds."""
+    violation = np.full(len(values), -np.inf)
+    if constraint.upper is not None:
+        violation = np.maximum(violation, (values - constraint.upper) / _scale(constraint.upper))
+    if constraint.lower is not None:
+        violation = np.maximum(violation, (constraint.lower - values) / _scale(constraint.lower))
+    return np.where(np.isnan(values), np.inf, violation)
+
+
+def _objective_rows(
+    objective: Objective, values: Array, slopes: Array, labels: Array
+) -> list[tuple[Array, Array, Array]]:
+    if objective.sense == "minimise":
+        return [(values, slopes, labels)]
+    # A greatest-of is maximised through its highest piece: there the pieces do not tie to hold it up.
+    top = (-values[:, :1], -slopes[:, :1], labels[:, :1])
+    if objective.target is None:
+        return [top]
+    return [(values - objective.target, slopes, labels), (top[0] + objective.target, top[1], top[2])]
+
+
+def _constraint_rows(
+    constraint: Constraint, values: Array, slopes: Array, labels: Array
+) -> list[tuple[Array, Array, Array]]:
+    rows = []
+    if constraint.upper is not None:
+        scale = _scale(constraint.upper)
+        rows.append(((values - constraint.upper) / scale, slopes / scale, labels))
+    if constraint.lower is not None:
+        scale = _scale(constraint.lower)
+        rows.append(((constraint.lower - values[:, :1]) / scale, -slopes[:, :1] / scale, labels[:, :1]))
+    return rows
+
+
+def _stack(parts: list[tuple[int, Array, Array, Array]], n: int, k: int) -> Rows:
+    if not parts:
+        return Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, dtype=np.int64))
+    owner = np.concatenate([np.full(values.shape[1], index) for index, values, _, _ in parts])
+    return Rows(
+        np.concatenate([values for _, values, _, _ in parts], axis=1),
+        np.concatenate([slopes for _, _, slopes, _ in parts], axis=1),
+        np.concatenate([labels for _, _, _, labels in parts], axis=1),
+        owner,
+    )

@@ -1,0 +1,77 @@
+"""Hypervolume, non-dominance, and the choice of few designs that keep most of it."""
+
+from __future__ import annotations
+
+import heapq
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+
+from .stationarity import Array
+
+REFERENCE = 1.1
+"""Reference point in the scaled space, where ideal is 0 and nadir 1."""
+
+
+def scaling(values: Array) -> tuple[Array, Array]:
+    """Return ideal and range of objective values (n, m); the range of an objective that does not vary is 1."""
+    ideal = values.min(axis=0)
+    span = values.max(axis=0) - ideal
+    tiny = span <= 1e-12 * np.maximum(np.abs(ideal), 1e-300)
+    return ideal, np.where(tiny, np.maximum(np.abs(ideal), 1e-12), span)
+
+
+def nondominated(values: Array) -> NDArray[np.int64]:
+    """Return the indices of designs that no other dominates (all objectives minimised); of equals, the first."""
+    if not len(values):
+        return np.zeros(0, dtype=np.int64)
+    if values.shape[1] == 1:
+        return np.array([int(np.argmin(values[:, 0]))])
+    return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
+
+
+def hypervolume(values: Array, ideal: Array, span: Array) -> float:
+    """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate."""
+    if not len(values):
+        return 0.0
+    scaled = np.clip((values - ideal) / span, 0.0, None)
+    scaled = scaled[(scaled < REFERENCE).all(axis=1)]
+    if not len(scaled):
+        return 0.0
+    if scaled.shape[1] == 1:
+        return float((REFERENCE - scaled.min()) / REFERENCE)
+    volume = moocore.hypervolume(np.ascontiguousarray(scaled), ref=REFERENCE)
+    return float(volume / REFERENCE ** scaled.shape[1])
+
+
+def choose(values: Array, count: int, *, always: tuple[int, ...] = ()) -> NDArray[np.int64]:
+    """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
+
+    The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
+    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978).
+    """
+    n = len(values)
+    if n <= count:
+        return np.arange(n)
+    if values.shape[1] == 1:
+        return np.array(sorted(set(always) | set(np.argsort(values[:, 0], kind="stable")[:count].tolist()))[:count])
+    ideal, span = scaling(values)
+    scaled = np.ascontiguousarray((values - ideal) / span)
+    picked = list(dict.fromkeys(always))[:count]
+
+    def volume(indices: list[int]) -> float:
+        return float(moocore.hypervolume(scaled[indices], ref=REFERENCE)) if indices else 0.0
+
+    covered = volume(picked)
+    heap = [(-float(np.prod(REFERENCE - row)), index, -1) for index, row in enumerate(scaled) if index not in picked]
+    heapq.heapify(heap)
+    while len(picked) < count and heap:
+        _, index, age = heapq.heappop(heap)
+        if age == len(picked):
+            picked.append(index)
+            covered = volume(picked)
+        else:
+            gain = volume([*picked, index]) - covered
+            heapq.heappush(heap, (-gain, index, len(picked)))
+    return np.array(sorted(picked))

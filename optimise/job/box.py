@@ -1,0 +1,210 @@
+"""What is possible within the ranges of crank, rod and offset: bounds that hold for every design that turns fully.
+
+With a = |offset|, stroke and time ratio rise with r and a and fall with l; the transmission angle does the reverse:
+
+    dS/dr = (l+r)/x_out + (l-r)/x_in > 0      dS/da = a/x_in - a/x_out > 0      dS/dl = (l+r)/x_out - (l-r)/x_in < 0
+    b = asin(a/(l-r)) - asin(a/(l+r)), the excess angle, likewise term by term; cos(mu) = (r + a)/l.
+
+So one extreme is at least crank, greatest rod, least offset. The other is at the opposite corner if that turns fully,
+else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r + a) and mu = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...model import geometry
+from ...model.errors import JobError
+from ...objectives.registry import QUANTITIES
+from ..problem import Constraint, Problem, Range
+
+_SLACK = 1.0 + 1e-9
+"""What is asked at the very edge is left to the optimiser: rounding must not make it a contradiction."""
+_CLEAR = 1.0 + 1e-12
+"""Closer to locking than this, rounding decides."""
+_CELLS = 10_000
+
+_MORE = {
+    "stroke": "raise the upper end of crank or of offset",
+    "time_ratio": "raise the upper end of crank or of offset",
+    "transmission_angle": "raise the upper end of rod, or lower the lower end of crank or offset",
+    "rod_to_offset": "raise the upper end of rod or lower the lower end of offset",
+    "rod_to_crank": "raise the upper end of rod or lower the lower end of crank",
+}
+_LESS = {
+    "stroke": "lower the lower end of crank: a stroke is never shorter than 2 crank",
+    "time_ratio": "lower the lower end of offset",
+    "transmission_angle": "lower the lower end of rod, or raise the upper end of crank or offset",
+    "rod_to_offset": "lower the lower end of rod or raise the upper end of offset",
+    "rod_to_crank": "lower the lower end of rod or raise the upper end of crank",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """Ranges of crank, rod and |offset|, m, and of offset / rod, narrowed by what must hold."""
+
+    crank: Range
+    rod: Range
+    offset: Range
+    share: Range = Range(lower=0.0, upper=1.0)
+
+    def possible(self, quantity: str) -> tuple[float, float]:
+        """Return bounds of stroke, time ratio, transmission angle or a ratio, SI; needs `turns`."""
+        r0, r1 = self.crank.lower, self.crank.upper
+        l0, l1 = self.rod.lower, self.rod.upper
+        a0, a1 = self.offset.lower, self.offset.upper
+        if quantity == "rod_to_crank":
+            return max(l0 / r1, 1.0), l1 / r0
+        if quantity == "rod_to_offset":
+            return (max(l0 / a1, 1.0) if a1 else math.inf), (l1 / a0 if a0 else math.inf)
+        turns = (r1 + a1) * _CLEAR < l0
+        r = min(r1, l1 - a0)  # the longest crank that turns
+        if quantity == "stroke":
+            greatest = geometry.stroke(r1, l0, a1) if turns else 2.0 * math.sqrt(r * min(l1, r + a1))
+            return float(geometry.stroke(r0, l1, a0)), float(greatest)
+        if quantity == "time_ratio":
+            if turns:
+                greatest = geometry.time_ratio(r1, l0, a1)
+            else:
+                a = max(a0, l0 - r)
+                greatest = _ratio(math.acos(a / (2.0 * r + a))) if a1 else 1.0
+            return float(geometry.time_ratio(r0, l1, a0)), float(greatest)
+        flattest = geometry.least_transmission_angle(r1, l0, a1) if turns else 0.0
+        return float(flattest), float(geometry.least_transmission_angle(r0, l1, a0))
+
+    @property
+    def turns(self) -> bool:
+        """Whether a linkage within the ranges may turn fully."""
+        clear = self.rod.upper > (self.crank.lower + self.offset.lower) * _CLEAR
+        return clear and self.rod.upper * (1.0 - self.share.lower) > self.crank.lower
+
+
+def require_reachable(problem: Problem) -> None:
+    """Raise JobError if full rotation or a constraint on geometry is out of reach within the ranges."""
+    box = Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
+    if not box.turns:
+        raise JobError(
+            "variables: the rod must exceed crank + |offset| for full rotation; "
+            f"got {_extremes(box)}; lengthen the rod or reduce the other two"
+        )
+    constraints = {constraint.quantity: constraint for constraint in problem.constraints}
+    if "rod_to_offset" in constraints:
+        box = _with_rod_to_offset(box, constraints["rod_to_offset"])
+    for name in ("rod_to_crank", "stroke", "time_ratio", "transmission_angle"):
+        if name in constraints:
+            _require_within(constraints[name], box)
+    if "time_ratio" in constraints and "transmission_angle" in constraints:
+        _require_both(constraints["time_ratio"], constraints["transmission_angle"], box)
+
+
+def _with_rod_to_offset(box: Box, constraint: Constraint) -> Box:
+    """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
+    if box.offset.upper == 0.0:
+        raise JobError(
+            "constraints.rod_to_offset: it needs an offset; got offset fixed at 0; give variables.offset a range"
+        )
+    _require_within(constraint, box)
+    least, greatest = constraint.lower or 0.0, constraint.upper or math.inf
+    l0, l1 = box.rod.lower, box.rod.upper
+    a0, a1 = box.offset.lower, box.offset.upper
+    l0, l1 = max(l0, least * a0), min(l1, greatest * a1)
+    a0, a1 = max(a0, l0 / greatest), min(a1, l1 / least if least else a1)
+    narrowed = Box(
+        crank=box.crank,
+        rod=Range(lower=min(l0, l1), upper=l1),
+        offset=Range(lower=min(a0, a1), upper=a1),
+        share=Range(lower=1.0 / greatest, upper=min(1.0, 1.0 / least if least else 1.0)),
+    )
+    if not narrowed.turns:
+        raise JobError(
+            "constraints.rod_to_offset: full rotation leaves the crank less than rod - |offset|; got "
+            f"{_bounds(constraint)} and with it {_extremes(narrowed)}; shorten the crank, or raise the ratio"
+        )
+    return narrowed
+
+
+def _require_within(constraint: Constraint, box: Box) -> None:
+    """Raise JobError unless the constraint and what is possible meet."""
+    name = constraint.quantity
+    least, greatest = box.possible(name)
+    within = "within the ranges of crank, rod and offset"
+    got = f"got {_bounds(constraint)}"
+    if constraint.lower is not None and constraint.lower > greatest * _SLACK:
+        raise JobError(
+            f"constraints.{name}: {within} at most {_shown(name, greatest)} is possible; {got}; "
+            f"{_MORE[name]}, or ask for less"
+        )
+    if constraint.upper is not None and constraint.upper * _SLACK < least:
+        raise JobError(
+            f"constraints.{name}: {within} at least {_shown(name, least)} is possible; {got}; "
+            f"{_LESS[name]}, or ask for more"
+        )
+
+
+def _require_both(ratio: Constraint, angle: Constraint, box: Box) -> None:
+    """Raise JobError if no linkage has both the time ratio and the transmission angle."""
+    if ratio.lower is None or angle.lower is None:
+        return
+    cap = greatest_time_ratio(math.cos(angle.lower), box.share)
+    if ratio.lower <= cap * _SLACK:
+        return
+    low, high = math.cos(angle.lower), 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        enough = greatest_time_ratio(middle, box.share) >= ratio.lower
+        low, high = (low, middle) if enough else (middle, high)
+    raise JobError(
+        f"constraints.time_ratio: with a least transmission angle of {_shown('transmission_angle', angle.lower)} "
+        f"it stays below {cap:.4g}; got {_bounds(ratio)}; lower it, or lower "
+        f"constraints.transmission_angle to {_shown('transmission_angle', math.acos(high))} at most"
+    )
+
+
+def greatest_time_ratio(cosine: float, share: Range) -> float:
+    """Return a bound that the time ratio does not exceed while (r + a) / l <= cosine and a / l lies in `share`.
+
+    With p = r / l and q = a / l the excess angle rises with both, so that the greatest lies on p + q = cosine. It is
+    cut into cells of p, each bounded by its greatest p and its greatest q: never below the true maximum, and above it
+    by about 1 / cells.
+    """
+    best = 0.0
+    top = max(cosine - share.lower, 0.0)
+    for cell in range(_CELLS):
+        p = top * (cell + 1) / _CELLS
+        q = min(cosine - top * cell / _CELLS, share.upper)
+        reach = q / (1.0 - p) if p < 1.0 else 1.0
+        best = max(best, math.asin(min(reach, 1.0)) - math.asin(min(q / (1.0 + p), 1.0)))
+    return _ratio(best)
+
+
+def _ratio(excess: float) -> float:
+    return (math.pi + excess) / (math.pi - excess)
+
+
+def _sizes(offset: Range) -> Range:
+    """Return the range of |offset|."""
+    ends = sorted((abs(offset.lower), abs(offset.upper)))
+    across = offset.lower <= 0.0 <= offset.upper
+    return Range(lower=0.0 if across else ends[0], upper=ends[1])
+
+
+def _shown(name: str, value: float) -> str:
+    unit = QUANTITIES[name].unit
+    return f"{value * unit.factor:.5g} {unit.symbol}".rstrip()
+
+
+def _bounds(constraint: Constraint) -> str:
+    name, lower, upper = constraint.quantity, constraint.lower, constraint.upper
+    if constraint.equality and lower is not None:
+        return f"equals {_shown(name, lower)}"
+    ends = (("min", lower), ("max", upper))
+    return " and ".join(f"{word} {_shown(name, end)}" for word, end in ends if end is not None)
+
+
+def _extremes(box: Box) -> str:
+    return (
+        f"a rod of at most {1e3 * box.rod.upper:.6g} mm, a crank of at least "
+        f"{1e3 * box.crank.lower:.6g} mm, an offset of at least {1e3 * box.offset.lower:.6g} mm"
+    )

@@ -1,0 +1,115 @@
+"""Contradictions within a job, found before anything runs.
+
+Only what is certain is refused: each test holds for every design within the ranges. Requirements that exclude each
+other in a subtler way the optimiser finds and reports.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from ...model.errors import JobError
+from ...model.links import Bar, Link
+from ...objectives.registry import QUANTITIES
+from ..problem import Problem
+from .box import require_reachable
+
+_ERRORS = ("position_error", "position_error_rss")
+_TORQUES = ("peak_torque", "peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque")
+_FORCES = (
+    "peak_pivot_force",
+    "peak_crank_pin_force",
+    "peak_slider_pin_force",
+    "peak_guide_force",
+)
+
+
+def require_consistent(problem: Problem) -> None:
+    """Raise JobError, naming key, rule, value and remedy, if the problem contradicts itself."""
+    for key, quantity, word, value in _asked(problem):
+        _require_possible(key, quantity, word, value)
+    for objective in problem.objectives:
+        _require_free(problem, objective.quantity)
+    _require_causes(problem)
+    require_reachable(problem)
+
+
+def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
+    """Yield key, quantity, word and value of every bound and target."""
+    for constraint in problem.constraints:
+        name, lower, upper = constraint.quantity, constraint.lower, constraint.upper
+        words = (("equals", lower),) if constraint.equality else (("min", lower), ("max", upper))
+        for word, value in words:
+            if value is not None:
+                yield f"constraints.{name}", name, word, value
+    for objective in problem.objectives:
+        if objective.target is not None:
+            yield f"objectives.{objective.quantity}", objective.quantity, "target", objective.target
+
+
+def _require_possible(key: str, name: str, word: str, value: float) -> None:
+    """Refuse a value that a quantity has for no linkage at all."""
+    unit = QUANTITIES[name].unit
+    got = f"got {word} {value * unit.factor:.6g} {unit.symbol}".rstrip()
+    if name == "time_ratio" and value < 1.0:
+        raise JobError(
+            f"{key}: the time ratio is the slower stroke over the faster, so 1 or more; {got}; "
+            "give the inverse (the sign of speed says which stroke is the slow one)"
+        )
+    if name == "transmission_angle" and not 0.0 < value < 0.5 * math.pi:
+        raise JobError(
+            f"{key}: the least transmission angle lies between 0 and 90 deg, ends excluded; {got}; "
+            "30 to 50 deg are usual (a plain number is in rad)"
+        )
+    if name in ("rod_to_offset", "rod_to_crank") and word != "min" and value <= 1.0:
+        raise JobError(
+            f"{key}: the rod exceeds crank + |offset| for full rotation, so this is above 1; {got}; raise it"
+        )
+    if name != "mean_torque" and value < 0.0:
+        raise JobError(f"{key}: {name} is never negative; {got}; give its size")
+
+
+def _require_free(problem: Problem, name: str) -> None:
+    """Refuse an objective that is the same for every design."""
+    if any(c.equality and c.quantity == name for c in problem.constraints):
+        raise JobError(
+            f"objectives.{name}: a quantity that is held at one value cannot be an objective too; "
+            f"got constraints.{name} with equals; leave out one of the two"
+        )
+    centred = problem.offset.fixed and problem.offset.lower == 0.0
+    if centred and name in ("time_ratio", "rod_to_offset"):
+        value = "1" if name == "time_ratio" else "infinite"
+        raise JobError(
+            f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
+            "at 0; give variables.offset a range or leave out the objective"
+        )
+
+
+def _require_causes(problem: Problem) -> None:
+    """Refuse position errors without tolerances, and torques and forces that nothing causes."""
+    wanted = [(f"objectives.{o.quantity}", o.quantity) for o in problem.objectives]
+    held = [(f"constraints.{c.quantity}", c.quantity) for c in problem.constraints]
+    t = problem.mechanism.tolerances
+    exact = not any(x.absolute or x.fraction for x in (t.crank, t.rod, t.offset, t.crank_angle))
+    for key, name in (*wanted, *held):
+        if name in _ERRORS and exact:
+            raise JobError(
+                f"{key}: a position error comes from tolerances; got none; "
+                'add for example [tolerances] crank = "0.05 mm"'
+            )
+    m = problem.mechanism
+    moving = m.slider_mass > 0.0 or _weighs(m.rod)
+    turning = _weighs(m.crank) or m.counterweight.mass > 0.0 or m.counterweight.inertia > 0.0
+    # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
+    torque = bool(m.loads) or moving or (turning and (any(m.gravity) or m.acceleration != 0.0))
+    for key, name in wanted:
+        if (name in _TORQUES and not torque) or (name in _FORCES and not (torque or turning)):
+            raise JobError(
+                f"{key}: it comes from masses and loads; got none that matter; add for example "
+                '[mechanism] slider = { mass = "0.8 kg" }, or a [[load]]'
+            )
+
+
+def _weighs(link: Link) -> bool:
+    return isinstance(link, Bar) or link.mass > 0.0 or bool(link.inertia)

@@ -1,0 +1,106 @@
+"""Reading the bytes of a job file into tables, refusing everything that is no job file."""
+
+from __future__ import annotations
+
+import json
+import stat
+import tomllib
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...model.errors import JobError
+from ..units import shown
+
+LARGEST = 1_000_000
+"""Bytes. A job with the longest tables allowed takes a tenth of it."""
+DEEPEST = 8
+"""Tables within tables; a job has five at most."""
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Return the tables of a job file, TOML or JSON by its ending. Raises JobError."""
+    if path.suffix.casefold() not in (".toml", ".json"):
+        raise JobError(f"a job file ends in .toml or .json; got {shown(path.suffix or path.name)}; rename the file")
+    content = _bytes(path)
+    if b"\0" in content:
+        raise JobError("a job file is plain UTF-8 text; got a binary or UTF-16 file; save it as UTF-8")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise JobError(
+            f"a job file is UTF-8 text; got byte 0x{content[error.start]:02x} in line {line}; save it as UTF-8"
+        ) from None
+    if not text.strip():
+        raise JobError("a job file states a problem; got an empty file; start from a shipped job")
+    return _tables(text, path.suffix.casefold())
+
+
+def _bytes(path: Path) -> bytes:
+    """Return the content of a regular file of moderate size."""
+    try:
+        status = path.stat()
+        if stat.S_ISDIR(status.st_mode):
+            raise JobError("a job is a file; got a directory; name the file in it")
+        if not stat.S_ISREG(status.st_mode):
+            raise JobError("a job is a regular file; got a device or a pipe; save the job to a file")
+        size = status.st_size
+        if size <= LARGEST:
+            with path.open("rb") as file:
+                content = file.read(LARGEST + 1)
+            size = len(content)
+        if size > LARGEST:
+            raise JobError(f"a job file has at most 1 MB; got {size / 1e6:.1f} MB; is it the right file?")
+        return content
+    except FileNotFoundError:
+        raise JobError("no such file; check the name and the folder") from None
+    except PermissionError:
+        raise JobError("the file may not be read; check its permissions") from None
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        raise JobError(f"the file cannot be read: {error}") from None
+
+
+def _tables(text: str, suffix: str) -> dict[str, Any]:
+    language = "TOML" if suffix == ".toml" else "JSON"
+    try:
+        if suffix == ".toml":
+            return tomllib.loads(text)
+        data = json.loads(text, object_pairs_hook=_unique)
+    except RecursionError:
+        raise JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the file") from None
+    except JobError:
+        raise
+    except ValueError as error:
+        raise JobError(f"the file is no valid {language}: {error}; correct the line") from None
+    if not isinstance(data, dict):
+        raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
+    return data
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object, refusing a key that comes twice: JSON would silently keep the last."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        raise JobError(f"each key may come once; got {shown(twice)} twice; remove one")
+    return table
+
+
+def require_plain(value: object, depth: int = 0) -> None:
+    """Refuse data nested too deeply, keys that are not text, and nulls. Raises JobError."""
+    if depth == 0 and not isinstance(value, Mapping):
+        raise JobError(f"a job must be a table of keys; got {shown(value)}")
+    if depth > DEEPEST:
+        raise JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the job")
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            if not isinstance(key, str):
+                raise JobError(f"a key must be text; got {shown(key)}")
+            if item is None:
+                raise JobError(f"{shown(key)} must have a value; got null; leave the key out instead")
+            require_plain(item, depth + 1)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            require_plain(item, depth + 1)

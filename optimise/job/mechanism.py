@@ -1,0 +1,258 @@
+"""The machine in a job file: links, masses, gravity, loads, tolerances, and how each becomes a part of the model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
+
+from ...model.errors import InputError
+from ...model.links import Bar, Counterweight, Link, RigidLink
+from ...model.mechanism import Branch, Mechanism, Tolerances, Window
+from ..units import shown
+from .loads import Load
+from .values import (
+    Angle,
+    AngleTolerance,
+    AngularAcceleration,
+    AngularSpeed,
+    Density,
+    Fraction,
+    Gravity,
+    Inertia,
+    Length,
+    LengthTolerance,
+    Mass,
+    Part,
+    PositiveLength,
+    Radius,
+    ToleranceOf,
+)
+
+During = Literal["cycle", "outward stroke", "inward stroke"]
+
+
+class SectionLink(Part):
+    """A link as a round-ended bar of rectangular section: its mass and inertia follow its length."""
+
+    width: PositiveLength = Field(description="in the plane of motion", examples=["30 mm"])
+    depth: PositiveLength = Field(description="normal to the plane", examples=["20 mm"])
+    density: Density = Field(description="of the material", examples=["7800 kg/m^3"])
+
+    def build(self) -> Link:
+        """Return the link as the model has it."""
+        return Bar(width=self.width, depth=self.depth, density=self.density)
+
+
+class MassLink(Part):
+    """A link by its mass properties, the same for every length."""
+
+    mass: Mass = Field(description="of the link", examples=["0.5 kg"])
+    inertia: Inertia | None = Field(
+        None,
+        description="about the mass centre; mass length^2 / 12, a slender uniform rod, if left out",
+        examples=["0.0012 kg m^2"],
+    )
+    centre: Length | None = Field(
+        None,
+        description="distance of the mass centre from the crank pivot (crank) or from the crank "
+        "pin (rod), along the link; half the length if left out",
+        examples=["30 mm"],
+    )
+    centre_across: Length = Field(
+        0.0,
+        description="distance of the mass centre from the link's axis, positive to the left",
+        examples=["2 mm"],
+    )
+
+    def build(self) -> Link:
+        """Return the link as the model has it."""
+        return RigidLink(
+            mass=self.mass,
+            inertia=self.inertia,
+            centre=self.centre,
+            centre_across=self.centre_across,
+        )
+
+
+_SECTION = frozenset(SectionLink.model_fields)
+_MASS = frozenset(MassLink.model_fields)
+
+
+def _one_way(value: object) -> object:
+    """Refuse a link that is no table, or is given both by section and by mass properties."""
+    if isinstance(value, Part):
+        return value
+    if not isinstance(value, Mapping):
+        raise InputError(
+            "must be a table, { width, depth, density } or { mass, ... }; "
+            f"got {shown(value)}; the length of a link belongs in [variables]"
+        )
+    section, mass = sorted(_SECTION & set(value)), sorted(_MASS & set(value))
+    if section and mass:
+        raise InputError(
+            "must be given by its section (width, depth, density) or by its mass (mass, inertia, "
+            f"centre), not by both; got {', '.join(section + mass)}; leave out one of the two"
+        )
+    return value
+
+
+def _way(value: object) -> str:
+    if isinstance(value, Part):
+        return "(section)" if isinstance(value, SectionLink) else "(mass)"
+    return "(section)" if isinstance(value, Mapping) and _SECTION & set(value) else "(mass)"
+
+
+AnyLink = Annotated[
+    Annotated[SectionLink, Tag("(section)")] | Annotated[MassLink, Tag("(mass)")],
+    Discriminator(_way),
+    BeforeValidator(_one_way),
+]
+
+
+class CounterweightPart(Part):
+    """A mass fixed to the crank."""
+
+    mass: Mass = Field(description="of the counterweight", examples=["0.4 kg"])
+    radius: Radius = Field(description="from the crank pivot to its mass centre", examples=["25 mm"])
+    angle: Angle = Field(
+        math.pi,
+        description="of its mass centre from the crank's direction; 180 deg is opposite to the pin",
+        examples=["180 deg"],
+    )
+    inertia: Inertia = Field(0.0, description="about its own mass centre", examples=["0.0001 kg m^2"])
+
+    def build(self) -> Counterweight:
+        """Return the counterweight as the model has it."""
+        return Counterweight(mass=self.mass, radius=self.radius, angle=self.angle, inertia=self.inertia)
+
+
+class SliderPart(Part):
+    """The slider."""
+
+    mass: Mass = Field(description="of the slider and all that moves with it", examples=["0.8 kg"])
+
+
+def _turning(speed: float) -> float:
+    if speed == 0.0:
+        raise InputError(
+            "must not be 0, because its sign says which way the crank turns; got 0; "
+            'give a very slow machine a small speed, for example "0.1 rpm"'
+        )
+    return speed
+
+
+class MechanismPart(Part):
+    """How the machine is driven and what it weighs; lengths belong in [variables]."""
+
+    speed: Annotated[AngularSpeed, AfterValidator(_turning)] = Field(
+        description="of the crank, positive counter-clockwise, negative clockwise",
+        examples=["300 rpm"],
+    )
+    acceleration: AngularAcceleration = Field(
+        0.0,
+        description="of the crank, the same at every crank angle",
+        examples=["20 rad/s^2"],
+    )
+    crank: AnyLink | None = Field(
+        None,
+        description="section or mass of the crank; massless if left out",
+        examples=[{"mass": "0.2 kg"}],
+    )
+    rod: AnyLink | None = Field(
+        None,
+        description="section or mass of the connecting rod; massless if left out",
+        examples=[{"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"}],
+    )
+    counterweight: CounterweightPart | None = Field(
+        None,
+        description="a mass fixed to the crank",
+        examples=[{"mass": "0.4 kg", "radius": "25 mm"}],
+    )
+    slider: SliderPart | None = Field(
+        None, description="the slider; massless if left out", examples=[{"mass": "0.8 kg"}]
+    )
+    gravity: Gravity | None = Field(None, description="size of the gravity; none if left out", examples=["9.81 m/s^2"])
+    gravity_direction: Angle | None = Field(
+        None,
+        description="counter-clockwise from the outward direction of the slider line (+x) to where "
+        "things fall; 270 deg, across a level slider line, if left out",
+        examples=["270 deg"],
+    )
+    branch: Branch = Field(
+        "open",
+        description="open: the slider is on the side of +x; crossed: on the other side",
+        examples=["open"],
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> MechanismPart:
+        if self.gravity_direction is not None and self.gravity is None:
+            raise InputError(
+                "gravity_direction needs gravity; got a direction alone; "
+                'add gravity = "9.81 m/s^2" or leave out gravity_direction'
+            )
+        return self
+
+    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart) -> Mechanism:
+        """Return the machine as the model has it."""
+        parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
+        parts["counterweight"] = self.counterweight
+        return Mechanism(
+            speed=self.speed,
+            acceleration=self.acceleration,
+            slider_mass=0.0 if self.slider is None else self.slider.mass,
+            gravity=self._gravity(),
+            loads=tuple(load.build() for load in loads),
+            tolerances=tolerances.build(),
+            branch=self.branch,
+            **{name: part.build() for name, part in parts.items() if part is not None},
+        )
+
+    def _gravity(self) -> tuple[float, float]:
+        size = self.gravity or 0.0
+        angle = 1.5 * math.pi if self.gravity_direction is None else self.gravity_direction
+        # Rounding of pi would leave 1e-16 of gravity along an axis that it is normal to.
+        along, across = (0.0 if abs(part) < 1e-12 else size * part for part in (math.cos(angle), math.sin(angle)))
+        return along, across
+
+
+def _part(ends: tuple[float, float]) -> tuple[float, float]:
+    if not 0.0 <= ends[0] < ends[1] <= 1.0:
+        raise InputError(
+            "must be [start, end] with 0 <= start < end <= 1, fractions of the stroke from the "
+            f"inner dead centre; got [{ends[0]:g}, {ends[1]:g}]; the whole stroke is [0.0, 1.0]"
+        )
+    return ends
+
+
+class TolerancesPart(Part):
+    """How far dimensions and crank angle may be off, and over which part of the cycle the error counts."""
+
+    crank: LengthTolerance = Field(
+        0.0, description="of the crank, as a length or a share", examples=["0.05 mm", "0.1 %"]
+    )
+    rod: LengthTolerance = Field(0.0, description="of the rod, as a length or a share", examples=["0.05 mm", "0.1 %"])
+    offset: LengthTolerance = Field(
+        0.0, description="of the offset, as a length or a share", examples=["0.05 mm", "0.1 %"]
+    )
+    crank_angle: AngleTolerance = Field(0.0, description="of the crank angle", examples=["0.1 deg"])
+    during: During = Field("cycle", description="the stroke in which the position error counts", examples=["cycle"])
+    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = Field(
+        (0.0, 1.0),
+        description="where the position error counts: fractions of the stroke, from the inner (0) "
+        "to the outer dead centre (1)",
+        examples=[[0.0, 0.25]],
+    )
+
+    def build(self) -> Tolerances:
+        """Return the tolerances as the model has them."""
+        return Tolerances(
+            crank=ToleranceOf.build(self.crank),
+            rod=ToleranceOf.build(self.rod),
+            offset=ToleranceOf.build(self.offset),
+            crank_angle=ToleranceOf.build(self.crank_angle),
+            window=Window(during=self.during, start=self.part_of_stroke[0], end=self.part_of_stroke[1]),
+        )

@@ -1,0 +1,178 @@
+"""What is wrong with a job, in the words of the job file: key, rule, value, remedy. No jargon of the validator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from ..units import closest, shown
+
+MOST = 8
+"""How many problems of one job are listed."""
+
+LONGEST = 100
+"""How many are looked at: each costs a search for a near key."""
+
+Schema = dict[str, Any]
+
+
+def explain(error: ValidationError, schema: Schema) -> list[str]:
+    """Return one sentence for each problem, the most useful first.
+
+    schema: the JSON Schema of the job, which says the allowed keys and an example for each. Unknown keys come first: a
+    misspelt key explains the missing one, which is then left out.
+    """
+    unknown, wrong, missing, meant = list[str](), list[str](), dict[str, str](), set[str]()
+    listed = error.errors(include_url=False)[:LONGEST]
+    for details in listed:
+        if details["type"] == "too_short" and any(_within(other, details) for other in listed):
+            continue  # a list that is too short for want of the entries that were refused
+        path = [part for part in details["loc"] if not _is_tag(part)]
+        if details["type"] == "extra_forbidden":
+            allowed = list(_properties(schema, path[:-1]))
+            near = closest(str(path[-1]), allowed)
+            meant.add(_key([*path[:-1], near]) if near else "")
+            unknown.append(_unknown(path, details["input"], allowed, near))
+        else:
+            sentence = f"{_key(path)}: {_sentence(path, details, schema)}"
+            if details["type"] != "missing":
+                wrong.append(sentence)
+            else:
+                missing[_key(path)] = sentence
+    return [*unknown, *wrong, *(text for key, text in missing.items() if key not in meant)]
+
+
+def _within(inner: ErrorDetails, outer: ErrorDetails) -> bool:
+    return len(inner["loc"]) > len(outer["loc"]) and inner["loc"][: len(outer["loc"])] == outer["loc"]
+
+
+def _is_tag(part: object) -> bool:
+    """Whether a step of a location is the form that a value takes, "(mass)", rather than a key."""
+    return isinstance(part, str) and part.startswith("(") and part.endswith(")")
+
+
+def _key(path: Sequence[object]) -> str:
+    """Return a location as a job file has it: mechanism.slider.mass, load #2.force."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f" #{part + 1}"
+        else:
+            word = str(part)
+            plain = word.isidentifier() and word.isascii() and len(word) <= 60
+            text += ("." if text else "") + (word if plain else shown(word))
+    return text or "the job"
+
+
+def _unknown(path: Sequence[Any], value: object, allowed: list[str], near: str | None) -> str:
+    choice = f"did you mean {near}?" if near else f"possible here: {', '.join(allowed)}"
+    return f"{_key(path)}: unknown key; got {shown(value)}; {choice}"
+
+
+def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str:
+    """Return rule, value and remedy of one problem."""
+    kind, value, context = details["type"], details["input"], details.get("ctx", {})
+    example = _example(schema, path)
+    write = f"; write for example {example}" if example else ""
+    got = f"got {shown(value)}"
+    if kind == "value_error":
+        return str(context["error"])
+    if kind == "missing":
+        return f"is missing, but required{write.replace('write', 'add')}"
+    if kind == "literal_error":
+        words = list(_words(_at(schema, path)))
+        near = closest(value, words) if isinstance(value, str) else None
+        meant = f'; did you mean "{near}"?' if near else ""
+        return f"must be {_any_of(words)}; {got}{meant}"
+    rules = {
+        "model_type": "must be a table of keys",
+        "model_attributes_type": "must be a table of keys",
+        "dict_type": "must be a table of keys",
+        "tuple_type": "must be a list",
+        "string_type": "must be text in quotes",
+        "string_unicode": "must be text that can be printed",
+        "int_type": "must be a whole number",
+        "int_from_float": "must be a whole number",
+        "int_parsing_size": "must be a whole number of moderate size",
+    }
+    limits = {
+        "greater_than_equal": ("must be at least", "ge"),
+        "less_than_equal": ("must be at most", "le"),
+        "less_than": ("must be below", "lt"),
+    }
+    if kind in limits:
+        rule, name = limits[kind]
+        return f"{rule} {context[name]}; {got}{write}"
+    if kind == "string_too_long":
+        return f"must have at most {context['max_length']} characters; {got}; shorten it"
+    if kind in ("too_short", "too_long"):
+        most = kind == "too_long"
+        count = context["max_length" if most else "min_length"]
+        return f"must have at {'most' if most else 'least'} {count} entries; got {context['actual_length']}{write}"
+    rule = rules.get(kind, details["msg"][:1].lower() + details["msg"][1:])
+    return f"{rule}; {got}{write}"
+
+
+def _any_of(words: Sequence[str]) -> str:
+    quoted = [f'"{word}"' for word in words]
+    return " or ".join(quoted) if len(quoted) < 3 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+
+
+def _example(schema: Schema, path: Sequence[Any]) -> str:
+    """Return an example of the key, written as in a job file; "" if the schema has none."""
+    for node in _at(schema, path):
+        if node.get("examples"):
+            key = next((str(part) for part in reversed(path) if isinstance(part, str)), "")
+            return f"{key} = {toml(node['examples'][0])}"
+    return ""
+
+
+def toml(value: object) -> str:
+    """Return a value in the notation of TOML, on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(toml(item) for item in value) + "]"
+    return shown(value)
+
+
+def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
+    """Return the keys that are possible in a table."""
+    found: dict[str, Any] = {}
+    for node in _at(schema, path):
+        found |= node.get("properties", {})
+    return found
+
+
+def _words(nodes: Sequence[Schema]) -> Iterator[str]:
+    for node in nodes:
+        yield from (str(word) for word in node.get("enum", []))
+        if "const" in node:
+            yield str(node["const"])
+
+
+def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
+    """Return every alternative that the schema has at a location."""
+    nodes = _alternatives(schema, schema)
+    for part in path:
+        below = []
+        for node in nodes:
+            inner = node.get("items") if isinstance(part, int) else None
+            inner = inner or node.get("properties", {}).get(part)
+            if inner:
+                below += _alternatives(schema, inner)
+        nodes = below
+    return nodes
+
+
+def _alternatives(schema: Schema, node: Schema) -> list[Schema]:
+    """Return a node, and what it refers to or offers a choice of."""
+    found = [node]
+    if "$ref" in node:
+        found += _alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])
+    for choice in (*node.get("anyOf", ()), *node.get("oneOf", ())):
+        found += _alternatives(schema, choice)
+    return found

@@ -1,0 +1,129 @@
+"""The job: what a job file holds, key by key. Also the JSON body of a request. After reading, every value is in SI."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from ...model.errors import InputError
+from ..problem import Problem, Range, Settings
+from ..units import shown
+from .contradictions import require_consistent
+from .loads import Load
+from .mechanism import MechanismPart, TolerancesPart
+from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of
+from .values import AnyRange, Part, PositiveRange
+
+
+class VariablesPart(Part):
+    """Where the three dimensions may lie: [lower, upper], or one value that fixes a dimension."""
+
+    crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
+    rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
+    offset: AnyRange = Field(
+        description="of the slider line from the crank pivot, positive to the left of the outward direction",
+        examples=[["0 mm", "200 mm"]],
+    )
+
+
+class OptimiserPart(Part):
+    """How to search."""
+
+    method: Literal["auto"] = Field("auto", description="how to search", examples=["auto"])
+    designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = Field(
+        100, description="how many designs to deliver at most", examples=[100]
+    )
+    samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = Field(
+        None,
+        description="designs evaluated per round of the search; chosen by the method if left out",
+        examples=[20_000],
+    )
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
+        1,
+        description="of everything random: the same job with the same seed gives the same front",
+        examples=[1],
+    )
+
+
+def _printable(text: str) -> str:
+    if not text.strip() or not text.replace("\n", " ").replace("\t", " ").isprintable():
+        raise InputError(f"must be text that can be printed, not empty; got {shown(text)}")
+    return text
+
+
+def _one_line(text: str) -> str:
+    if not text.strip() or not text.isprintable():
+        raise InputError(f"must be one line of text, not empty; got {shown(text)}")
+    return text
+
+
+def _some(objectives: ObjectivesPart) -> ObjectivesPart:
+    if not objectives.model_fields_set:
+        raise InputError(
+            'must name at least one quantity; got an empty table; add for example peak_torque = "minimise"'
+        )
+    return objectives
+
+
+class Job(Part):
+    """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
+
+    name: Annotated[str, Field(max_length=80), AfterValidator(_one_line)] = Field(
+        description="of the job; names the run too", examples=["Vibrating sieve"]
+    )
+    description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = Field(
+        None, description="anything worth keeping beside the results", examples=["Second draft"]
+    )
+    mechanism: MechanismPart = Field(
+        description="how the machine is driven and what it weighs",
+        examples=[{"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}],
+    )
+    load: tuple[Load, ...] = Field(
+        (),
+        max_length=50,
+        description="loads on the slider along its line; several add up",
+        examples=[[{"force": "200 N", "opposes": "outward stroke"}]],
+    )
+    tolerances: TolerancesPart = Field(
+        TolerancesPart(),
+        description="how far dimensions and crank angle may be off",
+        examples=[{"crank": "0.05 mm", "crank_angle": "0.1 deg"}],
+    )
+    variables: VariablesPart = Field(
+        description="where the three dimensions may lie",
+        examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
+    )
+    constraints: ConstraintsPart = Field(
+        ConstraintsPart(),
+        description="what every design must satisfy",
+        examples=[{"transmission_angle": {"min": "40 deg"}}],
+    )
+    objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = Field(
+        description="what is wanted: the front shows the best compromises",
+        examples=[{"time_ratio": "maximise", "peak_torque": "minimise"}],
+    )
+    optimiser: OptimiserPart = Field(
+        OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]
+    )
+
+    def problem(self) -> Problem:
+        """Return the problem that the job states. Raises JobError if it contradicts itself."""
+        variables = self.variables
+        problem = Problem(
+            name=self.name,
+            mechanism=self.mechanism.build(self.load, self.tolerances),
+            crank=Range(lower=variables.crank[0], upper=variables.crank[1]),
+            rod=Range(lower=variables.rod[0], upper=variables.rod[1]),
+            offset=Range(lower=variables.offset[0], upper=variables.offset[1]),
+            objectives=tuple(objectives_of(self.objectives)),
+            constraints=tuple(constraints_of(self.constraints)),
+            settings=Settings(
+                method=self.optimiser.method,
+                designs=self.optimiser.designs,
+                samples=self.optimiser.samples,
+                seed=self.optimiser.seed,
+            ),
+        )
+        require_consistent(problem)
+        return problem

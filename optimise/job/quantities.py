@@ -1,0 +1,158 @@
+"""Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias, cast
+
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    ModelWrapValidatorHandler,
+    Tag,
+    create_model,
+    model_validator,
+)
+
+from ...model.errors import InputError
+from ...objectives.registry import QUANTITIES
+from ..problem import Constraint, Objective
+from ..units import Kind, closest, kind_of, shown
+from .values import Part, Physical
+
+
+class Bounds(Part):
+    """Bounds of a quantity: min, max or both, or equals alone. The fields follow from its unit."""
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _possible(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        bounds = handler(data)
+        lower, upper, equals = (getattr(bounds, name) for name in ("min", "max", "equals"))
+        if lower is None and upper is None and equals is None:
+            raise InputError("must say min, max or equals; got an empty table; add one of the three")
+        if equals is not None and not (lower is None and upper is None):
+            raise InputError("must have either equals, or min and max; got both; leave out one of the two")
+        if lower is not None and upper is not None and lower > upper:
+            given = data if isinstance(data, Mapping) else {"min": lower, "max": upper}
+            raise InputError(
+                f"min must not exceed max; got min {shown(given['min'])} and max "
+                f"{shown(given['max'])}, which no design can meet; swap the two or leave out one"
+            )
+        return bounds
+
+
+class Target(Part):
+    """A value to come near to. The field follows from the unit of the quantity."""
+
+
+# What is usual for a quantity; others show the example of their kind of value.
+_EXAMPLES: dict[str, Any] = {
+    "time_ratio": 1.2,
+    "transmission_angle": "40 deg",
+    "stroke": "280 mm",
+    "position_error": "0.3 mm",
+    "position_error_rss": "0.2 mm",
+    "rod_to_crank": 2.5,
+}
+_SENSES = {
+    "minimise": "minimise",
+    "minimize": "minimise",
+    "maximise": "maximise",
+    "maximize": "maximise",
+}
+_WANTED = '"minimise", "maximise" or { target = value }'
+
+
+def _sense(value: object) -> object:
+    """Refuse what is neither a known word nor a table."""
+    if isinstance(value, str):
+        if value in _SENSES:
+            return _SENSES[value]
+        near = closest(value, ("minimise", "maximise"))
+        meant = f'; did you mean "{near}"?' if near else ""
+        raise InputError(f"must be {_WANTED}; got {shown(value)}{meant}")
+    if not isinstance(value, Mapping | Target):
+        raise InputError(f"must be {_WANTED}; got {shown(value)}")
+    return value
+
+
+def _form(value: object) -> str:
+    return "(word)" if isinstance(value, str) else "(target)"
+
+
+def _per_quantity() -> tuple[type[Part], type[Part]]:
+    """Return the tables [constraints] and [objectives]: one optional key for each quantity."""
+    limits: dict[str, Any] = {}
+    wishes: dict[str, Any] = {}
+    made: dict[Kind, tuple[Any, Any]] = {}
+    for name, quantity in QUANTITIES.items():
+        kind = kind_of(quantity.unit.symbol)
+        if kind not in made:
+            made[kind] = _forms(kind)
+        bounds, wish = made[kind]
+        example = _EXAMPLES.get(name, kind.example if kind.unit else float(kind.example))
+        limits[name] = (
+            bounds | None,
+            Field(None, description=quantity.title, examples=[{"min": example}]),
+        )
+        wishes[name] = (
+            wish | None,
+            Field(None, description=quantity.title, examples=["minimise", {"target": example}]),
+        )
+    constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
+    objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))
+    return constraints, objectives
+
+
+def _forms(kind: Kind) -> tuple[Any, Any]:
+    """Return the types of the bounds and of the objective of a quantity of one kind."""
+    value = Annotated[float, Physical(kind)]
+    name = kind.name.split(" ", 1)[1].title().replace(" ", "")
+    example = [kind.example if kind.unit else float(kind.example)]
+    limits = {
+        "min": (value | None, Field(None, description="least", examples=example)),
+        "max": (value | None, Field(None, description="greatest", examples=example)),
+        "equals": (value | None, Field(None, description="exact value", examples=example)),
+    }
+    bounds = create_model(f"{name}Bounds", __base__=Bounds, **cast(Any, limits))
+    target = create_model(
+        f"{name}Target",
+        __base__=Target,
+        **cast(Any, {"target": (value, Field(description="to come near to", examples=example))}),
+    )
+    words = Literal["minimise", "maximise", "minimize", "maximize"]
+    wish = Annotated[
+        Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],
+        Discriminator(_form),
+        BeforeValidator(_sense),
+    ]
+    return bounds, wish
+
+
+if TYPE_CHECKING:  # a type checker cannot follow fields that are made from the list of quantities
+    ConstraintsPart: TypeAlias = Part
+    ObjectivesPart: TypeAlias = Part
+else:
+    ConstraintsPart, ObjectivesPart = _per_quantity()
+
+
+def constraints_of(part: ConstraintsPart) -> Iterator[Constraint]:
+    """Return the constraints of a job as the problem has them."""
+    for name in type(part).model_fields:
+        bounds = getattr(part, name)
+        if bounds is not None and bounds.equals is not None:
+            yield Constraint(quantity=name, lower=bounds.equals, upper=bounds.equals)
+        elif bounds is not None:
+            yield Constraint(quantity=name, lower=bounds.min, upper=bounds.max)
+
+
+def objectives_of(part: ObjectivesPart) -> Iterator[Objective]:
+    """Return the objectives of a job as the problem has them."""
+    for name in type(part).model_fields:
+        wish = getattr(part, name)
+        if isinstance(wish, Target):
+            yield Objective(quantity=name, sense="target", target=cast(Any, wish).target)
+        elif wish is not None:
+            yield Objective(quantity=name, sense=wish)

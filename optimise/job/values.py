@@ -1,0 +1,150 @@
+"""The types of the values in a job file: physical values, ranges and tolerances, read into SI.
+
+Each says in the JSON Schema what it accepts, and writes back what it reads: SI numbers are valid in a job too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from ...model.errors import InputError
+from ...model.mechanism import Tolerance
+from .. import units
+from ..units import Kind, Sign, shown, to_si
+
+SHORTEST = 1e-9
+"""m; a shorter link is a mistaken unit."""
+
+
+class Part(BaseModel):
+    """A table of a job file: unknown keys are refused, nothing changes after reading."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+@dataclass(frozen=True)
+class Physical:
+    """Marks a number as a physical value of a kind, read by `to_si`."""
+
+    kind: Kind
+    sign: Sign = "any"
+
+    def read(self, value: object) -> float:
+        """Return the value in SI; raises InputError."""
+        return to_si(value, self.kind, sign=self.sign)
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return described(self.kind, self.sign)
+
+
+def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
+    """Return the JSON Schema of a physical value: a number in SI, or a string with a unit."""
+    number: dict[str, Any] = {"type": "number"}
+    if sign != "any":
+        number["exclusiveMinimum" if sign == "positive" else "minimum"] = 0
+    if not kind.unit:
+        return {**number, "description": kind.name, "examples": [float(kind.example)]}
+    text = f"{kind.name}, as a number and a unit in a string, or as a number in {kind.unit}"
+    string = {"type": "string", "pattern": units.PATTERN}
+    return {"anyOf": [string, number], "description": text, "examples": [kind.example]}
+
+
+@dataclass(frozen=True)
+class RangeOf:
+    """Marks a pair as a range of a length: [lower, upper], or one value that fixes it."""
+
+    sign: Sign = "any"
+
+    def read(self, value: object) -> tuple[float, float]:
+        """Return lower and upper end, m; raises InputError."""
+        ends = value if isinstance(value, list | tuple) else (value, value)
+        if len(ends) != 2:
+            raise InputError(
+                f'must be a range [lower, upper] or one value; got {shown(value)}; write it like ["20 mm", "200 mm"]'
+            )
+        lower, upper = (to_si(end, units.LENGTH, sign=self.sign) for end in ends)
+        if self.sign == "positive" and lower < SHORTEST:
+            raise InputError(f"must be at least {SHORTEST:g} m; got {shown(ends[0])}; check the unit")
+        if lower > upper:
+            raise InputError(
+                f"must run from its lower to its upper end; got {shown(ends[0])} to "
+                f"{shown(ends[1])}, an empty range; swap the two"
+            )
+        return lower, upper
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        one = described(units.LENGTH, self.sign)["anyOf"]
+        pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [pair, *one], "examples": [["20 mm", "200 mm"], "140 mm"]}
+
+
+class ToleranceOf:
+    """Marks a value as the tolerance of a length: "0.05 mm", or a share of the length, "0.1 %"."""
+
+    @staticmethod
+    def share(value: object) -> float | None:
+        """Return the share that a string such as "0.1 %" says; None if it is no percentage."""
+        if not (isinstance(value, str) and value.rstrip().endswith("%")):
+            return None
+        try:
+            percent = to_si(value.rstrip()[:-1], units.RATIO)
+        except InputError:
+            percent = -1.0
+        if not 0.0 <= percent < 100.0:
+            raise InputError(
+                f'a share of the dimension must be from 0 % to below 100 %; got {shown(value)}; write it like "0.1 %"'
+            )
+        return percent / 100.0
+
+    @classmethod
+    def read(cls, value: object) -> float | str:
+        """Return the tolerance in m, or the percentage as it stands; raises InputError."""
+        if cls.share(value) is not None:
+            return str(value)
+        return to_si(value, units.LENGTH, sign="zero or more")
+
+    @classmethod
+    def build(cls, value: float | str) -> Tolerance:
+        """Return the tolerance as the model has it."""
+        if isinstance(value, str):
+            return Tolerance(fraction=cls.share(value) or 0.0)
+        return Tolerance(absolute=value)
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        share = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$"}
+        either = [*described(units.LENGTH, "zero or more")["anyOf"], share]
+        return {"anyOf": either, "examples": ["0.05 mm", "0.1 %"]}
+
+
+Length = Annotated[float, Physical(units.LENGTH)]
+PositiveLength = Annotated[float, Physical(units.LENGTH, "positive")]
+Radius = Annotated[float, Physical(units.LENGTH, "zero or more")]
+Angle = Annotated[float, Physical(units.ANGLE)]
+AngleTolerance = Annotated[float, Physical(units.ANGLE, "zero or more")]
+AngularSpeed = Annotated[float, Physical(units.ANGULAR_SPEED)]
+AngularAcceleration = Annotated[float, Physical(units.ANGULAR_ACCELERATION)]
+Mass = Annotated[float, Physical(units.MASS, "zero or more")]
+Inertia = Annotated[float, Physical(units.INERTIA, "zero or more")]
+Density = Annotated[float, Physical(units.DENSITY, "positive")]
+Gravity = Annotated[float, Physical(units.ACCELERATION, "zero or more")]
+Force = Annotated[float, Physical(units.FORCE)]
+Resistance = Annotated[float, Physical(units.FORCE, "positive")]
+Stiffness = Annotated[float, Physical(units.STIFFNESS, "positive")]
+Damping = Annotated[float, Physical(units.DAMPING, "positive")]
+Fraction = Annotated[float, Physical(units.RATIO, "zero or more")]
+PositiveRange = Annotated[tuple[float, float], RangeOf("positive")]
+AnyRange = Annotated[tuple[float, float], RangeOf()]
+LengthTolerance = Annotated[float | str, ToleranceOf()]

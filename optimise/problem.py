@@ -1,0 +1,117 @@
+"""An optimisation problem: what is given, what may vary, what must hold, what is wanted. SI, immutable, validated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ..model.errors import InputError
+from ..model.mechanism import Mechanism
+from ..objectives.registry import QUANTITIES, quantity
+
+Sense = Literal["minimise", "maximise", "target"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Where a dimension may lie, m; equal bounds fix it."""
+
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
+            raise InputError(f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g}")
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the range is one value."""
+        return self.lower == self.upper
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraint:
+    """A quantity that must lie in [lower, upper], in its SI unit; None leaves a side open, equal bounds ask a value."""
+
+    quantity: str
+    lower: float | None = None
+    upper: float | None = None
+
+    def __post_init__(self) -> None:
+        quantity(self.quantity)
+        if self.lower is None and self.upper is None:
+            raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
+        for bound in (self.lower, self.upper):
+            if bound is not None and not math.isfinite(bound):
+                raise InputError(f"the constraint on {self.quantity} must be finite; got {bound}")
+        if self.lower is not None and self.upper is not None and self.lower > self.upper:
+            raise InputError(
+                f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
+            )
+
+    @property
+    def equality(self) -> bool:
+        """Whether one value is asked for."""
+        return self.lower is not None and self.lower == self.upper
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objective:
+    """A quantity to minimise, to maximise, or to bring to a target (in its SI unit)."""
+
+    quantity: str
+    sense: Sense
+    target: float | None = None
+
+    def __post_init__(self) -> None:
+        quantity(self.quantity)
+        if (self.sense == "target") != (self.target is not None):
+            raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
+        if self.target is not None and not math.isfinite(self.target):
+            raise InputError(f"the target of {self.quantity} must be finite; got {self.target}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How to search.
+
+    method: "auto". designs: how many to deliver at most. samples: designs evaluated per round before the polish; None
+    lets the method choose. seed: of everything random.
+    """
+
+    method: str = "auto"
+    designs: int = 100
+    samples: int | None = None
+    seed: int = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A complete optimisation problem.
+
+    crank, rod, offset: where the three dimensions may lie, m.
+    """
+
+    name: str
+    mechanism: Mechanism
+    crank: Range
+    rod: Range
+    offset: Range
+    objectives: tuple[Objective, ...]
+    constraints: tuple[Constraint, ...] = ()
+    settings: Settings = Settings()
+
+    def __post_init__(self) -> None:
+        if not self.objectives:
+            raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
+        names = [objective.quantity for objective in self.objectives]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"the objective {name} is given twice; keep one")
+        constrained = [constraint.quantity for constraint in self.constraints]
+        for name in constrained:
+            if constrained.count(name) > 1:
+                raise InputError(f"the constraint on {name} is given twice; merge the two")
+        if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
+            raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")

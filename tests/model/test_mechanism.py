@@ -1,0 +1,56 @@
+"""What a mechanism refuses."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"speed": math.nan}, "speed must be finite; got nan"),
+        ({"acceleration": math.inf}, "acceleration must be finite; got inf"),
+        ({"slider_mass": -1.0}, "the slider mass must be zero or more and finite; got -1 kg"),
+        ({"slider_mass": math.nan}, "the slider mass must be zero or more and finite; got nan kg"),
+        ({"gravity": (0.0, math.nan)}, "gravity must be finite"),
+        ({"branch": "half-open"}, "branch must be 'open' or 'crossed'; got 'half-open'"),
+    ],
+)
+def test_wrong_mechanism_is_refused(values: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Mechanism(**values)
+
+
+@pytest.mark.parametrize("name", ["absolute", "fraction"])
+@pytest.mark.parametrize("value", [-1e-6, math.nan, math.inf])
+def test_tolerance_is_zero_or_more(name: str, value: float) -> None:
+    with pytest.raises(InputError, match=f"a tolerance must be zero or more and finite; got {name} = "):
+        Tolerance(**{name: value})
+
+
+def test_tolerance_of_the_crank_angle_is_no_share() -> None:
+    with pytest.raises(InputError, match="is an angle, not a share; give it in rad or deg"):
+        Tolerances(crank_angle=Tolerance(fraction=0.01))
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.5, 0.5), (0.6, 0.4), (-0.1, 0.5), (0.2, 1.1), (math.nan, 1.0)])
+def test_window_is_a_part_of_the_stroke(start: float, end: float) -> None:
+    with pytest.raises(InputError, match="a part of the stroke needs 0 <= start < end <= 1"):
+        Window(start=start, end=end)
+
+
+def test_window_needs_a_known_stroke() -> None:
+    with pytest.raises(InputError, match="during must be .*; got 'down'"):
+        Window(during="down")  # type: ignore[arg-type]
+
+
+def test_mechanism_is_immutable() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        Mechanism().speed = 3.0  # type: ignore[misc]

@@ -1,0 +1,220 @@
+"""Peaks over continuous crank angle against dense sweeps of independently written curves."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.cycle import cycle
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.links import RigidLink
+from slidercrank.model.loads import AngleTable, PositionTable, StrokeForce
+from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.peaks import KEPT, find_peaks
+from slidercrank.model.signals import Signal
+from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, random_designs
+from tests.model.sweep import ANGLES, greatest
+from tests.model.virtual_work import drive_torque, position_error
+
+DESIGNS = random_designs(1000, seed=1)
+# Rounding of 1 - sin(phi)^2 near locking, to its third power in the torque, makes 1e-13; the rule asks for 1e-9.
+EXACT = 2e-12
+
+
+def highest(machine: Mechanism, signal: Signal, designs: Array = DESIGNS, during: str = "cycle") -> Array:
+    found: Array = find_peaks(machine, signal, designs, during=during, kept=1).values[:, 0]
+    return found
+
+
+# The nested sweeps after it make the answer independent of the first one, as long as that finds the right cells.
+@pytest.mark.parametrize(("name", "angles"), [("smooth", ANGLES), ("strokes", 20_000), ("tables", 20_000)])
+def test_peak_torque_is_that_of_a_dense_sweep(name: str, angles: int) -> None:
+    machine = MACHINES[name]
+    swept = greatest(lambda designs, theta: drive_torque(machine, designs, theta), DESIGNS, angles=angles)
+    np.testing.assert_allclose(highest(machine, Signal.TORQUE), swept, rtol=EXACT)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("rss", [False, True], ids=["worst case", "root sum square"])
+def test_position_error_is_that_of_a_dense_sweep(name: str, rss: bool) -> None:
+    machine = MACHINES[name]
+    designs = DESIGNS[:400]
+    swept = greatest(
+        lambda designs, theta: position_error(machine, designs, theta, rss=rss), designs, angles=10_000
+    )
+    signal = Signal.POSITION_ERROR_RSS if rss else Signal.POSITION_ERROR
+    np.testing.assert_allclose(highest(machine, signal, designs), swept, rtol=EXACT)
+
+
+FIELDS: dict[Signal, tuple[str, ...]] = {
+    Signal.PIVOT_FORCE: ("pivot_x", "pivot_y"),
+    Signal.CRANK_PIN_FORCE: ("crank_pin_x", "crank_pin_y"),
+    Signal.SLIDER_PIN_FORCE: ("slider_pin_x", "slider_pin_y"),
+    Signal.GUIDE_FORCE: ("guide",),
+    Signal.SLIDER_SPEED: ("slider_velocity",),
+    Signal.SLIDER_ACCELERATION: ("slider_acceleration",),
+}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("signal", FIELDS, ids=lambda signal: signal.name)
+def test_peak_is_that_of_the_curve_over_the_cycle(name: str, signal: Signal) -> None:
+    machine = MACHINES[name]
+    designs = DESIGNS[:60]
+
+    def curve(design: Array, theta: Array) -> Array:
+        of_cycle = cycle(machine, Linkage(*design.reshape(3)), theta.ravel())
+        parts = [getattr(of_cycle, field) for field in FIELDS[signal]]
+        size: Array = np.sqrt(sum(part**2 for part in parts)).reshape(theta.shape)
+        return size
+
+    swept = [greatest(curve, design[None], angles=10_000)[0] for design in designs]
+    np.testing.assert_allclose(highest(machine, signal, designs), swept, rtol=EXACT)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_higher_of_the_two_strokes_is_the_cycle(name: str) -> None:
+    machine = MACHINES[name]
+    outward = highest(machine, Signal.TORQUE, during="outward stroke")
+    inward = highest(machine, Signal.TORQUE, during="inward stroke")
+    np.testing.assert_allclose(np.maximum(outward, inward), highest(machine, Signal.TORQUE), rtol=1e-13)
+    assert np.mean(outward > inward) > 0.02
+    assert np.mean(outward < inward) > 0.02
+
+
+@pytest.mark.parametrize("during", ["outward stroke", "inward stroke"])
+@pytest.mark.parametrize("name", MACHINES)
+def test_peak_torque_of_a_stroke_is_that_of_a_dense_sweep(name: str, during: str) -> None:
+    machine = MACHINES[name]
+    designs = DESIGNS[:200]
+    turn = (1.0 if machine.branch == "open" else -1.0) * (1.0 if machine.speed > 0.0 else -1.0)
+    wanted = 1.0 if during == "outward stroke" else -1.0
+
+    def curve(designs: Array, theta: Array) -> Array:
+        motion = Linkage(*np.moveaxis(designs, -1, 0), branch=machine.branch).at(theta, speed=1.0)
+        counts: Any = turn * wanted * motion.slider_velocity > 0.0
+        part: Array = np.where(counts, drive_torque(machine, designs, theta), 0.0)
+        return part
+
+    swept = greatest(curve, designs, angles=10_000)
+    # The sweep ends within 1e-14 rad of the dead centre, where the torque may be steep.
+    np.testing.assert_allclose(highest(machine, Signal.TORQUE, designs, during), swept, rtol=1e-10)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("signal", list(Signal), ids=lambda signal: signal.name)
+def test_peaks_are_sorted_and_lie_where_they_say(name: str, signal: Signal) -> None:
+    machine = MACHINES[name]
+    designs = DESIGNS[:50]
+    found = find_peaks(machine, signal, designs, gradients=True)
+    assert found.values.shape == found.angles.shape == (50, KEPT)
+    assert found.gradients is not None
+    assert found.gradients.shape == (50, KEPT, 3)
+    there = np.isfinite(found.values)
+    assert np.all(there[:, 0])
+    assert np.all(found.values[:, :-1] >= found.values[:, 1:])
+    assert np.all((found.angles[there] >= 0.0) & (found.angles[there] < 2.0 * math.pi))
+    assert np.all(np.isnan(found.angles[~there]))
+    assert np.all(np.isfinite(found.gradients))
+    assert np.all(found.gradients[~there] == 0.0)
+    if signal == Signal.TORQUE:
+        at = np.where(there, found.angles, 0.0)
+        value = np.abs(drive_torque(machine, designs[:, None, :], at))
+        np.testing.assert_allclose(value[there], found.values[there], rtol=1e-10)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_design_is_judged_alike_alone_and_in_a_batch(name: str) -> None:
+    together = find_peaks(MACHINES[name], Signal.TORQUE, DESIGNS, gradients=True)
+    assert together.gradients is not None
+    for n in (0, 511, 512, 999):
+        alone = find_peaks(MACHINES[name], Signal.TORQUE, DESIGNS[n : n + 1], gradients=True)
+        np.testing.assert_array_equal(alone.values[0], together.values[n])
+        assert alone.gradients is not None
+        np.testing.assert_array_equal(alone.gradients[0], together.gradients[n])
+
+
+def test_no_designs_have_no_peaks() -> None:
+    assert find_peaks(SMOOTH, Signal.TORQUE, np.empty((0, 3))).values.shape == (0, KEPT)
+
+
+def test_flywheel_alone_has_a_constant_torque() -> None:
+    flywheel = Mechanism(speed=1.0, acceleration=4.0, crank=RigidLink(mass=2.0, centre=0.0, inertia=0.5))
+    np.testing.assert_allclose(highest(flywheel, Signal.TORQUE), 2.0, rtol=1e-15)
+
+
+def test_mechanism_at_rest_has_peaks_of_zero() -> None:
+    for signal in Signal:
+        assert np.all(highest(Mechanism(), signal) == 0.0), signal
+
+
+# Without offset the dead centres lie in the middle between breakpoints that mirror each other: there rounding must not
+# decide which part of the cycle counts, or which piece of a table acts.
+OFFSETS = [0.0, 1e-18, -1e-18, 1e-9, -1e-9, 1e-5]
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+@pytest.mark.parametrize("window", [Window(), Window(end=0.5), Window(start=0.2), Window(during="inward stroke")])
+def test_position_error_of_a_part_of_the_stroke_holds_without_offset(offset: float, window: Window) -> None:
+    designs = random_designs(60, seed=7) * [1.0, 1.0, 0.0] + [0.0, 0.0, offset]
+    machine = Mechanism(tolerances=dataclasses.replace(TOLERANCES, window=window))
+    swept = greatest(lambda designs, theta: position_error(machine, designs, theta), designs, angles=4000)
+    # A window's end moves by sqrt(1e-16) rad where it meets a dead centre.
+    np.testing.assert_allclose(highest(machine, Signal.POSITION_ERROR, designs), swept, rtol=1e-9)
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+@pytest.mark.parametrize("datum", ["inner dead centre", "outer dead centre"])
+@pytest.mark.parametrize("branch", ["open", "crossed"])
+def test_table_that_starts_at_a_dead_centre_holds_without_offset(offset: float, datum: Any, branch: Any) -> None:
+    designs = random_designs(60, seed=7) * [1.0, 1.0, 0.0] + [0.0, 0.0, offset]
+    table = PositionTable(positions=(0.0, 0.02, 0.03), forces=(1.0, 20.0, 3.0), datum=datum)
+    machine = Mechanism(speed=3.0, slider_mass=1.0, loads=(table,), branch=branch)
+    swept = greatest(lambda designs, theta: drive_torque(machine, designs, theta), designs, angles=4000)
+    np.testing.assert_allclose(highest(machine, Signal.TORQUE, designs), swept, rtol=1e-9)
+
+
+def test_table_that_ends_at_the_other_dead_centre_is_no_special_case() -> None:
+    # A stroke of exactly 0.1 m, as an optimiser with a given stroke delivers it.
+    designs = np.array([[0.05, rod, 0.0] for rod in (0.0501, 0.06, 0.1, 0.3)])
+    table = PositionTable(positions=(0.0, 0.05, 0.1), forces=(5.0, 20.0, 90.0), datum="inner dead centre")
+    machine = Mechanism(speed=3.0, slider_mass=1.0, gravity=(0.0, -9.81), loads=(table,))
+    swept = greatest(lambda designs, theta: drive_torque(machine, designs, theta), designs, angles=10_000)
+    np.testing.assert_allclose(highest(machine, Signal.TORQUE, designs), swept, rtol=EXACT)
+
+
+def test_peak_on_the_kink_of_a_table_is_found_on_the_kink() -> None:
+    spike = AngleTable(angles=(0.9, 1.0, 1.1), forces=(0.0, -500.0, 0.0))
+    found = find_peaks(Mechanism(loads=(spike,)), Signal.TORQUE, np.array([[0.05, 0.2, 0.03]]), gradients=True)
+    assert found.angles[0, 0] == pytest.approx(1.0, rel=1e-15)
+
+
+def test_peak_before_a_jump_of_the_load_is_its_limit() -> None:
+    # The guide force jumps at the dead centres, where the load does.
+    machine = Mechanism(loads=(StrokeForce(outward=-500.0, inward=0.0),))
+    design = np.array([[0.05, 0.2, 0.03]])
+    found = find_peaks(machine, Signal.GUIDE_FORCE, design)
+    swept = greatest(
+        lambda d, theta: cycle(machine, Linkage(*d.reshape(3)), theta.ravel()).guide.reshape(theta.shape), design
+    )
+    np.testing.assert_allclose(found.values[0, 0], swept[0], rtol=1e-12)
+
+
+def test_more_tables_than_peaks_kept() -> None:
+    knots = np.linspace(0.0, 6.0, 20)
+    forces = np.where(np.arange(20) % 2, 100.0, -100.0)
+    machine = dataclasses.replace(TABLES, loads=(AngleTable(angles=tuple(knots), forces=tuple(forces)),))
+    designs = DESIGNS[:100]
+    swept = greatest(lambda designs, theta: drive_torque(machine, designs, theta), designs, angles=10_000)
+    np.testing.assert_allclose(highest(machine, Signal.TORQUE, designs), swept, rtol=EXACT)
+
+
+def test_tolerance_of_the_crank_angle_alone_gives_the_slider_speed() -> None:
+    error = Mechanism(tolerances=Tolerances(crank_angle=Tolerance(absolute=0.002)))
+    np.testing.assert_allclose(
+        highest(error, Signal.POSITION_ERROR), highest(Mechanism(speed=0.002), Signal.SLIDER_SPEED), rtol=1e-14
+    )

@@ -1,0 +1,110 @@
+"""Files that are no job files: refused before they are parsed, with the file's name and the reason."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import JobError
+from slidercrank.optimise.job import load_job
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(JobError) as caught:
+        load_job(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert len(str(caught.value).splitlines()) == 1
+    return str(caught.value)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    assert "no such file" in refusal(tmp_path / "none.toml")
+
+
+def test_a_directory_is_refused(tmp_path: Path) -> None:
+    folder = tmp_path / "folder.toml"
+    folder.mkdir()
+    assert "got a directory; name the file in it" in refusal(folder)
+
+
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    assert "a device or a pipe" in refusal(pipe)
+
+
+CONTENTS = [
+    (b"", ["empty file", "shipped job"]),
+    (b" \n\t\n", ["empty file"]),
+    (b"\x7fELF\x02\x01\x01\x00\x00", ["plain UTF-8 text", "binary", "save it as UTF-8"]),
+    ("name = 'x'".encode("utf-16"), ["UTF-16", "save it as UTF-8"]),
+    (b"name = 'x'\nunit = '5 \xb5m'\n", ["byte 0xb5 in line 2", "save it as UTF-8"]),
+    (b"name = 'x'\n[mechanism\n", ["no valid TOML", "line 2"]),
+    (b"name = " + b"1" * 5000, ["no valid TOML"]),
+    (b"\xff\xd8\xff\xe0" + bytes(range(1, 200)), ["UTF-8 text; got byte 0xff in line 1"]),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), CONTENTS)
+def test_content_that_is_no_toml_is_refused(content: bytes, words: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "job.toml"
+    file.write_bytes(content)
+    message = refusal(file)
+    assert all(word in message for word in words), message
+
+
+JSON = [
+    ("{", ["no valid JSON", "line 1"]),
+    ("[1, 2]", ["a JSON object", "[1, 2]", "braces"]),
+    ('{"name": "a", "name": "b"}', ['got "name" twice', "remove one"]),
+    ('{"name": null}', ['"name" must have a value', "null", "leave the key out"]),
+    ("[" * 50_000, ["nest at most 8 deep"]),
+    ('{"name": ' + "9" * 5000 + "}", ["no valid JSON"]),
+    ('{"mechanism": {"speed": NaN}, "name": "x", "variables": {}, "objectives": {}}', ["speed", "finite", "nan"]),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), JSON)
+def test_content_that_is_no_json_job_is_refused(content: str, words: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "job.json"
+    file.write_text(content, encoding="utf-8")
+    with pytest.raises(JobError) as caught:
+        load_job(file)
+    assert all(word in str(caught.value) for word in words), str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["job.txt", "job", "job.toml.bak", "job.yaml"])
+def test_another_ending_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text("name = 'x'", encoding="utf-8")
+    assert "ends in .toml or .json" in refusal(tmp_path / name)
+
+
+def test_a_file_of_100_megabytes_is_refused_by_its_size(tmp_path: Path) -> None:
+    file = tmp_path / "large.toml"
+    with file.open("wb") as stream:
+        stream.truncate(100_000_000)  # a hole: nothing is written to disk
+    assert "at most 1 MB; got 100.0 MB" in refusal(file)
+
+
+def test_a_path_that_no_file_can_have_is_refused() -> None:
+    with pytest.raises(JobError, match=r"cannot be read"):
+        load_job("a\0b.toml")
+    with pytest.raises(JobError, match=r"cannot be read"):
+        load_job("x" * 5000 + ".toml")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read everything")
+def test_a_file_that_may_not_be_read_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "secret.toml"
+    file.write_text("name = 'x'", encoding="utf-8")
+    file.chmod(0)
+    assert "check its permissions" in refusal(file)
+
+
+def test_a_job_file_full_of_unknown_keys_is_refused(tmp_path: Path) -> None:
+    # A search for near keys over all of them would take minutes.
+    file = tmp_path / "many.json"
+    file.write_text(json.dumps({f"k{n}": n for n in range(60_000)}), encoding="utf-8")
+    with pytest.raises(JobError, match="unknown key"):
+        load_job(file)

@@ -1,0 +1,193 @@
+"""Values with units: what is read, exactly, and what is refused, with which words."""
+
+import math
+import re
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from slidercrank.model.errors import InputError
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise import units
+from slidercrank.optimise.units import KINDS, Kind, closest, kind_of, shown, to_si
+
+GOOD = [
+    ("80 mm", units.LENGTH, 0.08),
+    ("80mm", units.LENGTH, 0.08),
+    ("  35 mm ", units.LENGTH, 0.035),
+    ("0.31 m", units.LENGTH, 0.31),
+    ("-50 mm", units.LENGTH, -0.05),
+    ("1.5e2 mm", units.LENGTH, 0.15),
+    (".5 m", units.LENGTH, 0.5),
+    ("20 µm", units.LENGTH, 2e-5),
+    ("20 um", units.LENGTH, 2e-5),
+    ("3.15 inch", units.LENGTH, 0.08001),
+    ("3.15 in", units.LENGTH, 0.08001),
+    ("1 foot", units.LENGTH, 0.3048),
+    ("5 thou", units.LENGTH, 0.000127),
+    (0.08, units.LENGTH, 0.08),
+    (2, units.LENGTH, 2.0),
+    ("300 rpm", units.ANGULAR_SPEED, 10.0 * math.pi),
+    ("-2400 rpm", units.ANGULAR_SPEED, -80.0 * math.pi),
+    ("5 rev/s", units.ANGULAR_SPEED, 10.0 * math.pi),
+    ("31.5 rad/s", units.ANGULAR_SPEED, 31.5),
+    ("180 deg/s", units.ANGULAR_SPEED, math.pi),
+    ("5 rad s⁻²", units.ANGULAR_ACCELERATION, 5.0),
+    ("360 deg", units.ANGLE, 2.0 * math.pi),
+    ("20°", units.ANGLE, math.pi / 9.0),
+    ("60 arcmin", units.ANGLE, math.pi / 180.0),
+    ("2 mrad", units.ANGLE, 0.002),
+    ("9.81 m/s^2", units.ACCELERATION, 9.81),
+    ("9.81 m/s**2", units.ACCELERATION, 9.81),
+    ("9.81 m s^-2", units.ACCELERATION, 9.81),
+    ("7800 kg/m^3", units.DENSITY, 7800.0),
+    ("7800 kg/m3", units.DENSITY, 7800.0),
+    ("7.8 g/cm³", units.DENSITY, 7800.0),
+    ("1758.88 kg mm^2", units.INERTIA, 1.75888e-3),
+    ("3 t", units.MASS, 3000.0),
+    ("1 lb", units.MASS, 0.45359237),
+    ("20 kN", units.FORCE, 20e3),
+    ("1 lbf", units.FORCE, 4.4482216152605),
+    ("1 kgf", units.FORCE, 9.80665),
+    ("25 N m", units.TORQUE, 25.0),
+    ("25 N*m", units.TORQUE, 25.0),
+    ("25 N·m", units.TORQUE, 25.0),
+    ("25 Nm", units.TORQUE, 25.0),
+    ("2.5 kNm", units.TORQUE, 2500.0),
+    ("1 lbf inch", units.TORQUE, 4.4482216152605 * 0.0254),
+    ("20 N/mm", units.STIFFNESS, 20e3),
+    ("50 N s/m", units.DAMPING, 50.0),
+    ("50 Ns/m", units.DAMPING, 50.0),
+    ("7.2 km/h", units.SPEED, 2.0),
+    ("2500 cm^2", units.AREA, 0.25),
+    (3.2, units.RATIO, 3.2),
+    ("3.2", units.RATIO, 3.2),
+]
+
+
+@pytest.mark.parametrize(("value", "kind", "expected"), GOOD)
+def test_a_value_is_read_in_si_and_rounded_once(value: object, kind: Kind, expected: float) -> None:
+    assert to_si(value, kind) == pytest.approx(expected, rel=2e-16, abs=0.0)
+
+
+@pytest.mark.parametrize("value", [value for value, kind, _ in GOOD if isinstance(value, str) and kind.unit])
+def test_what_is_read_matches_the_pattern_of_the_schema(value: str) -> None:
+    assert re.match(units.PATTERN, value)
+
+
+BAD = [
+    ("300 mm", units.ANGULAR_SPEED, ["angular speed", '"300 mm"', "is a length", '"300 rpm"']),
+    ("5 Hz", units.ANGULAR_SPEED, ["Hz", "rpm"]),
+    ("5 s^-1", units.ANGULAR_SPEED, ["frequency", "turns", "radians"]),
+    ("300 1/min", units.ANGULAR_SPEED, ["one number and one unit", "300 rpm"]),
+    ("5 /s", units.ANGULAR_SPEED, ["no unit", "300 rpm"]),
+    ("3 mN", units.TORQUE, ["torque", "is a force", "25 N m"]),
+    ("3 N/m", units.TORQUE, ["torque", "is a stiffness"]),
+    ("3 J", units.TORQUE, ["J", "N m"]),
+    ("20 degC", units.ANGLE, ["degC", "temperatures"]),
+    ("20 °C", units.ANGLE, ["°C", "temperatures"]),
+    ("20 mm/m", units.ANGLE, ["angle", "0.1 deg"]),
+    ("0.1", units.ANGLE, ["with its unit", "0.1 deg"]),
+    ("80", units.LENGTH, ["with its unit", "80 mm", "plain number in m"]),
+    ("80 MM", units.LENGTH, ["MM", "did you mean mm?"]),
+    ("80 milimeter", units.LENGTH, ["milimeter"]),
+    ("80 Mm", units.LENGTH, ["at most 10000 m", "check the unit"]),
+    ("1e999 m", units.LENGTH, ["at most", "1e999 m"]),
+    ("1e9999 m", units.LENGTH, ["1e9999 m", "80 mm"]),
+    ("2*40 mm", units.LENGTH, ['"2*40 mm"', "80 mm"]),
+    ("40 mm + 40 mm", units.LENGTH, ["80 mm"]),
+    ("40 mm 2", units.LENGTH, ["80 mm"]),
+    ("80 (mm)", units.LENGTH, ["no unit"]),
+    ("80 mm^99", units.LENGTH, ["no unit"]),
+    ('3.15"', units.LENGTH, ["write inch"]),
+    ("0,05 mm", units.LENGTH, ["comma", "decimal sign is a point"]),
+    ("0.1 %", units.LENGTH, ["%", "tolerance"]),
+    ("", units.LENGTH, ['""', "80 mm"]),
+    ("mm", units.LENGTH, ["one number and one unit"]),
+    ("1" * 100 + " mm", units.LENGTH, ["103 characters"]),
+    ("nan mm", units.LENGTH, ["finite", "nan"]),
+    ("-inf m", units.LENGTH, ["finite"]),
+    (math.nan, units.LENGTH, ["finite", "nan"]),
+    (math.inf, units.RATIO, ["finite", "inf"]),
+    (True, units.LENGTH, ["length", "true", "80 mm"]),
+    (None, units.LENGTH, ["length", "None"]),
+    (["80 mm"], units.LENGTH, ['["80 mm"]']),
+    ({"mm": 80}, units.LENGTH, ["a table of 1 keys"]),
+    (10**400, units.LENGTH, ["a very long whole number", "check the unit"]),
+    ("3 N s/m kg", units.DAMPING, ["ends with the name after its division sign"]),
+    ("3.2 mm", units.RATIO, ["ratio", "is a length", "3.2"]),
+    ("9.81 g", units.ACCELERATION, ["acceleration", "is a mass", "9.81 m/s^2"]),
+    ("80 \ud800", units.LENGTH, ["\\ud800"]),
+    ("80 mm\0", units.LENGTH, ["\\u0000"]),
+]
+
+
+@pytest.mark.parametrize(("value", "kind", "words"), BAD)
+def test_what_is_no_value_of_the_kind_is_refused_with_the_reason(value: object, kind: Kind, words: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        to_si(value, kind)
+    message = str(caught.value)
+    assert all(word in message for word in words), message
+    assert message.isprintable()
+
+
+@pytest.mark.parametrize(("value", "sign"), [("-1 mm", "zero or more"), ("0 mm", "positive"), (-1e-9, "positive")])
+def test_a_sign_is_required_where_the_value_needs_one(value: object, sign: units.Sign) -> None:
+    with pytest.raises(InputError, match=f"must be {sign}; got"):
+        to_si(value, units.LENGTH, sign=sign)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_the_example_of_each_kind_is_read_and_its_si_unit_is_one(kind: Kind) -> None:
+    assert to_si(kind.example, kind) > 0.0
+    assert to_si(f"1 {kind.unit}".rstrip(), kind) == 1.0
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_every_quantity_has_a_kind_whose_unit_agrees_with_its_factor(name: str) -> None:
+    unit = QUANTITIES[name].unit
+    one = to_si(f"1 {unit.symbol}".rstrip(), kind_of(unit.symbol))
+    assert one * unit.factor == pytest.approx(1.0, rel=1e-15)
+
+
+def test_a_kind_is_found_for_another_unit_of_its_dimension() -> None:
+    assert kind_of("kN m") is units.TORQUE
+    with pytest.raises(InputError, match="no kind of value"):
+        kind_of("kg s")
+
+
+def assert_answered(value: object, kind: Kind) -> None:
+    try:
+        number, message = to_si(value, kind), "read"
+    except InputError as error:
+        number, message = 0.0, str(error)
+    assert math.isfinite(number)
+    assert message.isprintable()
+
+
+@given(st.one_of(st.text(max_size=80), st.floats(), st.integers(), st.none(), st.binary()))
+@example("1e-999 mm")
+@example("+.5e+3 mm")
+@example("1 m^-9 m^9 m")
+def test_anything_is_either_read_as_a_finite_number_or_refused(value: object) -> None:
+    for kind in (units.LENGTH, units.RATIO):
+        assert_answered(value, kind)
+
+
+@given(st.from_regex(r"[0-9.+-]{1,6} ?[a-zA-Zµ°/*^ 0-9()%-]{0,12}", fullmatch=True))
+def test_text_that_looks_like_a_value_is_either_read_or_refused(value: str) -> None:
+    for kind in (units.LENGTH, units.ANGULAR_SPEED):
+        assert_answered(value, kind)
+
+
+def test_values_are_shown_as_in_a_job_file() -> None:
+    assert [shown(v) for v in (True, "a", [1, "b"], 0.5, [])] == ["true", '"a"', '[1, "b"]', "0.5", "[]"]
+    assert shown([[1], [2]]) == "a list of 2"
+    assert shown({"a": 1, "b": 2}) == "a table of 2 keys"
+    assert len(shown("x" * 1000)) < 80
+
+
+def test_the_nearest_word_is_found_whatever_its_case() -> None:
+    assert closest("Spede", ["speed", "crank"]) == "speed"
+    assert closest("something else", ["speed", "crank"]) is None

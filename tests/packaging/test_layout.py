@@ -1,0 +1,108 @@
+"""The installed packages are the folders on disk, and the folders depend on each other one way."""
+
+import ast
+import json
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import slidercrank
+
+ORDER = ("model", "objectives", "optimise", "service")  # each may import itself and those before it
+SLOW = ("numba", "pandas", "matplotlib", "cvxpy", "optuna", "scipy", "pint")
+
+
+@pytest.fixture(scope="module")
+def root(pytestconfig: pytest.Config) -> Path:
+    return pytestconfig.rootpath
+
+
+def test_listed_packages_are_the_folders_on_disk(root: Path) -> None:
+    with (root / "pyproject.toml").open("rb") as file:
+        listed = tomllib.load(file)["tool"]["setuptools"]
+    folders = {
+        file.parent.relative_to(root) for top in ORDER for file in (root / top).rglob("*.py")
+    }
+    assert sorted(listed["packages"]) == sorted(
+        ["slidercrank", *(".".join(["slidercrank", *folder.parts]) for folder in folders)]
+    )
+    assert [folder for folder in folders if not (root / folder / "__init__.py").is_file()] == []
+    assert listed["package-dir"] == {
+        "slidercrank": ".package/slidercrank",
+        **{f"slidercrank.{top}": top for top in ORDER},
+    }
+
+
+def test_links_for_type_checkers_lead_to_the_same_files(root: Path) -> None:
+    links = {link.name: link.resolve() for link in (root / ".package/typing/slidercrank").iterdir()}
+    front_door = (root / ".package/slidercrank").resolve()
+    expected = {name: front_door / name for name in ("__init__.py", "__main__.py", "py.typed")}
+    assert links == expected | {top: (root / top).resolve() for top in ORDER}
+
+
+@pytest.mark.parametrize("folder", ORDER)
+def test_imports_point_one_way(root: Path, folder: str) -> None:
+    allowed = ORDER[: ORDER.index(folder) + 1]
+    wrong = [
+        f"{file.relative_to(root)}:{line} imports {target}"
+        for file in sorted((root / folder).rglob("*.py"))
+        for line, target in imports_within_the_project(file, root)
+        if target not in allowed
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def imports_within_the_project(file: Path, root: Path) -> Iterator[tuple[int, str]]:
+    """Yield line and folder of every import of project code, wherever it stands in the file.
+
+    Absolute imports of it are given as they are written: inside the folders none is allowed.
+    """
+    package = file.relative_to(root).parent.parts
+    for node in ast.walk(ast.parse(file.read_bytes())):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                if alias.name.split(".")[0] in ("slidercrank", *ORDER):
+                    yield node.lineno, f"{alias.name} (absolute)"
+        elif isinstance(node, ast.ImportFrom):
+            path = node.module.split(".") if node.module else []
+            if node.level == 0:
+                if path[0] in ("slidercrank", *ORDER):
+                    yield node.lineno, f"{node.module} (absolute)"
+                continue
+            path = [*package[: len(package) + 1 - node.level], *path]
+            for target in path[:1] or [alias.name for alias in node.names]:
+                yield node.lineno, target
+
+
+def test_public_names_are_listed_and_importable() -> None:
+    assert sorted(slidercrank.__all__) == ["Linkage", "__version__", "load_job", "solve"]
+    assert set(slidercrank.__all__) <= set(dir(slidercrank))
+    for name in slidercrank.__all__:
+        assert getattr(slidercrank, name) is not None
+
+
+def test_unknown_public_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="'slidercrank' has no attribute 'optimize'"):
+        getattr(slidercrank, "optimize")  # noqa: B009 - mypy knows that it is not there
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import slidercrank",
+        "from slidercrank.service.cli import main; sys.argv = ['slidercrank', '--help']; main()",
+    ],
+    ids=["import", "help"],
+)
+def test_nothing_slow_is_imported_before_it_is_needed(code: str, tmp_path: Path) -> None:
+    report = f"sys.stderr.write(json.dumps([name for name in {SLOW} if name in sys.modules]))"
+    script = f"import atexit, json, sys; atexit.register(lambda: {report}); {code}"
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stderr) == []
