@@ -1,10 +1,10 @@
 """Peak torque and greatest position error of very many designs at once, with gradients.
 
-The same formulas as in `peaks`, with the innermost loop over designs, so that every operation is a vector instruction.
-All designs share the crowded angles; the two highest local maxima of each are refined. The result equals that of
-`peaks.find_peaks` to rounding where the curve is smooth. Where a load changes at the dead centres, a peak that sits on
-the kink there is found only to the spacing of the angles: good for choosing designs, while what is delivered is
-evaluated by `peaks`. Tables and partial strokes are not handled here.
+The same formulas as in `peaks`, with the innermost loop over designs, so that every operation is a vector instruction;
+the motion at an angle is computed once for all signals. All designs share the crowded angles; the two highest local
+maxima of each are refined. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
+load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles: good
+for choosing designs, while what is delivered is evaluated by `peaks`. Tables and partial strokes are not handled here.
 """
 
 from __future__ import annotations
@@ -27,12 +27,11 @@ from .signals import Signal, design_motion, signal
 
 Array = NDArray[np.float64]
 
-LANES = 128
+LANES = 64
 """Designs in a block: its working arrays stay in the first-level cache."""
 _STEPS = 7
-_CANDIDATES = 2
-_FLAT = 1e-13
 _TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
+_FLAT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -56,29 +55,122 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
 
 
 @analytic
-def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
-    """Value at the crowded angle tau: tan(theta - pi/2) = kappa tan(tau)."""
-    y = kappa * sine_tau
-    q = inverse(root(cosine_tau * cosine_tau + y * y))
-    sine, cosine = cosine_tau * q, -y * q
-    m = design_motion(sine, cosine, d)
+def _value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
+    """Value of a signal, its load taken from the stroke that the slider is in."""
     outward = d.branch.real * m.x_1.real * direction > 0.0
     load = smooth_load(m, d, d.outward_force if outward else d.inward_force)
     return signal(kind, sine, cosine, m, d, load)
 
 
+@analytic
+def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
+    """Sine and cosine of the crank angle at tau: tan(theta - pi/2) = kappa tan(tau)."""
+    if crowd:
+        y = kappa * sine_tau
+        q = inverse(root(cosine_tau * cosine_tau + y * y))
+        return cosine_tau * q, -y * q
+    return cosine_tau, -sine_tau
+
+
 @inlined
-def _sample(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction: Any, out: Any) -> Any:
-    """Values of all lanes at one crowded angle. One loop a kind: within each the choice of formula is folded away."""
-    if kind == _TORQUE:
+def _sample(
+    kind: Any, sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, one: Any, two: Any
+) -> None:
+    """Values of all lanes at tau and -tau, the angles theta and pi - theta, which share most of the motion."""
+    for j in range(LANES):
+        d = design_at(block, j)
+        sine, cosine = _turned(sine_tau, cosine_tau, crowd, kappa[j])
+        one[j] = _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
+        two[j] = _value(kind, sine, -cosine, design_motion(sine, -cosine, d), d, direction)
+
+
+@inlined
+def _sample_both(
+    sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, one: Any, two: Any
+) -> None:
+    """Torque and worst-case position error of all lanes at tau and -tau; they share the motion."""
+    for j in range(LANES):
+        d = design_at(block, j)
+        sine, cosine = _turned(sine_tau, cosine_tau, crowd, kappa[j])
+        m, n = design_motion(sine, cosine, d), design_motion(sine, -cosine, d)
+        one[0, j] = _value(_TORQUE, sine, cosine, m, d, direction)
+        two[0, j] = _value(_TORQUE, sine, -cosine, n, d, direction)
+        one[1, j] = _value(_WORST, sine, cosine, m, d, direction)
+        two[1, j] = _value(_WORST, sine, -cosine, n, d, direction)
+
+
+@inlined
+def _sweep(kinds: Any, tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, samples: Any) -> None:
+    """Fill the samples (angles, signals, lanes). One loop a kind: within each the choice of formula is folded away."""
+    angles = tau.shape[1]
+    begin = 0
+    if kinds.shape[0] > 1 and kinds[0] == _TORQUE and kinds[1] == _WORST:
+        begin = 2
+        for k in range(angles // 2 + 1):
+            w = (angles - k) % angles
+            _sample_both(tau[0, k], tau[1, k], crowd, kappa, block, direction, samples[k], samples[w])
+    for q in range(begin, kinds.shape[0]):
+        for k in range(angles // 2 + 1):
+            w = (angles - k) % angles
+            one, two = samples[k, q], samples[w, q]
+            if kinds[q] == _TORQUE:
+                _sample(_TORQUE, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
+            elif kinds[q] == _WORST:
+                _sample(_WORST, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
+            else:
+                _sample(_RSS, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
+
+
+@inlined
+def _track(samples: Any, q: Any, top: Any) -> bool:
+    """Find each lane's highest sample, and the highest other local maximum that could still exceed it between samples.
+
+    A parabola through three samples rises above the middle one by a quarter of their half difference at most, so other
+    maxima below that are out. `top` gets place, half difference and second difference of both, the place -1 if there is
+    no second; returns whether any lane has one.
+    """
+    angles = samples.shape[0]
+    best, place = top[6], top[0]
+    for j in range(LANES):
+        best[j], place[j], top[3, j], top[7, j] = -1.0, 0.0, -1.0, -1.0
+    for k in range(angles):
+        here = samples[k, q]
+        at = float(k)
         for j in range(LANES):
-            out[j] = _curve(_TORQUE, sine, cosine, kappa[j], design_at(block, j), direction)
-    elif kind == _WORST:
+            value, old, old_place = here[j], best[j], place[j]  # loads before choices: selections, not branches
+            best[j] = max(value, old)
+            place[j] = at if value > old else old_place
+    for k in range(angles):
+        before, here, after = samples[k - 1, q], samples[k, q], samples[k + 1 if k + 1 < angles else 0, q]
+        at = float(k)
+        rivals = 0.0
         for j in range(LANES):
-            out[j] = _curve(_WORST, sine, cosine, kappa[j], design_at(block, j), direction)
-    else:
-        for j in range(LANES):
-            out[j] = _curve(_RSS, sine, cosine, kappa[j], design_at(block, j), direction)
+            low, middle, high = before[j], here[j], after[j]
+            bound = middle + 0.125 * abs(high - low)
+            rival = (middle >= low) & (middle > high) & (bound > best[j]) & (place[j] != at)
+            rivals += 1.0 if rival else 0.0
+        if rivals > 0.0:
+            for j in range(LANES):
+                if here[j] >= before[j] and here[j] > after[j] and place[j] != at:
+                    bound = here[j] + 0.125 * abs(after[j] - before[j])
+                    if bound > best[j] and bound > top[7, j]:
+                        top[7, j], top[3, j] = bound, at
+    second = False
+    for j in range(LANES):
+        for i in (0, 3):
+            k = int(top[i, j])
+            second = second or (i == 3 and k >= 0)
+            before_j, after_j = samples[max(k, 0) - 1, q, j], samples[k + 1 if k + 1 < angles else 0, q, j]
+            top[i + 1, j] = 0.5 * (after_j - before_j)
+            top[i + 2, j] = after_j - 2.0 * samples[max(k, 0), q, j] + before_j
+    return second
+
+
+@analytic
+def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
+    """Value at one tau, real or complex."""
+    sine, cosine = _turned(sine_tau, cosine_tau, True, kappa)
+    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
 
 
 @analytic
@@ -102,46 +194,39 @@ def _slopes(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction
             value[j], slope[j] = _step(_RSS, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
 
 
+@analytic
+def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
+    """Derivative along the imaginary step that the design carries, at a fixed crank angle."""
+    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction).imag * (1.0 / STEP)
+
+
 @inlined
-def _partials(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction: Any, slope: Any) -> Any:
-    """Derivative along the imaginary step that `block` carries, at each lane's own angle."""
+def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slope: Any) -> Any:
+    """Derivatives of all lanes, each at its own crank angle."""
     if kind == _TORQUE:
         for j in range(LANES):
-            z = _curve(_TORQUE, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
-            slope[j] = z.imag * (1.0 / STEP)
+            slope[j] = _partial(_TORQUE, sine[j], cosine[j], design_at(block, j), direction)
     elif kind == _WORST:
         for j in range(LANES):
-            z = _curve(_WORST, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
-            slope[j] = z.imag * (1.0 / STEP)
+            slope[j] = _partial(_WORST, sine[j], cosine[j], design_at(block, j), direction)
     else:
         for j in range(LANES):
-            z = _curve(_RSS, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
-            slope[j] = z.imag * (1.0 / STEP)
+            slope[j] = _partial(_RSS, sine[j], cosine[j], design_at(block, j), direction)
 
 
 @inlined
 def _refine(
-    kind: Any,
-    tau_sine: Any,
-    tau_cosine: Any,
-    h: Any,
-    index: Any,
-    delta: Any,
-    bend: Any,
-    kappa: Any,
-    block: Any,
-    direction: Any,
-    best: Any,
-    sines: Any,
-    cosines: Any,
+    kind: Any, tau: Any, h: Any, top: Any, kappa: Any, block: Any, direction: Any, best: Any, sines: Any, cosines: Any
 ) -> Any:
-    """Move every lane to its local maximum within one angle on either side; `delta` holds the parabola's vertex."""
+    """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola."""
     low, high = np.full(LANES, -h), np.full(LANES, h)
-    old, old_slope = np.zeros(LANES), np.zeros(LANES)
+    delta, old, old_slope = np.empty(LANES), np.zeros(LANES), np.zeros(LANES)
     base_sine, base_cosine = np.empty(LANES), np.empty(LANES)
     sine, cosine, value, slope = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
     for j in range(LANES):
-        base_sine[j], base_cosine[j] = tau_sine[index[j]], tau_cosine[index[j]]
+        at = max(int(top[0, j]), 0)
+        base_sine[j], base_cosine[j] = tau[0, at], tau[1, at]
+        delta[j] = -top[1, j] / top[2, j] * h if top[2, j] < 0.0 else 0.0
         best[j] = -1.0
     for step in range(_STEPS):
         for j in range(LANES):
@@ -156,25 +241,27 @@ def _refine(
             cosine[j] = base_cosine[j] * c - base_sine[j] * s
         _slopes(kind, sine, cosine, kappa, block, direction, value, slope)
         for j in range(LANES):
-            t = delta[j]
-            better = value[j] >= best[j] - _FLAT * abs(best[j])  # on the flat top the later angle is the better
-            best[j] = value[j] if better else best[j]
-            sines[j] = sine[j] if better else sines[j]
-            cosines[j] = cosine[j] if better else cosines[j]
-            rising = slope[j] > 0.0
-            low[j] = t if rising else low[j]
-            high[j] = high[j] if rising else t
-            curvature = bend[j] if step == 0 else (slope[j] - old_slope[j]) / (t - old[j])
-            trial = t - slope[j] / curvature
-            inside = (trial > low[j]) & (trial < high[j])
-            old[j] = t
-            old_slope[j] = slope[j]
-            delta[j] = trial if inside else 0.5 * (low[j] + high[j])
+            t, found, rise, peak = delta[j], value[j], slope[j], best[j]
+            floor, ceiling, last, last_slope = low[j], high[j], old[j], old_slope[j]
+            new_sine, new_cosine, old_sine, old_cosine = sine[j], cosine[j], sines[j], cosines[j]
+            second = top[2, j]
+            better = found >= peak - _FLAT * abs(peak)  # on the flat top the later angle is the better
+            best[j] = found if better else peak
+            sines[j] = new_sine if better else old_sine
+            cosines[j] = new_cosine if better else old_cosine
+            floor = t if rise > 0.0 else floor
+            ceiling = ceiling if rise > 0.0 else t
+            low[j], high[j] = floor, ceiling
+            bend = second / (h * h) if step == 0 else (rise - last_slope) / (t - last)
+            trial = t - rise / bend
+            middle = 0.5 * (floor + ceiling)
+            old[j], old_slope[j] = t, rise
+            delta[j] = trial if (trial > floor) & (trial < ceiling) else middle
 
 
 @kernel
 def _screen(
-    kind: Any,
+    kinds: Any,
     raw: Any,
     designs: Any,
     load_kind: Any,
@@ -184,27 +271,22 @@ def _screen(
     values: Any,
     where: Any,
     gradients: Any,
-) -> Any:
-    n = designs.shape[0]
+) -> None:
+    n, signals = designs.shape[0], kinds.shape[0]
     rows = DESIGN + 2 * load_kind.shape[0]
-    lanes = np.empty((raw.shape[0], LANES))
-    stepped = np.empty((raw.shape[0], LANES), np.complex128)
-    block = np.empty((rows, LANES))
-    complex_block = np.empty((rows, LANES), np.complex128)
+    lanes, stepped = np.empty((raw.shape[0], LANES)), np.empty((raw.shape[0], LANES), np.complex128)
+    block, complex_block = np.empty((rows, LANES)), np.empty((rows, LANES), np.complex128)
     for i in range(raw.shape[0]):
         lanes[i, :] = raw[i]
-    tau_sine, tau_cosine = np.empty(angles), np.empty(angles)
     h = 2.0 * math.pi / angles
+    tau = np.empty((2, angles))
     for k in range(angles):
-        tau_sine[k], tau_cosine[k] = math.sin(k * h), math.cos(k * h)
+        tau[0, k], tau[1, k] = math.sin(k * h), math.cos(k * h)
     direction = 1.0 if raw[4] >= 0.0 else -1.0
     kappa = np.ones(LANES)
-    before, here, after = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    estimate = np.empty((_CANDIDATES, LANES))
-    index = np.empty((_CANDIDATES, LANES), np.int64)
-    delta, bend = np.empty((_CANDIDATES, LANES)), np.empty((_CANDIDATES, LANES))
-    value = np.empty((_CANDIDATES, LANES))
-    sines, cosines = np.empty((_CANDIDATES, LANES)), np.empty((_CANDIDATES, LANES))
+    samples, top, slope = np.empty((angles, signals, LANES)), np.empty((8, LANES)), np.empty(LANES)
+    value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
+    sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
     for begin in range(0, n, LANES):
         for i in range(3):
             for j in range(LANES):
@@ -213,106 +295,77 @@ def _screen(
         if crowd:
             for j in range(LANES):
                 kappa[j] = crowding(lanes[0, j], lanes[1, j], lanes[2, j])
-        for j in range(LANES):
-            estimate[0, j] = estimate[1, j] = -1.0
-            index[0, j] = index[1, j] = 0
-            delta[0, j] = delta[1, j] = 0.0
-            bend[0, j] = bend[1, j] = -1.0
-        _sample(kind, tau_sine[angles - 1], tau_cosine[angles - 1], kappa, block, direction, before)
-        _sample(kind, tau_sine[0], tau_cosine[0], kappa, block, direction, here)
-        for k in range(1, angles + 1):
-            w = k if k < angles else 0
-            _sample(kind, tau_sine[w], tau_cosine[w], kappa, block, direction, after)
-            for j in range(LANES):
-                rise = 0.5 * (after[j] - before[j])
-                second = after[j] - 2.0 * here[j] + before[j]
-                top = (here[j] >= before[j]) & (here[j] > after[j])
-                vertex = here[j] - 0.5 * rise * rise / second
-                first = top & (vertex > estimate[0, j])
-                other = top & (vertex > estimate[1, j])
-                at, curve = -rise / second * h, second / (h * h)
-                estimate[1, j] = estimate[0, j] if first else (vertex if other else estimate[1, j])
-                index[1, j] = index[0, j] if first else (k - 1 if other else index[1, j])
-                delta[1, j] = delta[0, j] if first else (at if other else delta[1, j])
-                bend[1, j] = bend[0, j] if first else (curve if other else bend[1, j])
-                estimate[0, j] = vertex if first else estimate[0, j]
-                index[0, j] = k - 1 if first else index[0, j]
-                delta[0, j] = at if first else delta[0, j]
-                bend[0, j] = curve if first else bend[0, j]
-                before[j], here[j] = here[j], after[j]
-        for i in range(_CANDIDATES):
-            _refine(
-                kind,
-                tau_sine,
-                tau_cosine,
-                h,
-                index[i],
-                delta[i],
-                bend[i],
-                kappa,
-                block,
-                direction,
-                value[i],
-                sines[i],
-                cosines[i],
-            )
-        for j in range(LANES):
-            second_wins = value[1, j] > value[0, j]
-            value[0, j] = value[1, j] if second_wins else value[0, j]
-            sines[0, j] = sines[1, j] if second_wins else sines[0, j]
-            cosines[0, j] = cosines[1, j] if second_wins else cosines[0, j]
+        _sweep(kinds, tau, crowd, kappa, block, direction, samples)
         last = min(LANES, n - begin)
-        for j in range(last):
-            values[begin + j] = value[0, j]
-            angle = 0.5 * math.pi + math.atan2(kappa[j] * sines[0, j], cosines[0, j])
-            where[begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
+        for i in range(raw.shape[0] if gradients.shape[0] else 0):
+            for j in range(LANES):
+                stepped[i, j] = lanes[i, j]
+        for q in range(signals):
+            rivals = _track(samples, q, top)
+            for i in range(2 if rivals else 1):
+                _refine(
+                    kinds[q], tau, h, top[3 * i : 3 * i + 3], kappa, block, direction, value[i], sines[i], cosines[i]
+                )
+            for j in range(LANES):
+                one, two = value[0, j], (value[1, j] if rivals and top[3, j] >= 0.0 else -1.0)
+                x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]
+                value[0, j] = max(one, two)
+                x = x_2 if two > one else x
+                y = kappa[j] * (y_2 if two > one else y)
+                scale = 1.0 / math.sqrt(x * x + y * y)
+                found[0, q, j], found[1, q, j] = x * scale, -y * scale
+            for j in range(last):
+                values[q, begin + j] = value[0, j]
+                angle = math.atan2(found[0, q, j], found[1, q, j])
+                where[q, begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
         if gradients.shape[0]:
-            for i in range(raw.shape[0]):
-                for j in range(LANES):
-                    stepped[i, j] = lanes[i, j]
             for v in range(3):
                 for j in range(LANES):
                     stepped[v, j] += complex(0.0, STEP)
                 derive(stepped, load_kind, load_datum, complex_block)
-                _partials(kind, sines[0], cosines[0], kappa, complex_block, direction, before)
+                for q in range(signals):
+                    _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
+                    for j in range(last):
+                        gradients[q, begin + j, v] = slope[j]
                 for j in range(LANES):
                     stepped[v, j] = lanes[v, j]
-                for j in range(last):
-                    gradients[begin + j, v] = before[j]
 
 
 def screen(
     mechanism: Mechanism,
-    kind: Signal,
+    kinds: tuple[Signal, ...],
     designs: Array,
     *,
     gradients: bool = False,
     angles: int = ANGLES,
     crowd: bool = True,
-) -> Screened:
-    """Return the greatest value of torque or position error for designs (n, 3): crank, rod, offset, m.
+) -> tuple[Screened, ...]:
+    """Return the greatest values of torque or position errors for designs (n, 3): crank, rod, offset, m.
 
-    angles: samples a turn, a multiple of 4. crowd: concentrate them where the linkage comes close to locking.
+    kinds: signals that `screens` accepts; evaluated together they share the motion. angles: samples a turn, a multiple
+    of 4. crowd: concentrate them where the linkage comes close to locking.
     """
     designs = np.ascontiguousarray(designs, dtype=np.float64)
-    n = len(designs)
-    values, where = np.empty(n), np.empty(n)
-    slopes = np.empty((n if gradients else 0, 3))
+    n, signals = len(designs), len(kinds)
+    values, where = np.empty((signals, n)), np.empty((signals, n))
+    slopes = np.empty((signals if gradients else 0, n, 3))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    codes = np.array([int(kind) for kind in kinds])
 
     def work(begin: int, end: int) -> None:
+        part = slice(begin, end)
         _screen(
-            int(kind),
+            codes,
             raw,
-            designs[begin:end],
+            designs[part],
             loads.kind,
             loads.datum,
             angles,
             crowd,
-            values[begin:end],
-            where[begin:end],
-            slopes[begin:end] if gradients else slopes,
+            values[:, part],
+            where[:, part],
+            slopes[:, part],
         )
 
     in_chunks(n, work, size=16 * LANES)
-    return Screened(values, where, slopes if gradients else None)
+    return tuple(Screened(values[q], where[q], slopes[q] if gradients else None) for q in range(signals))

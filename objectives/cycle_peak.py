@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..model.mechanism import Mechanism
@@ -15,7 +16,7 @@ from .quantity import Array, Pieces, Unit, Values
 class CyclePeak:
     """The greatest value of `signal` over the cycle, or over one stroke.
 
-    Exact over continuous crank angle. `screened` trades that for speed where thousands of designs are only sorted.
+    Exact over continuous crank angle. `screen_peaks` trades that for speed where thousands of designs are only sorted.
     """
 
     name: str
@@ -36,9 +37,18 @@ class CyclePeak:
         assert found.gradients is not None
         return Pieces(found.values, found.gradients, found.angles)
 
-    def screened(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity by vectorised screening; exact but for peaks that sit on a kink."""
-        if not screens(mechanism, self.signal, during=self.during):
-            return self.evaluate(mechanism, dimensions, gradients=gradients)
-        found = screen(mechanism, self.signal, dimensions, gradients=gradients)
-        return Values(found.values, found.gradients)
+
+def screen_peaks(
+    quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
+) -> tuple[Values, ...]:
+    """Return several quantities for designs (n, 3) by vectorised screening: exact but for peaks that sit on a kink."""
+    quick = [quantity for quantity in quantities if screens(mechanism, quantity.signal, during=quantity.during)]
+    signals = tuple(quantity.signal for quantity in quick)
+    screened = screen(mechanism, signals, dimensions, gradients=gradients) if quick else ()
+    found = {quantity.name: Values(item.values, item.gradients) for quantity, item in zip(quick, screened, strict=True)}
+    return tuple(
+        found[quantity.name]
+        if quantity.name in found
+        else quantity.evaluate(mechanism, dimensions, gradients=gradients)
+        for quantity in quantities
+    )

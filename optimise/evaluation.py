@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objectives.cycle_peak import CyclePeak
+from ..objectives.cycle_peak import CyclePeak, screen_peaks
 from ..objectives.quantity import Array, Quantity
 from ..objectives.registry import QUANTITIES
 from .elimination import UNKNOWNS, Sheet
@@ -84,30 +84,37 @@ class Evaluator:
         dimensions = self.sheet.dimensions(u)
         violation = self._geometry_violation(dimensions)
         self.evaluations += len(u)
-        for constraint in self.constraints:
-            quantity = QUANTITIES[constraint.quantity]
-            # What is out of reach already needs no cycle computed.
-            rows = (
-                np.flatnonzero(violation <= FEASIBLE) if _costly(quantity) else np.flatnonzero(np.isfinite(violation))
-            )
-            if len(rows):
-                values = self._quick(quantity, dimensions[rows])
-                violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
+        # What is out of reach already needs no cycle computed.
+        for costly in (False, True):
+            constraints = [c for c in self.constraints if _costly(QUANTITIES[c.quantity]) == costly]
+            rows = np.flatnonzero(violation <= FEASIBLE if costly else np.isfinite(violation))
+            if constraints and len(rows):
+                found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
+                for constraint, values in zip(constraints, found, strict=True):
+                    violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
         rows = np.flatnonzero(violation <= FEASIBLE)
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
         if len(rows):
-            for column, objective in enumerate(self.problem.objectives):
-                values = self._quick(QUANTITIES[objective.quantity], dimensions[rows])
+            found = self._quick([objective.quantity for objective in self.problem.objectives], dimensions[rows])
+            for column, (objective, values) in enumerate(zip(self.problem.objectives, found, strict=True)):
                 objectives[rows, column] = minimised(objective, values)
             lost = ~np.isfinite(objectives[rows]).all(axis=1)
             violation[rows[lost]] = np.inf
             objectives[rows[lost]] = np.nan
         return dimensions, objectives, violation
 
-    def _quick(self, quantity: Quantity, dimensions: Array) -> Array:
-        if isinstance(quantity, CyclePeak):
-            return quantity.screened(self.mechanism, dimensions).values
-        return quantity.evaluate(self.mechanism, dimensions).values
+    def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
+        quantities = [QUANTITIES[name] for name in names]
+        peaks = [quantity for quantity in quantities if isinstance(quantity, CyclePeak)]
+        screened = dict(
+            zip((peak.name for peak in peaks), screen_peaks(peaks, self.mechanism, dimensions), strict=True)
+        )
+        return [
+            (
+                screened[quantity.name] if quantity.name in screened else quantity.evaluate(self.mechanism, dimensions)
+            ).values
+            for quantity in quantities
+        ]
 
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""

@@ -162,7 +162,7 @@ class _Batch:
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         hessians[~np.isfinite(hessians).all(axis=(1, 2))] = np.eye(k)
         values, vectors = np.linalg.eigh(hessians)
-        return np.einsum("nij,nj,nkj->nik", vectors, np.clip(np.abs(values), _CURVATURE, 1e8), vectors)
+        return np.asarray(np.einsum("nij,nj,nkj->nik", vectors, np.clip(np.abs(values), _CURVATURE, 1e8), vectors))
 
     def _search(self, rows: NDArray[np.int64], steps: Array) -> None:
         """Halve steps until the merit goes down: sum of losses, plus penalised greatest loss and violation."""
