@@ -24,8 +24,10 @@ from .signals import Signal, design_motion
 
 Array = NDArray[np.float64]
 
-_NODES = 128  # trapezoidal nodes: error below exp(-128 atanh(kappa)), 2e-12 for a rod 0.1 % longer than crank + offset
-_PANELS = 12  # Gauss-Legendre panels a turn, each of 16 nodes: the like
+# Measured on rods 0.1 % longer than crank + offset, over random machines: 128 nodes and 12 panels of 16 nodes leave an RMS
+# torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11.
+_NODES = 192
+_PANELS = 24
 _TURN = 2.0 * math.pi
 
 

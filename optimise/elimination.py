@@ -22,6 +22,8 @@ from .problem import Constraint, Problem, Range
 
 Array = NDArray[np.float64]
 UNKNOWNS = ("crank", "rod", "offset")
+ZERO = 1e-300
+"""An offset of this size counts as zero."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,10 @@ class Sheet:
         with np.errstate(all="ignore"):
             for step in self.steps:
                 known[step.target] = step.formula(*(known[name] for name in step.sources)) + 0.0 * u.sum(axis=1)
-        return np.stack([known["crank"], known["rod"], self.sign * known["offset"]], axis=1)
+        offset = self.sign * known["offset"]
+        if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
+            offset = np.where(offset == 0.0, offset - ZERO, offset)
+        return np.stack([known["crank"], known["rod"], offset], axis=1)
 
     def jacobian(self, u: Array) -> Array:
         """Return the derivatives (n, 3, k) of the dimensions by the unit-box coordinates, by complex step."""

@@ -14,6 +14,7 @@ from ..objectives.registry import quantity
 from .problem import Objective, Problem
 
 Array = NDArray[np.float64]
+_NOTHING = 1e-7  # of a range per range: a loss below is rounding
 Status = Literal["done", "cancelled", "infeasible"]
 
 
@@ -38,7 +39,7 @@ class Progress:
 class ParetoFront:
     """The Pareto front of a problem and the evidence for it.
 
-    designs: one row a design, all quantities under their JSON names with units, then `slack_<quantity>` for every
+    designs: one row a design, all quantities under their JSON names with units, then `slack_<field>` for every
     constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual` (stationarity)
     and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
     dimensions: (n, 3) crank, rod, offset, m, exactly. values: (n, m) objectives as they are minimised (maximised ones
@@ -110,35 +111,21 @@ class ParetoFront:
     def rates(self, row: int) -> Array:
         """Return the trade-off rates at a design, (m, m): `[a, b]` is what objective a loses per unit that b gains.
 
-        Both in shown units, all other objectives at least kept and the active constraints held, to first order: the
-        least max(g_a d) over directions d with g_b d <= -1, g_c d <= 0. NaN where others must pay too, or nobody need.
+        To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
+        of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
+        b is NaN where b cannot gain at all.
         """
-        from scipy.optimize import linprog
-
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity(objective.quantity).unit.factor for objective in self.objectives])
-        slopes = slopes * units[owner.astype(int)][:, None]
-        spans = units * (np.ptp(self.values, axis=0) + 1e-300)
+        spans = units * np.where(np.ptp(self.values, axis=0) > 0.0, np.ptp(self.values, axis=0), 1.0)
+        slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         rates = np.full((m, m), np.nan)
-        for a in range(m):
-            for b in range(m):
-                if a == b or k == 0:
-                    continue
-                pays = (owner == a).astype(float)
-                rows = np.concatenate([np.column_stack([slopes, -pays]), np.pad(self.active[row], ((0, 0), (0, 1)))])
-                limits = np.concatenate([np.where(owner == b, -1.0, 0.0), np.zeros(len(self.active[row]))])
-                size = np.maximum(np.abs(rows[:, :k]).max(axis=1, initial=0.0), 1e-300)
-                found = linprog(
-                    np.eye(k + 1)[k],
-                    rows / size[:, None],
-                    limits / size,
-                    bounds=[(None, None)] * (k + 1),
-                    method="highs",
-                )
-                # A rate below rounding of the ranges says that nobody need pay.
-                if found.x is not None and found.status == 0 and found.x[k] > 1e-6 * spans[a] / spans[b]:
-                    rates[a, b] = found.x[k]
+        for b in range(m):
+            losses = _cheapest(slopes, owner, self.active[row], b, m) if k else None
+            if losses is not None:
+                rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]
+                rates[b, b] = np.nan
         return rates
 
     def trade_offs(self, row: int) -> list[str]:
@@ -146,19 +133,11 @@ class ParetoFront:
         rates = self.rates(row)
         sentences = []
         for b, gain in enumerate(self.objectives):
-            for a, cost in enumerate(self.objectives):
-                if not np.isfinite(rates[a, b]):
-                    continue
-                one, other = quantity(gain.quantity), quantity(cost.quantity)
-                step = 1.0 if one.unit.symbol else 0.01
-                more = {"maximise": "more", "minimise": "less", "target": "nearer to its target in"}[gain.sense]
-                lost = {"maximise": "less", "minimise": "more", "target": "farther from its target in"}[cost.sense]
-                sentences.append(
-                    " ".join(
-                        f"{step:g} {one.unit.symbol} {more} {one.title} costs "
-                        f"{step * rates[a, b]:.3g} {other.unit.symbol} {lost} {other.title}".split()
-                    )
-                )
+            step = 1.0 if quantity(gain.quantity).unit.symbol else 0.01
+            payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
+            if payers:
+                costs = " and ".join(_change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)
+                sentences.append(f"{_change(gain, step, gain=True)} costs {costs}")
         return sentences
 
     def _scaled(self) -> Array:
@@ -166,3 +145,28 @@ class ParetoFront:
             raise InputError("the front is empty; see its message for what contradicts what")
         low, high = self.values.min(axis=0), self.values.max(axis=0)
         return np.asarray((self.values - low) / np.where(high > low, high - low, 1.0))
+
+
+def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
+    """Return the losses (m,) of the cheapest direction in which objective b gains one; None if there is none."""
+    from scipy.optimize import linprog
+
+    k = slopes.shape[1]
+    pays = np.where(owner == b, 0.0, 1.0)[:, None] * (owner[:, None] == np.arange(m))
+    rows = np.concatenate([np.column_stack([slopes, -pays]), np.pad(active, ((0, 0), (0, m)))])
+    limits = np.concatenate([np.where(owner == b, -1.0, 0.0), np.zeros(len(active))])
+    size = np.maximum(np.abs(rows).max(axis=1, initial=0.0), 1e-300)
+    cost = np.concatenate([np.zeros(k), np.ones(m)])
+    bounds = [(None, None)] * k + [(0.0, None)] * m
+    found = linprog(cost, rows / size[:, None], limits / size, bounds=bounds, method="highs")
+    return np.asarray(found.x[k:]) if found.status == 0 and found.x is not None else None
+
+
+def _change(objective: Objective, amount: float, *, gain: bool) -> str:
+    """Return a change of an objective in words."""
+    shown = quantity(objective.quantity)
+    size = f"{amount:.3g} {shown.unit.symbol}".strip()
+    if objective.sense == "target":
+        return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
+    more = (objective.sense == "maximise") == gain
+    return f"{size} {'more' if more else 'less'} {shown.title}"

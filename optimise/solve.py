@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..model.errors import InputError
 from ..objectives.analysis import analyse
 from ..objectives.registry import QUANTITIES
-from .elimination import UNKNOWNS, Sheet, sheets
+from .elimination import UNKNOWNS, ZERO, Sheet, sheets
 from .evaluation import FEASIBLE, Evaluator, constraints_of
 from .front import ParetoFront, Progress, Status
 from .hypervolume import choose, hypervolume, nondominated, scaling
@@ -262,6 +262,7 @@ def _assemble(
 ) -> ParetoFront:
     m = len(problem.objectives)
     dimensions = np.concatenate([evaluators[index].sheet.dimensions(part.u) for index, part in parts])
+    dimensions = np.where(np.abs(dimensions) <= ZERO, 0.0, dimensions)
     values = np.concatenate([part.values for _, part in parts]) * span
     residual = np.concatenate([part.residual for _, part in parts])
     violation = np.concatenate([part.violation for _, part in parts])
@@ -330,7 +331,7 @@ def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
             upper = np.inf if constraint.upper is None else constraint.upper
             lower = -np.inf if constraint.lower is None else constraint.lower
             slack = np.minimum(upper - values, values - lower)
-        table[f"slack_{quantity.field}"] = slack * quantity.unit.factor
+        table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
 
 
 def _empty(problem: Problem, run: _Run, evaluators: list[Evaluator], status: Status, message: str) -> ParetoFront:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from slidercrank.model.linkage import Linkage
 from slidercrank.model.links import Bar, Counterweight, RigidLink
 from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
 from slidercrank.model.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
@@ -73,9 +74,7 @@ TABLES = Mechanism(
             datum="inner dead centre",
             during="outward stroke",
         ),
-        PositionTable(
-            positions=(0.004, 0.03, 0.11), forces=(120.0, -20.0, 0.0), datum="outer dead centre"
-        ),
+        PositionTable(positions=(0.004, 0.03, 0.11), forces=(120.0, -20.0, 0.0), datum="outer dead centre"),
         AngleTable(angles=(-0.3, 0.9, 2.0, 3.3, 4.6), forces=(0.0, 80.0, -90.0, 10.0, 60.0)),
         Viscous(coefficient=15.0),
     ),
@@ -93,9 +92,7 @@ TABLES = Mechanism(
 MACHINES = {"smooth": SMOOTH, "strokes": STROKES, "tables": TABLES}
 
 
-def random_designs(
-    count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0
-) -> Array:
+def random_designs(count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0) -> Array:
     """Return designs (count, 3) that turn fully: crank, rod, offset, m.
 
     The margin rod / (crank + |offset|) - 1 is log-uniform between its limits. Half the offsets are up to three cranks
@@ -109,6 +106,11 @@ def random_designs(
     offset = crank * share * random.choice([-1.0, 1.0], count)
     margin = 10.0 ** random.uniform(math.log10(least_margin), math.log10(greatest_margin), count)
     return np.stack([crank, (crank + np.abs(offset)) * (1.0 + margin), offset], axis=1)
+
+
+def linkage_of(designs: Array, branch: Branch = "open") -> Linkage:
+    """Return the linkage of one design (3,) or of many (..., 3)."""
+    return Linkage(designs[..., 0], designs[..., 1], designs[..., 2], branch)
 
 
 def random_machine(random: np.random.Generator, *, loads: bool = True) -> Mechanism:
@@ -159,16 +161,10 @@ def random_loads(
         StrokeForce(outward=size[0], inward=size[1]),
         Spring(stiffness=random.uniform(0.0, 2000.0), free_position=random.uniform(0.0, 0.3)),
         Spring(stiffness=random.uniform(0.0, 2000.0), datum="inner dead centre"),
-        Spring(
-            stiffness=random.uniform(0.0, 2000.0), free_position=0.03, datum="outer dead centre"
-        ),
+        Spring(stiffness=random.uniform(0.0, 2000.0), free_position=0.03, datum="outer dead centre"),
         Viscous(coefficient=random.uniform(0.0, 50.0)),
-        PositionTable(
-            positions=tuple(knots), forces=tuple(size[2:6]), datum="inner dead centre"
-        ),
-        PositionTable(
-            positions=tuple(0.1 + knots), forces=tuple(size[4:8]), during="inward stroke"
-        ),
+        PositionTable(positions=tuple(knots), forces=tuple(size[2:6]), datum="inner dead centre"),
+        PositionTable(positions=tuple(0.1 + knots), forces=tuple(size[4:8]), during="inward stroke"),
         PositionTable(
             positions=tuple(knots),
             forces=tuple(size[6:10]),

@@ -16,6 +16,7 @@ Curve = Callable[[Array, Array], Array]
 ANGLES = 100_000
 _CELLS = 4  # highest cells of the sweep that are searched further: the sweep may misjudge near-ties
 _POINTS = 17
+_THREADS = 2
 _ROUNDS = 11  # each divides a cell by 8: 1e-4 rad to 1e-14
 
 
@@ -29,15 +30,21 @@ def greatest(curve: Curve, designs: Array, *, angles: int = ANGLES) -> Array:
     theta = spacing * np.arange(angles)
     cells = np.empty((len(designs), _CELLS))
 
-    def search(n: int) -> None:
-        chunks = np.array_split(theta, max(1, angles // 8000))  # so that arrays stay in the cache
-        f = np.concatenate([np.abs(curve(designs[n, None, :], chunk)) for chunk in chunks])
-        tops = np.flatnonzero((f >= np.roll(f, 1)) & (f >= np.roll(f, -1)))
-        best = tops[np.argsort(f[tops])[-_CELLS:]]
-        cells[n] = theta[np.resize(best[::-1], _CELLS)]
+    chunks = np.array_split(theta, max(1, angles // 8000))  # so that a formula's arrays stay in the cache
+    starts = np.cumsum([0, *(len(chunk) for chunk in chunks)])
 
-    with ThreadPoolExecutor() as pool:
-        list(pool.map(search, range(len(designs))))
+    def search(part: NDArray[np.int64]) -> None:
+        f = np.empty(angles + 2)
+        for n in part:
+            for start, chunk in zip(starts, chunks, strict=False):
+                np.abs(curve(designs[n, None, :], chunk), out=f[start + 1 : start + 1 + len(chunk)])
+            f[0], f[-1] = f[-2], f[1]
+            tops = np.flatnonzero((f[1:-1] >= f[:-2]) & (f[1:-1] >= f[2:]))
+            best = tops[np.argsort(f[tops + 1])[-_CELLS:]]
+            cells[n] = theta[np.resize(best[::-1], _CELLS)]
+
+    with ThreadPoolExecutor(_THREADS) as pool:
+        list(pool.map(search, np.array_split(np.arange(len(designs)), 4 * _THREADS)))
     half = spacing
     steps = np.linspace(-1.0, 1.0, _POINTS)
     value = np.zeros(len(designs))

@@ -107,8 +107,10 @@ def test_torque_balances_power_over_the_cycle() -> None:
 
 
 def test_reactions_satisfy_the_equations_of_motion_of_every_body() -> None:
-    """Crank, rod and slider: two forces and one moment each. The slider's moment holds by construction: pin and
-    guide forces pass through one point."""
+    """Crank, rod and slider: two forces and one moment each.
+
+    The slider's moment holds by construction: pin force, guide force and load pass through one point.
+    """
     theta = THETA[::8] + 0.01
     for machine, design in zip(machines(), DESIGNS, strict=True):
         r, l, e = design

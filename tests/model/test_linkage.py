@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.mechanism import Branch
-from tests.model.cases import Array, random_designs
+from tests.model.cases import Array, linkage_of, random_designs
 from tests.model.virtual_work import path
 
 DESIGNS = random_designs(300, seed=11)
@@ -17,7 +17,7 @@ BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 
 
 def linkage(designs: Array = DESIGNS, branch: Branch = "open") -> Linkage:
-    return Linkage(*designs.T, branch=branch)
+    return linkage_of(designs, branch)
 
 
 def extremes(designs: Array, branch: Branch) -> tuple[Array, Array]:
@@ -156,7 +156,7 @@ def test_strokes_are_equal_without_offset() -> None:
 def test_least_transmission_angle_is_the_least_over_the_cycle(branch: Branch) -> None:
     machine = linkage(branch=branch)
     # It is least at 90 or 270 deg, which are on this grid.
-    angles = Linkage(*DESIGNS.T[..., None], branch=branch).at(np.linspace(0.0, 2.0 * math.pi, 3601)).transmission_angle
+    angles = linkage_of(DESIGNS[:, None, :], branch).at(np.linspace(0.0, 2.0 * math.pi, 3601)).transmission_angle
     # The closed form takes an arcsine near one: at a margin of 1e-3 its rounding is 1e-16 / 0.045.
     np.testing.assert_allclose(angles.min(axis=1), machine.least_transmission_angle, rtol=1e-12)
     cosine = (DESIGNS[:, 0] + np.abs(DESIGNS[:, 2])) / DESIGNS[:, 1]

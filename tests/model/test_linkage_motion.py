@@ -11,13 +11,14 @@ import pytest
 
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.mechanism import Branch
-from tests.model.cases import random_designs
+from tests.model.cases import linkage_of, random_designs
 from tests.model.contour import distance_to_locking, motion_in_time
 from tests.model.virtual_work import path
 
 # The contour loses 1e-16 / reach^2, so linkages closer to locking than 2 % would need looser tolerances.
 DESIGNS = random_designs(25, seed=5, least_margin=0.02)
 THETA = np.linspace(-3.0, 9.0, 40)
+SIGNS: dict[Branch, float] = {"open": 1.0, "crossed": -1.0}
 SPEED, ACCELERATION = -7.0, 90.0
 
 
@@ -37,13 +38,13 @@ def loop(design: np.ndarray, sign: float) -> tuple[Callable[[Any], Any], Callabl
     return lambda theta: r * np.cos(theta) + l * np.cos(rod_angle(theta)), rod_angle
 
 
-@pytest.mark.parametrize("branch", ["open", "crossed"])
+@pytest.mark.parametrize("branch", SIGNS)
 def test_rates_of_slider_and_rod_are_time_derivatives_of_their_positions(branch: Branch) -> None:
-    sign = 1.0 if branch == "open" else -1.0
+    sign = SIGNS[branch]
     for design in DESIGNS:
         slider, rod = loop(design, sign)
         reach = distance_to_locking(*design)
-        at = Linkage(*design, branch=branch).at(THETA, speed=SPEED, acceleration=ACCELERATION)
+        at = linkage_of(design, branch).at(THETA, speed=SPEED, acceleration=ACCELERATION)
         x, v, a = motion_in_time(slider, THETA, speed=SPEED, acceleration=ACCELERATION, reach=reach)
         size = float(design[1])
         close(at.slider_position, x, size)
@@ -55,14 +56,14 @@ def test_rates_of_slider_and_rod_are_time_derivatives_of_their_positions(branch:
         close(at.rod_acceleration, alpha, max(49.0, float(np.abs(alpha).max())))
 
 
-@pytest.mark.parametrize("branch", ["open", "crossed"])
+@pytest.mark.parametrize("branch", SIGNS)
 def test_points_on_the_links_move_as_their_positions_say(branch: Branch) -> None:
-    sign = 1.0 if branch == "open" else -1.0
+    sign = SIGNS[branch]
     along, across = 0.03, -0.015
     for design in DESIGNS:
         _, rod = loop(design, sign)
         r = design[0]
-        machine = Linkage(*design, branch=branch)
+        machine = linkage_of(design, branch)
         reach = distance_to_locking(*design)
 
         def on_rod_x(theta: Any, r: float = r, rod: Callable[[Any], Any] = rod) -> Any:
@@ -94,8 +95,8 @@ def test_rates_close_to_locking_are_complex_step_derivatives() -> None:
     random = np.random.default_rng(8)
     theta = random.uniform(0.0, 2.0 * math.pi, 500)
     step = 1e-30
-    for branch, sign in (("open", 1.0), ("crossed", -1.0)):
-        at = Linkage(*designs.T, branch=branch).at(theta, speed=1.0)
+    for branch, sign in SIGNS.items():
+        at = linkage_of(designs, branch).at(theta, speed=1.0)
         moved = path(designs, theta + 1j * step, sign)
         # Near locking cos(phi) comes from a difference that cancels: 1e-16 / 2e-3, to its third power in x''.
         np.testing.assert_allclose(at.slider_velocity, moved.x.imag / step, rtol=1e-10, atol=1e-14)
@@ -116,8 +117,8 @@ def test_error_influences_are_complex_step_derivatives_of_the_slider_position() 
     designs = random_designs(500, seed=9)
     theta = np.random.default_rng(9).uniform(0.0, 2.0 * math.pi, 500)
     step = 1e-30
-    for branch, sign in (("open", 1.0), ("crossed", -1.0)):
-        influences = Linkage(*designs.T, branch=branch).error_influences(theta)
+    for branch, sign in SIGNS.items():
+        influences = linkage_of(designs, branch).error_influences(theta)
         for v, got in enumerate((influences.crank, influences.rod, influences.offset)):
             moved = designs.astype(complex)
             moved[:, v] += 1j * step

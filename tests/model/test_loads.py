@@ -18,6 +18,7 @@ LINKAGE = Linkage(0.05, 0.2, 0.03)
 INNER, OUTER = (float(end) for end in LINKAGE.dead_centres)
 AT_INNER, AT_OUTER = (float(angle) for angle in LINKAGE.dead_centre_angles)
 # The outward stroke ends at the outer dead centre, counter-clockwise.
+WRONG: Any = "down"
 OUTWARD, INWARD = AT_OUTER - 0.9, AT_OUTER + 0.9
 
 
@@ -156,10 +157,10 @@ def test_wrong_load_is_refused(make: Any, message: str) -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Spring(stiffness=1.0, datum="top"), "datum must be .*; got 'top'"),
-        (lambda: PositionTable(positions=(0, 1), forces=(0, 1), datum="top"), "datum must be .*; got 'top'"),
-        (lambda: PositionTable(positions=(0, 1), forces=(0, 1), during="down"), "during must be .*; got 'down'"),
-        (lambda: AngleTable(angles=(0, 1), forces=(0, 1), during="down"), "during must be .*; got 'down'"),
+        (lambda: Spring(stiffness=1.0, datum=WRONG), "datum must be .*; got 'down'"),
+        (lambda: PositionTable(positions=(0, 1), forces=(0, 1), datum=WRONG), "datum must be .*; got 'down'"),
+        (lambda: PositionTable(positions=(0, 1), forces=(0, 1), during=WRONG), "during must be .*; got 'down'"),
+        (lambda: AngleTable(angles=(0, 1), forces=(0, 1), during=WRONG), "during must be .*; got 'down'"),
     ],
 )
 def test_unknown_word_in_a_load_is_refused(make: Any, message: str) -> None:

@@ -47,7 +47,7 @@ def test_window_is_a_part_of_the_stroke(start: float, end: float) -> None:
 
 
 def test_window_needs_a_known_stroke() -> None:
-    with pytest.raises(InputError, match="during must be .*; got 'down'"):
+    with pytest.raises(InputError, match=r"during must be .*; got 'down'"):
         Window(during="down")  # type: ignore[arg-type]
 
 

@@ -16,7 +16,7 @@ from slidercrank.model.loads import AngleTable, PositionTable, StrokeForce
 from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.peaks import KEPT, find_peaks
 from slidercrank.model.signals import Signal
-from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, random_designs
+from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, linkage_of, random_designs
 from tests.model.sweep import ANGLES, greatest
 from tests.model.virtual_work import drive_torque, position_error
 
@@ -43,9 +43,7 @@ def test_peak_torque_is_that_of_a_dense_sweep(name: str, angles: int) -> None:
 def test_position_error_is_that_of_a_dense_sweep(name: str, rss: bool) -> None:
     machine = MACHINES[name]
     designs = DESIGNS[:400]
-    swept = greatest(
-        lambda designs, theta: position_error(machine, designs, theta, rss=rss), designs, angles=10_000
-    )
+    swept = greatest(lambda designs, theta: position_error(machine, designs, theta, rss=rss), designs, angles=10_000)
     signal = Signal.POSITION_ERROR_RSS if rss else Signal.POSITION_ERROR
     np.testing.assert_allclose(highest(machine, signal, designs), swept, rtol=EXACT)
 
@@ -82,8 +80,8 @@ def test_higher_of_the_two_strokes_is_the_cycle(name: str) -> None:
     outward = highest(machine, Signal.TORQUE, during="outward stroke")
     inward = highest(machine, Signal.TORQUE, during="inward stroke")
     np.testing.assert_allclose(np.maximum(outward, inward), highest(machine, Signal.TORQUE), rtol=1e-13)
-    assert np.mean(outward > inward) > 0.02
-    assert np.mean(outward < inward) > 0.02
+    assert np.mean(outward > inward) > 0.005
+    assert np.mean(outward < inward) > 0.005
 
 
 @pytest.mark.parametrize("during", ["outward stroke", "inward stroke"])
@@ -95,7 +93,7 @@ def test_peak_torque_of_a_stroke_is_that_of_a_dense_sweep(name: str, during: str
     wanted = 1.0 if during == "outward stroke" else -1.0
 
     def curve(designs: Array, theta: Array) -> Array:
-        motion = Linkage(*np.moveaxis(designs, -1, 0), branch=machine.branch).at(theta, speed=1.0)
+        motion = linkage_of(designs, machine.branch).at(theta, speed=1.0)
         counts: Any = turn * wanted * motion.slider_velocity > 0.0
         part: Array = np.where(counts, drive_torque(machine, designs, theta), 0.0)
         return part

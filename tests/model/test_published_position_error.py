@@ -39,8 +39,7 @@ def angles(printed: dict[str, list[str]]) -> np.ndarray:
 
 
 def rounding(text: str) -> float:
-    """Return one unit in the last printed place of two decimals or more; the table rounds up and down, and drops
-    zeros."""
+    """Return one unit in the last of at least two printed decimals: the table also cuts, and drops zeros."""
     decimals = len(text.partition(".")[2])
     return 10.0 ** -max(decimals, 2)
 

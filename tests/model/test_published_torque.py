@@ -42,7 +42,7 @@ def test_peak_inertia_torque_is_exact(offset_mm: int, figure: float) -> None:
     assert exact == pytest.approx(figure, rel=0.0, abs=0.05)
     for peak in (
         find_peaks(RECIPROCATING, Signal.TORQUE, designs).values[0, 0],
-        screen(RECIPROCATING, Signal.TORQUE, designs).values[0],
+        screen(RECIPROCATING, (Signal.TORQUE,), designs)[0].values[0],
     ):
         # A torque of 1e2 N m is the sum of some ten products, each rounded: 1e-15 of it.
         assert peak == pytest.approx(exact, rel=1e-13)
@@ -50,9 +50,7 @@ def test_peak_inertia_torque_is_exact(offset_mm: int, figure: float) -> None:
 
 def test_rotating_masses_at_the_crank_pin_need_no_torque_at_constant_speed() -> None:
     designs = np.array([[0.040, 0.064, -0.020]])
-    heavier = Mechanism(
-        speed=251.0, slider_mass=1.05, crank=RigidLink(mass=0.35, centre=0.040, inertia=1e-3)
-    )
+    heavier = Mechanism(speed=251.0, slider_mass=1.05, crank=RigidLink(mass=0.35, centre=0.040, inertia=1e-3))
     a = find_peaks(RECIPROCATING, Signal.TORQUE, designs).values[0, 0]
     b = find_peaks(heavier, Signal.TORQUE, designs).values[0, 0]
     assert a == pytest.approx(b, rel=1e-14)

@@ -96,9 +96,7 @@ def acts(during: During, outward: Any) -> Any:
     return outward if during == "outward stroke" else ~outward
 
 
-def load_force(
-    load: Load, position: Any, velocity: Any, outward: Any, theta: Any, ends: tuple[Any, Any]
-) -> Any:
+def load_force(load: Load, position: Any, velocity: Any, outward: Any, theta: Any, ends: tuple[Any, Any]) -> Any:
     """Return one load, N outward, for the distance and the velocity away from the crank pivot."""
     if isinstance(load, StrokeForce):
         return np.where(outward, load.outward, load.inward)
@@ -156,12 +154,7 @@ def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
         + weight.mass * weight.radius**2
         + rod.mass * r**2
     )
-    inertia = (
-        constant
-        + 2.0 * coupling * at.rod_1
-        + about_pin * at.rod_1**2
-        + mechanism.slider_mass * at.x_1**2
-    )
+    inertia = constant + 2.0 * coupling * at.rod_1 + about_pin * at.rod_1**2 + mechanism.slider_mass * at.x_1**2
     half_slope = (
         coupling * at.rod_2
         + coupling_1 * at.rod_1
@@ -175,11 +168,7 @@ def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
     moved_y = along * at.cosine - across * at.sine + sx * at.rod_1
     load = sign * slider_load(mechanism, designs, theta, at)
     return (
-        mechanism.speed**2 * half_slope
-        + mechanism.acceleration * inertia
-        - gx * moved_x
-        - gy * moved_y
-        - load * at.x_1
+        mechanism.speed**2 * half_slope + mechanism.acceleration * inertia - gx * moved_x - gy * moved_y - load * at.x_1
     )
 
 
@@ -194,9 +183,7 @@ def error_parts(mechanism: Mechanism, designs: Any, theta: Any) -> tuple[Any, An
         / at.rod_cosine
         * (tolerances.crank.absolute + tolerances.crank.fraction * r),
         1.0 / at.rod_cosine * (tolerances.rod.absolute + tolerances.rod.fraction * l),
-        -at.rod_sine
-        / at.rod_cosine
-        * (tolerances.offset.absolute + tolerances.offset.fraction * np.abs(e)),
+        -at.rod_sine / at.rod_cosine * (tolerances.offset.absolute + tolerances.offset.fraction * np.abs(e)),
         at.x_1 * tolerances.crank_angle.absolute,
     )
 

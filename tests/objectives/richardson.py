@@ -30,9 +30,7 @@ def steps_to_the_nearest_edge(designs: Array, *, kink_without_offset: bool) -> A
     return 0.5 * np.stack([room, room, offset], axis=1)
 
 
-def derivatives(
-    function: Function, designs: Array, first: Array, *, one_sided: bool = False
-) -> tuple[Array, Array]:
+def derivatives(function: Function, designs: Array, first: Array, *, one_sided: bool = False) -> tuple[Array, Array]:
     """Return gradients (n, 3) and the method's own estimate of their error.
 
     first: (n, 3), the greatest step. one_sided: forward differences, for a function that has a kink at the design.
@@ -49,9 +47,7 @@ def derivatives(
             ahead[:, v] += h
             if not one_sided:
                 behind[:, v] -= h
-            rows.append(
-                (function(ahead, index) - function(behind, index)) / (ahead[:, v] - behind[:, v])
-            )
+            rows.append((function(ahead, index) - function(behind, index)) / (ahead[:, v] - behind[:, v]))
         found[:, v], error[:, v] = _extrapolate(rows, 2.0 if one_sided else 4.0, one_sided)
     return found, error
 
@@ -62,10 +58,7 @@ def _extrapolate(rows: list[Array], ratio: float, every_power: bool) -> tuple[Ar
     before = rows
     for order in range(1, _AT_ONCE + 1 + 2 * every_power):
         factor = ratio**order
-        after = [
-            (factor * fine - coarse) / (factor - 1.0)
-            for coarse, fine in pairwise(before)
-        ]
+        after = [(factor * fine - coarse) / (factor - 1.0) for coarse, fine in pairwise(before)]
         for value, coarse, fine in zip(after, before[:-1], before[1:], strict=True):
             estimate = np.maximum(np.abs(value - fine), np.abs(value - coarse))
             better = estimate < error

@@ -24,9 +24,7 @@ def root(pytestconfig: pytest.Config) -> Path:
 def test_listed_packages_are_the_folders_on_disk(root: Path) -> None:
     with (root / "pyproject.toml").open("rb") as file:
         listed = tomllib.load(file)["tool"]["setuptools"]
-    folders = {
-        file.parent.relative_to(root) for top in ORDER for file in (root / top).rglob("*.py")
-    }
+    folders = {file.parent.relative_to(root) for top in ORDER for file in (root / top).rglob("*.py")}
     assert sorted(listed["packages"]) == sorted(
         ["slidercrank", *(".".join(["slidercrank", *folder.parts]) for folder in folders)]
     )
@@ -101,8 +99,6 @@ def test_unknown_public_name_is_an_attribute_error() -> None:
 def test_nothing_slow_is_imported_before_it_is_needed(code: str, tmp_path: Path) -> None:
     report = f"sys.stderr.write(json.dumps([name for name in {SLOW} if name in sys.modules]))"
     script = f"import atexit, json, sys; atexit.register(lambda: {report}); {code}"
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stderr) == []

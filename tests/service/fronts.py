@@ -73,7 +73,7 @@ def front(names: tuple[str, ...] = FOUR, *, designs: int = 20, mechanism: Mechan
     box = np.array([[0.08, 0.2, 0.0], [0.16, 0.6, 0.15]])
     dimensions = box[0] + (box[1] - box[0]) * random.random((400, 3))
     dimensions = dimensions[dimensions[:, 1] * math.cos(math.radians(30.0)) > dimensions[:, 0] + dimensions[:, 2]]
-    dimensions *= (0.28 / Linkage(*dimensions.T).stroke)[:, None]  # type: ignore[misc]
+    dimensions *= (0.28 / Linkage(*dimensions.T).stroke)[:, None]
     signs = [-1.0 if objective.sense == "maximise" else 1.0 for objective in asked.objectives]
     values = np.stack(
         [
@@ -90,7 +90,7 @@ def front(names: tuple[str, ...] = FOUR, *, designs: int = 20, mechanism: Mechan
     table["residual"] = 1e-9
     table["status"] = "stationary"
     m = len(names)
-    slopes = np.concatenate([np.eye(m)[:, : m - 1], -np.ones((1, m - 1))])[:m]
+    slopes = np.concatenate([np.eye(m - 1), -np.ones((1, m - 1))])
     return ParetoFront(
         problem=asked,
         status="done",

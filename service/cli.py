@@ -1,0 +1,113 @@
+"""The command line: `slidercrank COMMAND`.
+
+Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
+feasible, or no design that meets the conditions; 130 interrupted (Ctrl-C).
+
+Nothing that is slow to import is imported here or at the top of the command modules: `--help` stays quick.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import traceback
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from ..model.errors import SlidercrankError
+from .analyse_command import analyse
+from .job_commands import check, schema
+from .optimise_command import optimise
+from .run_commands import export, front
+from .screen import give, say
+
+WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
+_DEBUG = "SLIDERCRANK_DEBUG"
+
+
+class Commands(TyperGroup):
+    """Runs a command and turns its exceptions into one message and an exit code."""
+
+    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
+        """Run the command that was named."""
+        try:
+            return super().invoke(ctx)
+        except SlidercrankError as error:
+            if os.environ.get(_DEBUG):
+                raise
+            say(f"slidercrank: {error}")
+            raise typer.Exit(WRONG_INPUT) from None
+        except KeyboardInterrupt:
+            say("slidercrank: interrupted")
+            raise typer.Exit(INTERRUPTED) from None
+        except (BrokenPipeError, typer.Abort):
+            raise
+        except Exception as error:
+            if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
+                raise
+            say(
+                f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "
+                f"input; see {_log_of(error)}"
+            )
+            raise typer.Exit(FAULT) from None
+
+
+def _log_of(error: Exception) -> str:
+    """Return where the traceback is: the log of the run if there is one, else a new file."""
+    for note in getattr(error, "__notes__", []):
+        if note.startswith("log: "):
+            return str(note.removeprefix("log: "))
+    options: dict[str, Any] = {"prefix": "slidercrank-", "suffix": ".log", "delete": False, "encoding": "utf-8"}
+    try:
+        with tempfile.NamedTemporaryFile("w", **options) as file:
+            file.write("".join(traceback.format_exception(error)))
+    except OSError:
+        return f"the traceback, with {_DEBUG}=1"
+    return file.name
+
+
+app = typer.Typer(
+    cls=Commands,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            number = version("slidercrank")
+        except PackageNotFoundError:
+            number = "(not installed)"
+        give(f"slidercrank {number}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def slidercrank(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
+
+
+for command in (optimise, analyse, check, schema, front, export):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run the command line and exit."""
+    for stream in (sys.stdout, sys.stderr):
+        # A job's name may have characters that the terminal does not: never a reason to fail.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    app(prog_name="slidercrank")

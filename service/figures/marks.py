@@ -1,0 +1,103 @@
+"""The designs of a front that every figure marks in the same way: the best in each objective, and the knee."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...objectives.registry import quantity
+from ...optimise.front import ParetoFront
+from ...optimise.problem import Objective
+from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A marked design. row: in the front's table. names: of its figure files. labels: for people. size: in points."""
+
+    row: int
+    names: tuple[str, ...]
+    labels: tuple[str, ...]
+    marker: str
+    size: float
+
+    @property
+    def label(self) -> str:
+        """All labels as one line."""
+        return ", ".join(self.labels)
+
+    @property
+    def colour(self) -> str:
+        """Of marker and line: the knee stands out."""
+        return VERMILION if self.marker == KNEE_MARKER else INK
+
+    @property
+    def style(self) -> dict[str, Any]:
+        """The marker as arguments of `Axes.plot` and `Line2D`."""
+        return {
+            "marker": self.marker,
+            "markersize": self.size,
+            "markerfacecolor": "white",
+            "markeredgecolor": self.colour,
+            "markeredgewidth": 1.2,
+            "linestyle": "none",
+        }
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A column as an axis. title: with unit. values: (n,), as shown. better: +1 upward, -1 downward, 0 neither."""
+
+    title: str
+    unit: str
+    values: NDArray[np.float64]
+    better: int
+
+    @property
+    def varies(self) -> bool:
+        """Whether the designs differ in it, beyond rounding."""
+        return bool(np.ptp(self.values) > 1e-9 * np.abs(self.values).max())
+
+
+def marks(front: ParetoFront) -> list[Mark]:
+    """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
+    labels: dict[int, list[tuple[str, str]]] = {}
+    for name, row in front.extremes().items():
+        labels.setdefault(row, []).append((f"best_{name}", f"best {short_title(name)}"))
+    if len(front.objectives) > 1:
+        labels.setdefault(front.knee(), []).append(("knee", "knee"))
+    found = []
+    for order, (row, pairs) in enumerate(labels.items()):
+        names, words = zip(*pairs, strict=True)
+        if names == ("knee",):
+            marker, size = KNEE_MARKER, 11.0
+        else:  # smaller and smaller, so that marks on the same spot stay visible
+            marker, size = MARKERS[order % len(MARKERS)], max(5.5, 9.5 - order)
+        found.append(Mark(row, names, words, marker, size))
+    return found
+
+
+def objective_axis(front: ParetoFront, objective: Objective) -> Axis:
+    """Return the axis of an objective."""
+    of = quantity(objective.quantity)
+    better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
+    values = front.designs[of.field].to_numpy(dtype=np.float64)
+    title = with_unit(short_title(objective.quantity), of.unit.symbol)
+    if objective.target is not None:
+        unit = f" {unit_text(of.unit.symbol)}" if of.unit.symbol else ""
+        title += f" (target {objective.target * of.unit.factor:g}{unit})"
+    return Axis(title, of.unit.symbol, values, better)
+
+
+def dimension_axes(front: ParetoFront) -> list[Axis]:
+    """Return the axes of crank, rod and offset."""
+    columns = ("crank", "rod", "offset")
+    return [Axis(f"{name}, mm", "mm", 1e3 * front.dimensions[:, index], 0) for index, name in enumerate(columns)]
+
+
+def short_title(name: str) -> str:
+    """Return a quantity's title without what follows a comma where no other quantity shares the rest."""
+    return quantity(name).title.removesuffix(", worst case")

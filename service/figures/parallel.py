@@ -1,0 +1,153 @@
+"""Parallel coordinates: dimensions and objectives of every design of a front, one line a design."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from ...optimise.front import ParetoFront
+from .marks import Axis, dimension_axes, marks, objective_axis
+from .style import (
+    FRAME,
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    TITLE,
+    colours,
+    limits,
+    new_figure,
+    place,
+    shown,
+    write,
+)
+
+_DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
+_STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them
+
+
+def parallel_coordinates(front: ParetoFront) -> Figure:
+    """Return the parallel coordinates of a front of at least one design."""
+    dimensions = dimension_axes(front)
+    objectives = [objective_axis(front, objective) for objective in front.objectives]
+    axes = dimensions + objectives
+    marked = marks(front)
+    columns = max(2, min(4, len(axes) - 2))
+    foot = 0.45 + 0.2 * -(-len(marked) // columns)
+    width = 2.0 * _SIDE + _STEP * (len(axes) - 1)
+    titles = [textwrap.wrap(axis.title, 16) for axis in axes]
+    head = 0.24 + 0.15 * max(len(lines) for lines in titles)
+    figure = new_figure(width, foot + _HEIGHT + head + 1.0)
+    panel = place(figure, _SIDE, foot, width - 2.0 * _SIDE, _HEIGHT)
+    panel.set_xlim(0, len(axes) - 1)
+    panel.set_ylim(0, 1)
+    panel.axis("off")
+
+    heights = np.stack([_heights(axis) for axis in axes], axis=1)
+    lines = np.stack([np.broadcast_to(np.arange(len(axes)), heights.shape), heights], axis=2)
+    first = objectives[0].values
+    order = np.argsort(first)
+    panel.add_collection(
+        LineCollection(
+            list(lines[order]),
+            array=first[order],
+            cmap=colours(),
+            linewidths=1.0 if len(front) <= 150 else 0.6,
+            alpha=0.75,
+            zorder=1,
+        ),
+        autolim=False,
+    )
+    handles = []
+    for number, mark in enumerate(marked):
+        style = {
+            **mark.style,
+            "color": mark.colour,
+            "linewidth": 1.5,
+            "linestyle": _DASHES[number % len(_DASHES)],
+            "markersize": 0.7 * mark.size,
+            "clip_on": False,
+        }
+        handles += panel.plot(np.arange(len(axes)), heights[mark.row], zorder=3, **style)
+    for position, axis in enumerate(axes):
+        _draw_axis(panel, position, axis, "\n".join(titles[position]))
+    wanted = "objectives, up is better" if all(axis.better for axis in objectives) else "objectives"
+    top = 1.0 + (head + 0.08) / _HEIGHT
+    _group(panel, 0, len(dimensions) - 1, top, "dimensions")
+    _group(panel, len(dimensions), len(axes) - 1, top, wanted)
+    _legend(figure, handles, [mark.label for mark in marked], columns)
+    height = figure.get_size_inches()[1]
+    write(figure, 0.2, height - 0.3, front.problem.name, fontsize=TITLE, weight="bold")
+    text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}; lines coloured by "
+    write(figure, 0.2, height - 0.48, text + objectives[0].title.split(",")[0], color=MUTED)
+    return figure
+
+
+def _range(axis: Axis) -> tuple[float, float]:
+    """Return the values at the lower and the upper end; for objectives the better end is up."""
+    low, high = limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
+    return (high, low) if axis.better < 0 else (low, high)
+
+
+def _heights(axis: Axis) -> np.ndarray:
+    low, high = _range(axis)
+    return np.asarray((axis.values - low) / (high - low))
+
+
+def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
+    panel.plot([position, position], [0, 1], color=FRAME, linewidth=1.2, zorder=2, clip_on=False)
+    low, high = _range(axis)
+    if axis.varies:
+        locator = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
+        ticks = np.asarray(locator.tick_values(min(low, high), max(low, high)))
+    else:
+        ticks = axis.values[:1]
+    for tick in ticks:
+        at = (tick - low) / (high - low)
+        if not -1e-9 <= at <= 1.0 + 1e-9:
+            continue
+        panel.plot([position - 0.03, position], [at, at], color=FRAME, linewidth=1.0, zorder=2, clip_on=False)
+        panel.text(
+            position - 0.05,
+            at if axis.varies else at + 0.012,  # all lines meet in a value that is the only one
+            shown(tick, 6 if axis.varies else 4),
+            ha="right",
+            va="center" if axis.varies else "bottom",
+            fontsize=SMALL,
+            color=INK,
+            zorder=4,
+            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6},
+        )
+    if axis.varies:
+        ends: dict[str, Any] = {"ha": "center", "fontsize": SMALL, "color": MUTED}
+        panel.text(position, -0.025, shown(low), va="top", **ends)
+        panel.text(position, 1.025, shown(high), va="bottom", **ends)
+    panel.text(position, 1.0 + 0.24 / _HEIGHT, title, ha="center", va="bottom", fontsize=TEXT)
+
+
+def _group(panel: Axes, first: int, last: int, at: float, title: str) -> None:
+    """Name a group of axes over their titles."""
+    ends = [first - 0.35, last + 0.35]
+    panel.plot(ends, [at, at], color=FRAME, linewidth=0.8, clip_on=False)
+    middle = 0.5 * (first + last)
+    panel.text(middle, at + 0.012, title, ha="center", va="bottom", fontsize=SMALL, color=MUTED)
+
+
+def _legend(figure: Figure, handles: list[Line2D], labels: list[str], columns: int) -> None:
+    figure.legend(
+        handles,
+        labels,
+        loc="lower center",
+        ncols=columns,
+        fontsize=SMALL,
+        frameon=False,
+        handlelength=4.0,
+        columnspacing=2.0,
+    )

@@ -1,0 +1,145 @@
+"""The scatter matrix: every pair of objectives of a front, coloured by one of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ...optimise.front import ParetoFront
+from .marks import Axis, Mark, dimension_axes, marks, objective_axis
+from .style import (
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    TITLE,
+    colours,
+    dress,
+    limits,
+    new_figure,
+    place,
+    write,
+)
+
+MOST = 6
+"""Objectives drawn at most: beyond, the panels are too small to read."""
+
+_LEFT, _BOTTOM, _TOP, _RIGHT, _GAP = 0.95, 0.75, 0.7, 0.3, 0.18  # inches
+# Also right for the labels along y, which are turned: there the arrows point up and down.
+_ARROWS = {1: "→ better", -1: "← better", 0: ""}
+
+
+def scatter_matrix(front: ParetoFront) -> Figure:
+    """Return the scatter matrix of a front of at least two objectives and one design."""
+    axes = [objective_axis(front, objective) for objective in front.objectives[:MOST]]
+    marked = marks(front)
+    count = len(axes) - 1
+    if count == 1:
+        colour = max(dimension_axes(front), key=lambda axis: _spread(axis.values))
+        return _single(front, axes, colour, marked)
+    side = max(1.55, min(2.6, 8.4 / count))
+    size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
+    figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
+    for row in range(count):
+        for column in range(row + 1):
+            panel = place(
+                figure,
+                _LEFT + column * (side + _GAP),
+                _BOTTOM + (count - 1 - row) * (side + _GAP),
+                side,
+                side,
+            )
+            points = _panel(panel, axes[column], axes[row + 1], axes[0].values, marked)
+            panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
+            if column == 0:
+                panel.set_ylabel(_label(axes[row + 1]), fontsize=SMALL)
+            if row == count - 1:
+                panel.set_xlabel(_label(axes[column]), fontsize=SMALL)
+    # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
+    x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
+    y = _BOTTOM + (count - 1) * (side + _GAP) + side
+    _colour_bar(figure, points, axes[0].title, x, y - 0.45)
+    _legend(figure, marked, x, y - 0.75)
+    _heading(figure, front, len(front.objectives))
+    return figure
+
+
+def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
+    """Return the only panel of two objectives, coloured by the dimension that varies most."""
+    figure = new_figure(8.8, 5.2)
+    panel = place(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
+    points = _panel(panel, axes[0], axes[1], colour.values, marked)
+    panel.set_xlabel(_label(axes[0]), fontsize=TEXT)
+    panel.set_ylabel(_label(axes[1]), fontsize=TEXT)
+    x, y = _LEFT + 5.2, 5.2 - _TOP
+    _colour_bar(figure, points, colour.title, x, y - 0.45)
+    _legend(figure, marked, x, y - 0.75)
+    _heading(figure, front, 2)
+    return figure
+
+
+def _panel(panel: Axes, across: Axis, up: Axis, colour: np.ndarray, marked: list[Mark]) -> PathCollection:
+    dress(panel)
+    points = panel.scatter(
+        across.values,
+        up.values,
+        c=colour,
+        cmap=colours(),
+        s=16,
+        linewidths=0.3,
+        edgecolors=INK,
+        zorder=2,
+    )
+    for mark in marked:
+        panel.plot(across.values[mark.row], up.values[mark.row], **mark.style, zorder=3)
+    panel.set_xlim(limits(across.values.min(), across.values.max()))
+    panel.set_ylim(limits(up.values.min(), up.values.max()))
+    return points
+
+
+def _label(axis: Axis) -> str:
+    arrow = _ARROWS[axis.better]
+    return f"{axis.title}\n{arrow}" if arrow else axis.title
+
+
+def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y: float) -> None:
+    bar = place(figure, x, y, 2.2, 0.13)
+    figure.colorbar(points, cax=bar, orientation="horizontal")
+    dress(bar, across=4)
+    bar.yaxis.set_visible(False)
+    bar.grid(False)
+    bar.spines[:].set_visible(False)
+    bar.set_title(title, fontsize=SMALL, color=INK, loc="left", pad=4)
+
+
+def _legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
+    width, height = figure.get_size_inches()
+    handles = [Line2D([], [], **mark.style) for mark in marked]
+    figure.legend(
+        handles,
+        ["\n".join(mark.labels) for mark in marked],
+        loc="upper left",
+        bbox_to_anchor=(x / width, y / height),
+        fontsize=SMALL,
+        frameon=False,
+        handletextpad=0.4,
+        borderpad=0.0,
+        borderaxespad=0.0,
+        labelspacing=0.6,
+    )
+
+
+def _heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
+    height = figure.get_size_inches()[1]
+    write(figure, 0.2, height - 0.3, front.problem.name, fontsize=TITLE, weight="bold")
+    text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}"
+    if objectives > MOST:
+        text += f"; the first {MOST} of {objectives} objectives"
+    write(figure, 0.2, height - 0.48, text, color=MUTED)
+
+
+def _spread(values: np.ndarray) -> float:
+    return float(np.ptp(values) / np.abs(values).max()) if np.any(values) else 0.0

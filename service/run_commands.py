@@ -1,0 +1,143 @@
+"""`slidercrank front` and `slidercrank export`: runs that are on the disk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..model.errors import InputError
+from .optimise_command import NOTHING_FEASIBLE, Json, Runs, show_result
+from .result import Result, csv_text, json_text
+from .run_folder import runs_place, write_file
+from .screen import console, give, say
+from .stored_runs import find_run, read_run
+from .tables import ROWS, show_front
+
+Run = Annotated[
+    str,
+    typer.Argument(
+        metavar="RUN",
+        help='The run: its folder, its name in the place of runs, the start of the name, or "latest".',
+    ),
+]
+
+
+def front(
+    run: Run,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CONDITION",
+            help='Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". '
+            "May be repeated.",
+        ),
+    ] = None,
+    sort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Sort by a quantity or column: best first for an objective, else smallest first.",
+        ),
+    ] = None,
+    reverse: Annotated[bool, typer.Option("--reverse", help="Turn the order round.")] = False,
+    columns: Annotated[
+        str | None,
+        typer.Option(metavar="NAMES", help="Quantities or columns to show, separated by commas."),
+    ] = None,
+    rows: Annotated[int, typer.Option(min=0, help="Show at most so many designs; 0 shows all.")] = ROWS,
+    runs: Runs = None,
+    json: Json = False,
+) -> None:
+    """Show the front of a run again, or a part of it."""
+    from .columns import find_columns
+
+    result = read_run(find_run(run, runs_place(runs)))
+    if not result.designs:
+        if json:
+            give(json_text(result.record()))
+        say(f"slidercrank: {result.message}")
+        raise typer.Exit(NOTHING_FEASIBLE)
+    keys = list(result.designs[0])
+    shown = find_columns(columns, keys) if columns else None
+    chosen = _chosen(result, where or [], sort, reverse)
+    if json:
+        picked = _part(result, chosen)
+        record = picked.record()
+        if shown is not None:
+            names = [column.key for column in shown]
+            record["designs"] = [{name: row[name] for name in names} for row in record["designs"]]
+        give(json_text(record))
+    elif not (where or sort or reverse or columns or rows != ROWS):
+        show_result(result)
+    elif chosen:
+        screen = console()
+        screen.print(f"{result.name}: {_count(chosen, result)}", style="bold", soft_wrap=True)
+        show_front(screen, result, chosen, columns=shown, most=rows)
+    if not chosen:
+        say(f"slidercrank: none of the {len(result.designs)} designs meets {_conditions(where or [])}")
+        raise typer.Exit(NOTHING_FEASIBLE)
+
+
+def export(
+    run: Run,
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the designs as CSV; - is standard output.")
+    ] = None,
+    json: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is standard output.")
+    ] = None,
+    runs: Runs = None,
+) -> None:
+    """Write the designs of a run to a file."""
+    if csv is None and json is None:
+        raise InputError("say what to export: --csv FILE, --json FILE, or both")
+    if csv == json == "-":
+        raise InputError("only one of --csv and --json can go to standard output; name a file for the other")
+    result = read_run(find_run(run, runs_place(runs)))
+    for target, text in ((csv, csv_text(result.designs)), (json, json_text(result.record()))):
+        if target == "-":
+            give(text)
+        elif target is not None:
+            write_file(Path(target), text)
+            say(f"{target}: {len(result.designs)} designs")
+
+
+def _chosen(result: Result, where: list[str], sort: str | None, reverse: bool) -> list[int]:
+    from .columns import find_column
+    from .conditions import order_key, select
+
+    chosen = select(result.designs, where)
+    if sort is not None:
+        key = find_column(sort, list(result.designs[0])).key
+        wanted = next((item for item in result.objectives if item.column == key), None)
+        if wanted is not None:
+            chosen.sort(key=lambda row: wanted.rank(result.designs[row]))
+        else:
+            chosen.sort(key=lambda row: order_key(result.designs[row][key]))
+    return chosen[::-1] if reverse else chosen
+
+
+def _part(result: Result, chosen: list[int]) -> Result:
+    """Return the result with only these designs, and only those marks that are among them."""
+    place = {row: index for index, row in enumerate(chosen)}
+    knee = place.get(result.knee) if result.knee is not None else None
+    return replace(
+        result,
+        designs=[result.designs[row] for row in chosen],
+        extremes={name: place[row] for name, row in result.extremes.items() if row in place},
+        knee=knee,
+        trade_offs=[] if knee is None else result.trade_offs,
+    )
+
+
+def _count(chosen: list[int], result: Result) -> str:
+    if len(chosen) == len(result.designs):
+        return f"{len(chosen)} designs"
+    return f"{len(chosen)} of {len(result.designs)} designs"
+
+
+def _conditions(where: list[str]) -> str:
+    return " and ".join(text.strip() for text in where)

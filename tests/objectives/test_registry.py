@@ -1,0 +1,36 @@
+"""Quantities by name."""
+
+from __future__ import annotations
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.objectives.registry import QUANTITIES, quantity
+
+# Names in job files are promises: they never change.
+NAMES = {
+    *("time_ratio", "peak_torque", "transmission_angle", "position_error"),
+    *("peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque", "position_error_rss"),
+    *("stroke", "rod_to_offset", "rod_to_crank", "footprint"),
+    *("peak_pivot_force", "peak_crank_pin_force", "peak_slider_pin_force", "peak_guide_force"),
+    *("peak_slider_speed", "peak_slider_acceleration"),
+}
+
+
+def test_every_promised_quantity_is_there() -> None:
+    assert set(QUANTITIES) == NAMES
+
+
+def test_quantity_is_found_by_its_name() -> None:
+    for name in NAMES:
+        assert quantity(name).name == name
+
+
+def test_misspelt_quantity_is_answered_with_the_nearest() -> None:
+    with pytest.raises(InputError, match="no quantity is called 'peek_torque'; did you mean peak_torque"):
+        quantity("peek_torque")
+
+
+def test_unknown_quantity_is_answered_with_all() -> None:
+    with pytest.raises(InputError, match="no quantity is called 'xyz'; choose from time_ratio, peak_torque, "):
+        quantity("xyz")

@@ -1,0 +1,107 @@
+"""`slidercrank analyse`: one design."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slidercrank.model.linkage import Linkage
+from slidercrank.objectives.analysis import analyse
+from slidercrank.optimise.job import load_job
+from tests.service import fronts
+from tests.service.conftest import Command
+from tests.service.test_result import DESIGN_KEYS
+
+FEEDER = ("--crank", "40 mm", "--rod", "64 mm", "--offset", "20 mm")
+
+
+def test_without_a_job_motion_and_proportions_are_given(command: Command) -> None:
+    done = command("analyse", *FEEDER, "--json")
+    assert done.exit_code == 0, done.stderr
+    row = json.loads(done.stdout)
+    linkage = Linkage(0.04, 0.064, 0.02)
+    assert set(DESIGN_KEYS) <= set(row)
+    assert row["stroke_mm"] == pytest.approx(1e3 * linkage.stroke, rel=1e-14)
+    assert row["time_ratio"] == pytest.approx(linkage.time_ratio, rel=1e-14)
+    for key, value in row.items():
+        unknown = ("torque", "force", "error", "slider_speed", "acceleration")
+        assert (value is None) == any(word in key for word in unknown), key
+    assert "need masses" in done.stderr
+    assert "need a crank speed" in done.stderr
+
+
+def test_a_speed_gives_slider_speed_and_acceleration(command: Command) -> None:
+    row = json.loads(command("analyse", *FEEDER, "--speed", "-2400 rpm", "--json").stdout)
+    assert row["peak_slider_speed_m_s"] == pytest.approx(16.989, abs=1e-3)
+    assert row["slow_stroke"] == "outward"  # clockwise, the offset positive
+
+
+def test_lengths_may_be_in_any_unit_and_negative_for_the_offset(command: Command) -> None:
+    one = command("analyse", "--crank", "1 inch", "--rod", "0.1 m", "--offset", "-1.5 cm", "--json").stdout
+    row = json.loads(one)
+    assert (row["crank_mm"], row["rod_mm"], row["offset_mm"]) == (25.4, 100.0, -15.0)
+    assert json.loads(command("analyse", "--crank=1 inch", "--rod=0.1 m", "--offset=-15 mm", "--json").stdout) == row
+
+
+def test_a_job_gives_every_number(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    row = json.loads(command("analyse", job, *FEEDER, "--json").stdout)
+    expected = analyse(load_job(job).mechanism, np.array([[0.04, 0.064, 0.02]])).iloc[0]
+    assert row["peak_torque_Nm"] == expected["peak_torque_Nm"]
+    assert list(row) == list(expected.index)
+
+
+def test_the_speed_overrides_that_of_the_job(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    slow, quick = (
+        json.loads(command("analyse", job, *FEEDER, "--speed", speed, "--json").stdout)["peak_torque_Nm"]
+        for speed in ("300 rpm", "600 rpm")
+    )
+    assert quick == pytest.approx(4.0 * slow, rel=1e-12)  # inertia torque grows with the square
+
+
+def test_a_dimension_that_the_job_fixes_need_not_be_given(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text().replace('rod = ["60 mm", "600 mm"]', 'rod = "600 mm"'))
+    done = command("analyse", job, "--crank", "40 mm", "--offset", "20 mm", "--json")
+    assert json.loads(done.stdout)["rod_mm"] == 600.0
+    done = command("analyse", job, "--crank", "40 mm")
+    assert done.exit_code == 2
+    assert "--offset is needed" in done.stderr
+
+
+def test_the_table_leaves_out_what_is_not_known(command: Command) -> None:
+    output = command("analyse", *FEEDER).stdout
+    assert "88.7923" in output
+    assert "torque" not in output
+
+
+def test_figures_are_drawn_with_and_without_a_job(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    for number, arguments in enumerate([(job, *FEEDER), FEEDER]):
+        done = command("analyse", *arguments, "--figures", tmp_path / str(number))
+        assert done.exit_code == 0, done.stderr
+        assert (tmp_path / str(number) / "design.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "--crank is needed"),
+        (("--crank", "40 mm"), "--rod is needed"),
+        (("--crank", "40", "--rod", "64 mm"), "--crank must be a length with its unit"),
+        (("--crank", "-40 mm", "--rod", "64 mm"), "--crank must be positive"),
+        (("--crank", "40 mm", "--rod", "64 deg"), "--rod must be a length"),
+        (("--crank", "40 mm", "--rod", "nan mm"), "--rod must be a finite number"),
+        (("--crank", "40 mm", "--rod", "64 mm", "--speed", "5 m/s"), "--speed must be an angular speed"),
+        (("--crank", "50 mm", "--rod", "60 mm", "--offset", "20 mm"), "rod must exceed crank + |offset|"),
+        (("none.toml", "--crank", "50 mm"), "no such file"),
+    ],
+)
+def test_wrong_values_are_exit_code_2(arguments: tuple[str, ...], words: str, command: Command) -> None:
+    done = command("analyse", *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr

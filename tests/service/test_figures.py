@@ -1,0 +1,307 @@
+"""Figures: what they draw is what the model computes, and every kind of front can be drawn."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from slidercrank.model.cycle import cycle
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.objectives.analysis import analyse
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.problem import Objective
+from slidercrank.service.figures import draw_front
+from slidercrank.service.figures.curves import Curves, cycle_curves
+from slidercrank.service.figures.marks import marks
+from slidercrank.service.figures.parallel import parallel_coordinates
+from slidercrank.service.figures.scatter import scatter_matrix
+from slidercrank.service.figures.sheet import design_sheet
+from slidercrank.service.figures.style import colours, shown
+from tests.service import fronts
+
+LINKAGES = {
+    "offset": Linkage(0.14, 0.31, 0.06),
+    "below": Linkage(0.14, 0.31, -0.06),
+    "in line": Linkage(0.04, 0.2, 0.0),
+    "near locking": Linkage(0.04, 0.06006, 0.02),
+    "crossed": Linkage(0.14, 0.31, 0.06, "crossed"),
+}
+
+
+def machine(linkage: Linkage, speed: float = 10.0 * math.pi) -> Mechanism:
+    return replace(fronts.MACHINE, branch=linkage.branch, speed=speed)
+
+
+def curves_of(name: str, speed: float = 10.0 * math.pi) -> tuple[Mechanism, Linkage, Curves]:
+    linkage = LINKAGES[name]
+    mechanism = machine(linkage, speed)
+    return mechanism, linkage, cycle_curves(mechanism, linkage)
+
+
+@pytest.mark.parametrize("speed", [10.0 * math.pi, -3.0])
+@pytest.mark.parametrize("name", LINKAGES)
+def test_curves_are_those_of_the_cycle(name: str, speed: float) -> None:
+    mechanism, linkage, curves = curves_of(name, speed)
+    motion = cycle(mechanism, linkage, np.radians(curves.angles))
+    expected = [
+        motion.torque,
+        np.degrees(motion.transmission_angle),
+        1e3 * motion.slider_position,
+        motion.slider_velocity,
+        motion.slider_acceleration,
+    ]
+    for curve, values in zip(curves.curves, expected, strict=True):
+        # The angle is turned into degrees and back: a rounding of it, on a steep curve.
+        np.testing.assert_allclose(curve.values, values, rtol=1e-9, atol=1e-9 * np.abs(values).max())
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_marked_points_lie_on_their_curve_and_are_its_extremum(name: str) -> None:
+    _, _, curves = curves_of(name)
+    for curve in curves.curves:
+        if curve.point is None:
+            continue
+        angle, value = curve.point
+        assert value == curve.values[curves.angles == angle][0]
+        size = np.abs(curve.values)
+        best = size.min() if curve.note.startswith("least") else size.max()
+        assert abs(value) == pytest.approx(best, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_marked_values_are_those_of_the_table(name: str) -> None:
+    mechanism, linkage, curves = curves_of(name)
+    row = analyse(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
+    torque, transmission, _, speed, acceleration = (curve.point for curve in curves.curves)
+    assert torque is not None
+    assert abs(torque[1]) == pytest.approx(row["peak_torque_Nm"], rel=1e-12)
+    assert torque[0] == pytest.approx(row["peak_torque_angle_deg"], rel=1e-12)
+    assert transmission is not None
+    assert transmission[1] == pytest.approx(row["least_transmission_angle_deg"], rel=1e-9)
+    assert speed is not None
+    assert abs(speed[1]) == pytest.approx(row["peak_slider_speed_m_s"], rel=1e-12)
+    assert acceleration is not None
+    assert abs(acceleration[1]) == pytest.approx(row["peak_slider_acceleration_m_s2"], rel=1e-12)
+    assert curves.inner == pytest.approx(row["inner_dead_centre_deg"], rel=1e-12)
+    assert curves.outer == pytest.approx(row["outer_dead_centre_deg"], rel=1e-12)
+
+
+def test_dead_centres_are_the_ends_of_the_position_curve() -> None:
+    _, linkage, curves = curves_of("offset")
+    position = curves.curves[2]
+    for angle, x in zip((curves.inner, curves.outer), linkage.dead_centres, strict=True):
+        assert position.values[np.isclose(curves.angles, angle, rtol=1e-13)][0] == pytest.approx(1e3 * x, rel=1e-12)
+
+
+def test_without_a_speed_velocity_is_per_crank_speed() -> None:
+    linkage = LINKAGES["offset"]
+    curves = cycle_curves(Mechanism(), linkage, torque=False)
+    assert [curve.title.split(",")[0] for curve in curves.curves] == [
+        *("transmission angle", "slider position", "slider velocity per crank speed"),
+        "slider acceleration per crank speed",
+    ]
+    expected = 1e3 * linkage.at(np.radians(curves.angles), speed=1.0).slider_velocity
+    np.testing.assert_allclose(curves.curves[2].values, expected, rtol=1e-9, atol=1e-9)
+
+
+def drawn(figure: Figure) -> list[Text]:
+    """Return the texts that are seen in a figure once it is drawn."""
+    figure.canvas.draw()
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    hidden = [
+        label
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for tick in axis.get_major_ticks()
+        for label in (tick.label1, tick.label2)
+        if not axes.axison or not axis.get_visible() or not _within(axis.get_view_interval(), tick.get_loc())
+    ]
+    return [text for text in texts if text not in hidden]
+
+
+def _within(interval: tuple[float, float], at: float) -> bool:
+    low, high = sorted(interval)
+    return bool(low <= at <= high)
+
+
+def overlaps(figure: Figure) -> list[tuple[str, str]]:
+    """Return the pairs of texts that overlap, and texts that stick out of the figure as pairs with "edge"."""
+    texts = drawn(figure)
+    boxes = [text.get_window_extent() for text in texts]
+    page = figure.bbox
+    found = []
+    for i, one in enumerate(boxes):
+        if one.x0 < page.x0 or one.y0 < page.y0 or one.x1 > page.x1 or one.y1 > page.y1:
+            found.append((texts[i].get_text(), "edge"))
+        for j in range(i):
+            other = boxes[j]
+            across = min(one.x1, other.x1) - max(one.x0, other.x0)
+            along = min(one.y1, other.y1) - max(one.y0, other.y0)
+            if across > 1.0 and along > 1.0:
+                found.append((texts[i].get_text(), texts[j].get_text()))
+    return found
+
+
+SIX = (*fronts.FOUR, "footprint", "peak_guide_force")
+FRONTS = {
+    "two objectives": lambda: fronts.front(fronts.FOUR[:2]),
+    "three objectives": lambda: fronts.front(fronts.FOUR[:3]),
+    "four objectives": lambda: fronts.front(designs=60),
+    "six objectives": lambda: fronts.front(SIX, designs=40),
+    "two designs": lambda: fronts.front(designs=2),
+    "target": lambda: with_target(fronts.front()),
+    "all alike": lambda: all_alike(fronts.front(designs=3)),
+}
+
+
+def with_target(front: ParetoFront) -> ParetoFront:
+    objectives = (Objective(quantity="time_ratio", sense="target", target=1.1), *front.objectives[1:])
+    return replace(front, problem=replace(front.problem, objectives=objectives))
+
+
+def all_alike(front: ParetoFront) -> ParetoFront:
+    """Return a front whose designs are all the first one."""
+    rows = [0] * len(front)
+    return replace(
+        front,
+        designs=front.designs.iloc[rows].reset_index(drop=True),
+        dimensions=front.dimensions[rows],
+        values=front.values[rows],
+    )
+
+
+def test_texts_that_overlap_are_found() -> None:
+    figure = scatter_matrix(fronts.front(fronts.FOUR[:2]))
+    figure.text(0.05, 0.95, "on the title")
+    figure.text(0.99, 0.5, "over the edge")
+    pairs = overlaps(figure)
+    assert ("on the title", "Vibrating sieve") in pairs
+    assert ("over the edge", "edge") in pairs
+
+
+@pytest.mark.parametrize("name", FRONTS)
+def test_no_two_texts_of_the_front_figures_overlap(name: str) -> None:
+    front = FRONTS[name]()
+    assert overlaps(scatter_matrix(front)) == []
+    assert overlaps(parallel_coordinates(front)) == []
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_no_two_texts_of_a_design_sheet_overlap(name: str) -> None:
+    linkage = LINKAGES[name]
+    row = analyse(machine(linkage), np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
+    numbers = {str(key): value for key, value in row.items()}
+    bold = ["position_error_mm", "least_transmission_angle_deg"]
+    title = "A job with a name of the greatest length that is allowed, which is 80 characters: best this, best that"
+    figure = design_sheet(machine(linkage), linkage, numbers, title=title, subtitle="design 1 of 2", bold=bold)
+    assert overlaps(figure) == []
+
+
+def test_every_design_is_a_point_and_a_line() -> None:
+    front = fronts.front()
+    scatter, parallel = scatter_matrix(front), parallel_coordinates(front)
+    m = len(front.objectives)
+    panels = [axes for axes in scatter.axes if axes.get_xlabel() or axes.get_ylabel() or axes.collections]
+    points = [axes.collections[0].get_offsets() for axes in panels if len(axes.collections) == 1 and axes.lines]
+    assert len(points) == m * (m - 1) // 2
+    assert all(len(offsets) == len(front) for offsets in points)  # type: ignore[arg-type]
+    lines = parallel.axes[0].collections[0].get_segments()  # type: ignore[attr-defined]
+    assert len(lines) == len(front)
+
+
+def test_lines_of_parallel_coordinates_have_better_objectives_higher() -> None:
+    front = fronts.front()
+    lines = np.array(parallel_coordinates(front).axes[0].collections[0].get_segments())  # type: ignore[attr-defined]
+    heights = lines[np.argsort(np.argsort(front.designs["time_ratio"]))][:, 3:, 1]
+    low, high = front.values.min(axis=0), front.values.max(axis=0)
+    np.testing.assert_allclose(heights, (high - front.values) / (high - low), atol=1e-12)
+
+
+def test_a_design_that_is_best_twice_is_marked_once() -> None:
+    front = fronts.front()
+    found = marks(front)
+    assert len({mark.row for mark in found}) == len(found)
+    names = [name for mark in found for name in mark.names]
+    assert sorted(names) == sorted([*(f"best_{name}" for name in fronts.FOUR), "knee"])
+
+
+@pytest.mark.parametrize(
+    ("names", "designs", "expected"),
+    [
+        (
+            fronts.FOUR,
+            20,
+            {"scatter_matrix", "parallel_coordinates", "knee", *(f"best_{name}" for name in fronts.FOUR)},
+        ),
+        (fronts.FOUR[:2], 1, {"best_time_ratio", "best_peak_torque", "knee"}),
+        (("peak_torque",), 1, {"best_peak_torque"}),
+    ],
+)
+def test_the_files_of_a_front(names: tuple[str, ...], designs: int, expected: set[str], tmp_path: Path) -> None:
+    front = fronts.front(names, designs=designs)
+    files = list(draw_front(front, tmp_path / "figures"))
+    assert {file.stem for file in files} == expected
+    assert all(file.read_bytes().startswith(b"\x89PNG") for file in files)
+
+
+def test_drawing_leaves_matplotlib_as_it_was(tmp_path: Path) -> None:
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    list(draw_front(fronts.front(fronts.FOUR[:2], designs=3), tmp_path))
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_figures_do_without_pyplot(tmp_path: Path) -> None:
+    script = (
+        "import sys; from pathlib import Path; from tests.service import fronts; "
+        "from slidercrank.service.figures import draw_front; "
+        f"list(draw_front(fronts.front(designs=2), Path({str(tmp_path)!r}))); "
+        "sys.exit('matplotlib.pyplot' in sys.modules)"
+    )
+    root = str(Path(fronts.__file__).parents[2])
+    assert subprocess.run([sys.executable, "-c", script], cwd=root, check=False).returncode == 0
+
+
+def test_the_same_front_gives_the_same_files(tmp_path: Path) -> None:
+    front = fronts.front(fronts.FOUR[:2], designs=3)
+    for name in ("a", "b"):
+        list(draw_front(front, tmp_path / name))
+    for file in (tmp_path / "a").iterdir():
+        assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes()
+
+
+def test_the_colour_scale_is_as_clear_in_grey() -> None:
+    """Luminance by ITU-R BT.709; a reader of a black-and-white print sees the same order."""
+    grey = [0.2126 * red + 0.7152 * green + 0.0722 * blue for red, green, blue in map(to_rgb, colours().colors)]  # type: ignore[arg-type]
+    assert np.all(np.diff(grey) > -1e-3)
+    assert grey[-1] - grey[0] > 0.6
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (12345.6, "12346"),
+        (-3.14159, "−3.142"),
+        (0.00012346, "0.0001235"),
+        (123456.0, "123456"),
+        (1.5e9, "1.5e+09"),
+        (math.inf, "∞"),
+        (-math.inf, "−∞"),
+        (math.nan, "–"),
+    ],
+)
+def test_numbers_are_shown_without_exponent_where_possible(value: float, text: str) -> None:
+    assert shown(value) == text

@@ -1,0 +1,80 @@
+"""Results as JSON and CSV: strict, complete, and exact."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from slidercrank.service.result import Row, csv_text, finite, json_text, result_of, rows_from_csv
+from tests.service import fronts
+
+DESIGN_KEYS = [
+    *("crank_mm", "rod_mm", "offset_mm", "stroke_mm", "time_ratio", "slow_stroke"),
+    *("outer_dead_centre_deg", "inner_dead_centre_deg", "least_transmission_angle_deg"),
+    *("peak_torque_Nm", "peak_torque_angle_deg", "rms_torque_Nm", "mean_torque_Nm"),
+    *("position_error_mm", "position_error_rss_mm", "peak_pivot_force_N", "peak_crank_pin_force_N"),
+    *("peak_slider_pin_force_N", "peak_guide_force_N", "peak_slider_speed_m_s", "peak_slider_acceleration_m_s2"),
+]
+KEYS = ["run", "status", "message", "objectives", "designs", "hypervolume", "evaluations", "seconds"]
+
+
+def test_json_has_the_released_keys() -> None:
+    record = result_of(fronts.front(), "runs/x").record()
+    assert set(KEYS) <= set(record)
+    assert set(DESIGN_KEYS) <= set(record["designs"][0])
+    assert [wanted["quantity"] for wanted in record["objectives"]] == list(fronts.FOUR)
+
+
+def test_marked_designs_are_those_of_the_front() -> None:
+    front = fronts.front()
+    record = result_of(front, "runs/x").record()
+    assert record["extremes"] == front.extremes()
+    assert record["knee"] == front.knee()
+    assert record["trade_offs"] == front.trade_offs(front.knee())
+
+
+def test_an_empty_front_has_no_marked_design() -> None:
+    record = result_of(fronts.empty_front("infeasible", "nothing"), "runs/x").record()
+    assert (record["designs"], record["extremes"], record["knee"], record["trade_offs"]) == ([], {}, None, [])
+
+
+def test_numbers_that_are_not_finite_become_null() -> None:
+    text = json_text({"a": math.inf, "b": [math.nan, -math.inf, 1.5], "c": {"d": math.nan}})
+    assert json.loads(text) == {"a": None, "b": [None, None, 1.5], "c": {"d": None}}
+    assert finite("inf") == "inf"
+
+
+def test_json_is_ascii() -> None:
+    assert json_text({"name": "Förderer ≥ 2"}).isascii()
+
+
+ROWS: list[Row] = [
+    {"a_mm": 0.1 + 0.2, "b": math.inf, "word": "inward"},
+    {"a_mm": 5e-324, "b": math.nan, "word": 'a, "b"\nc'},
+    {"a_mm": -1.7976931348623157e308, "b": 1e22, "word": "outward"},
+]
+
+
+def test_csv_is_read_back_bit_for_bit() -> None:
+    back = rows_from_csv(csv_text(ROWS))
+    assert repr(back) == repr(ROWS)
+
+
+def test_csv_of_no_designs_is_empty() -> None:
+    assert csv_text([]) == ""
+    assert rows_from_csv("") == []
+
+
+def test_csv_with_a_short_line_is_refused() -> None:
+    with pytest.raises(ValueError, match="shorter"):
+        rows_from_csv("a,b\n1,2\n3\n")
+
+
+def test_csv_has_every_number_of_the_table() -> None:
+    front = fronts.front()
+    back = rows_from_csv(csv_text(result_of(front, "x").designs))
+    assert [list(row) for row in back] == [list(front.designs.columns)] * len(front)
+    for name in front.designs.columns:
+        assert [row[name] for row in back] == front.designs[name].tolist()

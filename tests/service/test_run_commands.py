@@ -1,0 +1,160 @@
+"""`slidercrank front` and `slidercrank export`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from slidercrank.service.result import Result, result_of, rows_from_csv
+from slidercrank.service.run_folder import RunFolder
+from tests.service import fronts
+from tests.service.conftest import Command
+
+
+@pytest.fixture
+def stored(runs: Path) -> Result:
+    """Return a run that is kept."""
+    with RunFolder(runs, "Sieve") as run:
+        result = result_of(fronts.front(designs=30), str(run.path))
+        run.keep_result(result, {})
+    return result
+
+
+def numbers(output: str) -> list[int]:
+    """Return the numbers of the designs in a table."""
+    lines = [line.split() for line in output.splitlines() if " of " not in line]
+    return [int(words[0]) for words in lines if words and words[0].isdigit()]
+
+
+def test_front_shows_the_run_again(stored: Result, command: Command) -> None:
+    done = command("front", "latest")
+    assert done.exit_code == 0
+    assert stored.message in done.stdout
+    assert "At the knee:" in done.stdout
+    assert done.stderr == ""
+
+
+def test_front_json_is_the_file(stored: Result, command: Command) -> None:
+    assert json.loads(command("front", "latest", "--json").stdout) == stored.record()
+
+
+def test_front_shows_the_designs_that_meet_conditions(stored: Result, command: Command) -> None:
+    limits = sorted(row["least_transmission_angle_deg"] for row in stored.designs)  # type: ignore[type-var]
+    done = command("front", "latest", "--where", f"transmission_angle >= {limits[10]} deg", "--rows", 0)
+    assert done.exit_code == 0
+    expected = [
+        number
+        for number, row in enumerate(stored.designs, 1)
+        if row["least_transmission_angle_deg"] >= limits[10]  # type: ignore[operator]
+    ]
+    assert numbers(done.stdout) == expected
+    assert f"{len(expected)} of {len(stored.designs)} designs" in done.stdout
+
+
+def test_conditions_add_up_and_json_has_only_their_designs(stored: Result, command: Command) -> None:
+    torque = sorted(row["peak_torque_Nm"] for row in stored.designs)[15]  # type: ignore[type-var]
+    done = command(
+        *("front", "latest", "--json", "--where", f"peak_torque <= {torque} N m", "--where", "slow_stroke = inward"),
+        *("--columns", "crank,peak_torque"),
+    )
+    record = json.loads(done.stdout)
+    assert all(list(row) == ["crank_mm", "peak_torque_Nm"] for row in record["designs"])
+    assert len(record["designs"]) == 16
+    for name, row in record["extremes"].items():
+        column = next(wanted["column"] for wanted in record["objectives"] if wanted["quantity"] == name)
+        best = stored.designs[stored.extremes[name]]
+        assert record["designs"][row]["crank_mm"] == best["crank_mm"], column
+
+
+def test_no_design_that_meets_the_conditions_is_exit_code_3(stored: Result, command: Command) -> None:
+    done = command("front", "latest", "--where", "peak_torque < 1 N m", "--json")
+    assert done.exit_code == 3
+    assert json.loads(done.stdout)["designs"] == []
+    assert f"none of the {len(stored.designs)} designs meets peak_torque < 1 N m" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key", "turned"),
+    [
+        (("--sort", "peak_torque"), "peak_torque_Nm", False),
+        (("--sort", "transmission_angle"), "least_transmission_angle_deg", True),
+        (("--sort", "crank"), "crank_mm", False),
+        (("--sort", "rod_mm", "--reverse"), "rod_mm", True),
+    ],
+)
+def test_designs_are_sorted_best_or_smallest_first(
+    arguments: tuple[str, ...], key: str, turned: bool, stored: Result, command: Command
+) -> None:
+    shown = numbers(command("front", "latest", *arguments, "--rows", 0).stdout)
+    values = [stored.designs[number - 1][key] for number in shown]
+    assert len(values) == len(stored.designs)
+    assert values == sorted(values, reverse=turned)  # type: ignore[type-var]
+
+
+def test_columns_are_those_asked_for(stored: Result, command: Command) -> None:
+    output = command("front", "latest", "--columns", "rod, peak_guide_force_N,status", "--rows", 3).stdout
+    assert "guide" in output
+    assert "stationary" in output
+    assert "crank" not in output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--where", "transmission_angle"), "a condition is"),
+        (("--where", "transmission_angle >= 40"), "with its unit"),
+        (("--sort", "torque_peak"), "no quantity or column is called 'torque_peak'"),
+        (("--columns", "crank,nothing"), "no quantity or column is called 'nothing'"),
+        (("--columns", ","), "no quantity or column is called ''"),
+        (("--rows", "-1"), "--rows"),
+    ],
+)
+def test_wrong_arguments_are_exit_code_2(
+    arguments: tuple[str, ...], words: str, stored: Result, command: Command
+) -> None:
+    done = command("front", "latest", *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+
+
+def test_an_unknown_run_is_exit_code_2(stored: Result, command: Command) -> None:
+    done = command("front", "1999")
+    assert done.exit_code == 2
+    assert "there is no run '1999'" in done.stderr
+
+
+def test_a_damaged_run_is_exit_code_2(stored: Result, command: Command) -> None:
+    (Path(stored.run) / "front.csv").write_text("crank_mm\n1\n")
+    done = command("front", stored.run)
+    assert done.exit_code == 2
+    assert "is damaged" in done.stderr
+
+
+def test_export_writes_the_files_of_the_run(stored: Result, tmp_path: Path, command: Command) -> None:
+    done = command("export", "latest", "--csv", tmp_path / "a.csv", "--json", tmp_path / "a.json")
+    assert (done.exit_code, done.stdout) == (0, "")
+    assert (tmp_path / "a.csv").read_bytes() == (Path(stored.run) / "front.csv").read_bytes()
+    assert (tmp_path / "a.json").read_bytes() == (Path(stored.run) / "front.json").read_bytes()
+
+
+def test_export_writes_to_standard_output(stored: Result, command: Command) -> None:
+    assert rows_from_csv(command("export", "latest", "--csv", "-").stdout) == stored.designs
+    assert json.loads(command("export", "latest", "--json", "-").stdout) == stored.record()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "say what to export"),
+        (("--csv", "-", "--json", "-"), "only one of"),
+        (("--csv", "none/there/a.csv"), "must be a folder that can be written"),
+    ],
+)
+def test_an_export_to_nowhere_is_refused(
+    arguments: tuple[str, ...], words: str, stored: Result, command: Command
+) -> None:
+    done = command("export", "latest", *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr

@@ -1,0 +1,165 @@
+"""The folder of a run: complete, or marked unfinished, at every moment."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import InputError, RunError
+from slidercrank.service import run_folder
+from slidercrank.service.result import Result, result_of
+from slidercrank.service.run_folder import MARK, RunFolder, runs_place, slug, write_file
+from slidercrank.service.stored_runs import read_run
+from tests.service import fronts
+
+
+class Killed(BaseException):
+    """Stands for the end of the process: nothing after it runs."""
+
+
+def result(run: RunFolder) -> Result:
+    return result_of(fronts.front(designs=4), str(run.path))
+
+
+def write(place: Path, job: Path) -> RunFolder:
+    """Write a run without the context manager, as a process that may be killed on the way."""
+    run = RunFolder(place, "Feeder")
+    run.keep_job(job)
+    run.keep_result(result(run), {"python": "3"})
+    run.finish()
+    return run
+
+
+def visible(place: Path) -> list[Path]:
+    return [folder for folder in place.glob("*") if not folder.name.startswith(".")]
+
+
+def test_a_finished_run_has_every_part(tmp_path: Path) -> None:
+    job = fronts.job_file(tmp_path)
+    with RunFolder(tmp_path / "runs", "Vibrating sieve") as run:
+        assert (run.path / MARK).is_file()
+        run.keep_job(job)
+        run.keep_result(result(run), {"python": "3"})
+    names = {file.name for file in run.path.iterdir()}
+    assert names == {"job.toml", "front.csv", "front.json", "versions.json", "log.txt"}
+    assert run.path.name.endswith("-vibrating-sieve")
+    assert (run.path / "job.toml").read_bytes() == job.read_bytes()
+    assert json.loads((run.path / "front.json").read_text()) == result(run).record()
+    assert read_run(run.path) == result(run)
+
+
+def test_runs_of_the_same_second_have_their_own_folders(tmp_path: Path) -> None:
+    paths = {RunFolder(tmp_path, "same").path for _ in range(5)}
+    assert len(paths) == 5
+    assert set(visible(tmp_path)) == paths
+
+
+@pytest.mark.parametrize("step", range(13))
+def test_a_run_killed_at_any_write_is_unfinished_or_whole(
+    step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job, place = fronts.job_file(tmp_path), tmp_path / "runs"
+    left = iter(range(step))
+
+    def counted(handle: int) -> None:
+        if next(left, None) is None:
+            raise Killed
+
+    monkeypatch.setattr(os, "fsync", counted)
+    try:
+        write(place, job)
+    except Killed:
+        assert step < 12
+    for folder in visible(place):
+        if step >= 11:  # killed when the mark was gone already, or not at all
+            assert len(read_run(folder).designs) == 4
+        else:
+            with pytest.raises(RunError, match="unfinished"):
+                read_run(folder)
+
+
+def test_a_run_killed_before_the_mark_goes_is_unfinished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def killed(self: Path, missing_ok: bool = False) -> None:
+        raise Killed
+
+    monkeypatch.setattr(Path, "unlink", killed)
+    with pytest.raises(Killed):
+        write(tmp_path / "runs", fronts.job_file(tmp_path))
+    with pytest.raises(RunError, match="unfinished"):
+        read_run(visible(tmp_path / "runs")[0])
+
+
+def test_an_error_leaves_the_run_unfinished_with_its_reason_in_the_log(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError) as caught, RunFolder(tmp_path, "x") as run:
+        _ = 1 / 0
+    assert "ZeroDivisionError" in (run.path / "log.txt").read_text()
+    assert caught.value.__notes__ == [f"log: {run.path / 'log.txt'}"]
+    with pytest.raises(RunError, match="stopped by an error: division by zero"):
+        read_run(run.path)
+
+
+def test_wrong_input_leaves_no_folder(tmp_path: Path) -> None:
+    with pytest.raises(InputError), RunFolder(tmp_path, "x"):
+        raise InputError("no")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_wrong_input_after_the_result_keeps_the_result(tmp_path: Path) -> None:
+    run = RunFolder(tmp_path, "x")
+    run.keep_result(result(run), {})
+    with pytest.raises(InputError), run:
+        raise InputError("no")
+    assert (run.path / "front.csv").is_file()
+
+
+def test_a_place_that_is_no_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "runs").write_text("a file")
+    with pytest.raises(RunError, match=r"must be a folder that can be written; got: .*choose another place"):
+        RunFolder(tmp_path / "runs", "x")
+
+
+def test_a_full_disk_is_said_and_leaves_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(RunError, match="No space left on device"):
+        RunFolder(tmp_path, "x")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "front.csv"
+    write_file(file, "old")
+    with monkeypatch.context() as context:
+        context.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(5, "Input/output error")))
+        with pytest.raises(RunError, match="Input/output error"):
+            write_file(file, "new")
+    assert file.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("Feeder with rod = 3.2 offset", "feeder-with-rod-3-2-offset"),
+        ("Rüttelsieb Nº 5", "ruttelsieb-no-5"),
+        ("../../etc/passwd", "etc-passwd"),
+        ("振動篩", "run"),
+        ("x" * 80, "x" * 40),
+        ("a" * 39 + " b", "a" * 39),
+    ],
+)
+def test_a_folder_name_is_made_of_plain_letters(name: str, expected: str) -> None:
+    assert slug(name) == expected
+
+
+def test_the_place_is_the_option_then_the_variable_then_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(run_folder.PLACE_VARIABLE, "elsewhere")
+    assert runs_place(Path("here")) == Path("here")
+    assert runs_place(None) == Path("elsewhere")
+    monkeypatch.setenv(run_folder.PLACE_VARIABLE, "")
+    assert runs_place(None) == Path("runs")
