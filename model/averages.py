@@ -15,17 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
+from .batches import in_chunks
 from .dynamics import forces
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
-from .peaks import in_chunks, watch_of
+from .peaks import watch_of
 from .segments import Cuts, crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within
 from .signals import Signal, design_motion
 
 Array = NDArray[np.float64]
 
-# Measured on rods 0.1 % longer than crank + offset, over random machines: 128 nodes and 12 panels of 16 nodes leave an RMS
-# torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11.
+# Measured on rods 0.1 % longer than crank + offset, over random machines: 128 nodes and 12 panels of 16 nodes leave an
+# RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11.
 _NODES = 192
 _PANELS = 24
 _TURN = 2.0 * math.pi

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, analytic, inverse, kernel, magnitude
+from .batches import in_chunks
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
-from .peaks import in_chunks
 
 Array = NDArray[np.float64]
 

@@ -9,17 +9,14 @@ the peak angle (envelope theorem); a peak on a breakpoint moves with it, which t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import lru_cache
-from os import cpu_count
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
+from .batches import in_chunks
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .segments import (
@@ -236,26 +233,6 @@ def _find(
                 m = design_motion(zs, zc, z)
                 load = load_on_slider(m, z, stepped[v], 0, complex(angle, slip), outward, loads, piece, shift)
                 gradients[n, i, v] = signal(kind, zs, zc, m, z, load).imag / STEP
-
-
-@lru_cache(maxsize=1)
-def threads() -> ThreadPoolExecutor:
-    """Return the pool that kernels (which release the interpreter lock) share."""
-    return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank")
-
-
-def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -> None:
-    """Call work(begin, end) for consecutive chunks of range(count), on all cores when there are several.
-
-    Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.
-    """
-    if count <= size:
-        if count:
-            work(0, count)
-        return
-    bounds = range(0, count, size)
-    for _ in threads().map(lambda begin: work(begin, min(begin + size, count)), bounds):
-        pass
 
 
 def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:

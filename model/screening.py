@@ -17,11 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, analytic, inlined, inverse, kernel, root
+from .batches import in_chunks
 from .dynamics import smooth_load
 from .loads import AngleTable, PositionTable
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
-from .peaks import ANGLES, in_chunks, watch_of
+from .peaks import ANGLES, watch_of
 from .segments import crowding
 from .signals import Signal, design_motion, signal
 

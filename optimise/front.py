@@ -133,7 +133,8 @@ class ParetoFront:
         rates = self.rates(row)
         sentences = []
         for b, gain in enumerate(self.objectives):
-            step = 1.0 if quantity(gain.quantity).unit.symbol else 0.01
+            span = np.ptp(self.values[:, b]) * quantity(gain.quantity).unit.factor
+            step = 10.0 ** np.floor(np.log10(0.1 * span)) if span > 0.0 else 1.0  # a readable step within the range
             payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
             if payers:
                 costs = " and ".join(_change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from platform import python_version
 
@@ -17,81 +16,17 @@ from ..objectives.analysis import analyse
 from ..objectives.registry import QUANTITIES
 from .elimination import UNKNOWNS, ZERO, Sheet, sheets
 from .evaluation import FEASIBLE, Evaluator, constraints_of
-from .front import ParetoFront, Progress, Status
+from .front import ParetoFront, Status
 from .hypervolume import choose, hypervolume, nondominated, scaling
 from .infeasibility import diagnose
 from .polish import Polished, polish
 from .problem import Problem
-from .sampling import around, first_samples, generator
+from .search import WIDTHS, Archive, Callback, Run, explore, screen_into, volume, zoom
 from .stationarity import Array, multipliers
 
-SAMPLES = 4096
-"""Designs of a round."""
-ZOOMS = 4
-"""Rounds around the front after the first one."""
-WIDTHS = (0.1, 0.05, 0.02, 0.01)
-"""Spread of the zoom rounds in the unit box."""
 STATIONARY = 1e-6
 """Residual, objectives scaled by their range, below which a design counts as stationary."""
 _BATCH = 64
-_CROWD = 6000
-
-Callback = Callable[[Progress], None]
-
-
-@dataclass
-class _Archive:
-    """Non-dominated designs found so far: sheet index, unit-box point (padded to three columns), objectives."""
-
-    sheet: NDArray[np.int64]
-    u: Array
-    values: Array
-    feasible: int = 0
-
-    def add(self, sheet: int, u: Array, values: Array) -> None:
-        """Take in feasible designs and drop what is dominated."""
-        padded = np.zeros((len(u), 3))
-        padded[:, : u.shape[1]] = u
-        self.feasible += len(u)
-        self.sheet = np.concatenate([self.sheet, np.full(len(u), sheet)])
-        self.u = np.concatenate([self.u, padded])
-        self.values = np.concatenate([self.values, values])
-        self.keep(nondominated(self.values))
-
-    def keep(self, rows: NDArray[np.int64]) -> None:
-        """Keep only these rows."""
-        self.sheet, self.u, self.values = self.sheet[rows], self.u[rows], self.values[rows]
-
-
-@dataclass
-class _Run:
-    """State of one search."""
-
-    problem: Problem
-    progress: Callback | None
-    cancelled: Callable[[], bool] | None
-    rounds: int
-    start: float = field(default_factory=time.perf_counter)
-    history: list[Progress] = field(default_factory=list)
-
-    def tell(self, stage: str, evaluators: list[Evaluator], feasible: int, volume: float) -> None:
-        """Record the end of a round."""
-        entry = Progress(
-            stage,
-            len(self.history) + 1,
-            max(self.rounds, len(self.history) + 1),
-            sum(evaluator.evaluations for evaluator in evaluators),
-            feasible,
-            volume,
-            time.perf_counter() - self.start,
-        )
-        self.history.append(entry)
-        if self.progress is not None:
-            self.progress(entry)
-
-    def stop(self) -> bool:
-        """Whether the search is to end after this round."""
-        return self.cancelled is not None and self.cancelled()
 
 
 def solve(
@@ -106,7 +41,7 @@ def solve(
         raise InputError(f"the method must be 'auto'; got {problem.settings.method!r}")
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
     batches = -(-_candidates(problem) // _BATCH)
-    run = _Run(problem, progress, cancelled, 1 + ZOOMS + batches)
+    run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + batches)
     archive = explore(problem, evaluators, run)
     if not len(archive.u):
         if run.stop():
@@ -124,7 +59,7 @@ def solve(
 def _best(problem: Problem) -> float | None:
     """Return the best value (SI) of a problem's only objective, None where nothing is feasible."""
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-    run = _Run(problem, None, None, 1)
+    run = Run(problem, None, None, 1)
     archive = explore(problem, evaluators, run)
     if not len(archive.u):
         return None
@@ -135,63 +70,13 @@ def _best(problem: Problem) -> float | None:
     return float(quantity.evaluate(problem.mechanism, found.dimensions[:1]).values[0])
 
 
-def explore(problem: Problem, evaluators: list[Evaluator], run: _Run | None = None) -> _Archive:
-    """Return the archive of non-dominated screened designs: first samples, then zooms."""
-    run = run or _Run(problem, None, None, 1 + ZOOMS)
-    archive = _Archive(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, len(problem.objectives))))
-    samples = problem.settings.samples or SAMPLES
-    for attempt in range(3):
-        # A small feasible region wants more points before it is given up.
-        for index, evaluator in enumerate(evaluators):
-            count = -(-samples * 8**attempt // len(evaluators))
-            _screen(archive, index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
-        if len(archive.u) or run.stop():
-            break
-    run.tell("sampling", evaluators, archive.feasible, _volume(archive.values))
-    if len(archive.u):
-        zoom(problem, evaluators, archive, run)
-    return archive
-
-
-def zoom(problem: Problem, evaluators: list[Evaluator], archive: _Archive, run: _Run) -> None:
-    """Sample around sparse parts of the front, closer in every round."""
-    samples = problem.settings.samples or SAMPLES
-    for step in range(ZOOMS):
-        if run.stop():
-            return
-        random = generator(problem.settings.seed, 1000, step)
-        if len(archive.u) > _CROWD:
-            archive.keep(np.sort(random.choice(len(archive.u), _CROWD, replace=False)))
-        parents, values, of = archive.u, archive.values, archive.sheet
-        for index, evaluator in enumerate(evaluators):
-            own = of == index
-            if own.any() and evaluator.dimension:
-                count = max(1, int(samples * own.mean()))
-                points = around(parents[own][:, : evaluator.dimension], values[own], count, WIDTHS[step], random)
-                _screen(archive, index, evaluator, points)
-        run.tell("zooming", evaluators, archive.feasible, _volume(archive.values))
-
-
-def _screen(archive: _Archive, index: int, evaluator: Evaluator, u: Array) -> None:
-    _, objectives, violation = evaluator.screen(u)
-    good = violation <= FEASIBLE
-    archive.add(index, u[good], objectives[good])
-
-
-def _volume(values: Array) -> float:
-    if not len(values):
-        return 0.0
-    ideal, span = scaling(values)
-    return hypervolume(values[:: 1 + len(values) // 2000], ideal, span)
-
-
-def _seed(archive: _Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
+def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
     """Put designs found by the feasibility search into the archive, in the coordinates of their sheet."""
     for index, evaluator in enumerate(evaluators):
         sheet = evaluator.sheet
         own = dimensions[np.sign(dimensions[:, 2]) != -sheet.sign]
         if len(own):
-            _screen(archive, index, evaluator, _coordinates(sheet, own))
+            screen_into(archive, index, evaluator, _coordinates(sheet, own))
 
 
 def _coordinates(sheet: Sheet, dimensions: Array) -> Array:
@@ -204,7 +89,7 @@ def _candidates(problem: Problem) -> int:
     return max(16, int(1.3 * problem.settings.designs))
 
 
-def _deliver(problem: Problem, evaluators: list[Evaluator], archive: _Archive, run: _Run) -> ParetoFront:
+def _deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront:
     """Polish candidates, keep what is non-dominated, and choose the designs to deliver."""
     m = len(problem.objectives)
     _, span = scaling(archive.values)
@@ -229,7 +114,7 @@ def _deliver(problem: Problem, evaluators: list[Evaluator], archive: _Archive, r
                 break
             parts.append((index, polish(evaluator, own[begin : begin + _BATCH], span)))
             values = np.concatenate([part.values for _, part in parts]) * span
-            run.tell("polishing", evaluators, archive.feasible, _volume(values[nondominated(values)]))
+            run.tell("polishing", evaluators, archive.feasible, volume(values[nondominated(values)]))
     if run.stop():
         status = "cancelled"
     if not parts:  # cancelled before the first batch: what was screened, as it is
@@ -255,9 +140,9 @@ def _assemble(
     problem: Problem,
     evaluators: list[Evaluator],
     parts: list[tuple[int, Polished]],
-    archive: _Archive,
+    archive: Archive,
     span: Array,
-    run: _Run,
+    run: Run,
     status: Status,
 ) -> ParetoFront:
     m = len(problem.objectives)
@@ -334,7 +219,7 @@ def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
         table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
 
 
-def _empty(problem: Problem, run: _Run, evaluators: list[Evaluator], status: Status, message: str) -> ParetoFront:
+def _empty(problem: Problem, run: Run, evaluators: list[Evaluator], status: Status, message: str) -> ParetoFront:
     m = len(problem.objectives)
     return ParetoFront(
         problem=problem,
