@@ -20,7 +20,7 @@ SAMPLES = 4096
 """Designs of a round."""
 WIDTHS = (0.1, 0.05, 0.02, 0.01)
 """Spread of the zoom rounds, in the unit box."""
-_CROWD = 6000
+_CROWD = 2000  # parents of a round
 
 Callback = Callable[[Progress], None]
 
@@ -106,9 +106,8 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
         if run.stop():
             return
         random = generator(problem.settings.seed, 1000, step)
-        if len(archive.u) > _CROWD:
-            archive.keep(np.sort(random.choice(len(archive.u), _CROWD, replace=False)))
-        parents, values, of = archive.u, archive.values, archive.sheet
+        some = random.choice(len(archive.u), _CROWD, replace=False) if len(archive.u) > _CROWD else slice(None)
+        parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
         for index, evaluator in enumerate(evaluators):
             own = of == index
             if own.any() and evaluator.dimension:
@@ -130,4 +129,4 @@ def volume(values: Array) -> float:
     if not len(values):
         return 0.0
     ideal, span = scaling(values)
-    return hypervolume(values[:: 1 + len(values) // 2000], ideal, span)
+    return hypervolume(values[:: 1 + len(values) // 400], ideal, span)
