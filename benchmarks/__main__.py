@@ -1,0 +1,16 @@
+"""Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder."""
+
+from . import evaluation, peak_accuracy, search, startup
+from .report import machine, show
+
+
+def main() -> None:
+    """Measure and print."""
+    print(machine())
+    show("Evaluation", [*evaluation.speed(), *evaluation.accuracy(), *evaluation.memory()])
+    show("Search", [row for job in ("feeder", "sieve") for row in search.compare(f"runs/{job}.toml")])
+    show("Commands", startup.commands())
+    show("Greatest relative error of peak torque, 1,000 random linkages", peak_accuracy.accuracy())
+
+
+main()

@@ -1,0 +1,89 @@
+"""How fast four objectives with gradients are evaluated, against NumPy on the same angles; how much memory it takes."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from time import perf_counter
+
+import numpy as np
+
+from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
+from slidercrank.model.peaks import find_peaks
+from slidercrank.model.screening import screen
+from slidercrank.model.signals import Signal
+
+from . import numpy_peer
+from .machines import MECHANISM, Array, random_designs
+from .report import Row
+
+_SIGNALS = (Signal.TORQUE, Signal.POSITION_ERROR)
+_CHUNKS = (32, 64, 128, 256, 512)
+
+
+def evaluate(designs: Array, *, angles: int, crowd: bool) -> tuple[Array, Array]:
+    """Return values (n, 4) and gradients (n, 4, 3) of the four objectives."""
+    ratio, ratio_slope = evaluate_closed_form(ClosedForm.TIME_RATIO, designs, gradients=True)
+    angle, angle_slope = evaluate_closed_form(ClosedForm.TRANSMISSION_ANGLE, designs, gradients=True)
+    torque, error = screen(MECHANISM, _SIGNALS, designs, gradients=True, angles=angles, crowd=crowd)
+    slopes = (ratio_slope, torque.gradients, angle_slope, error.gradients)
+    return (
+        np.stack([ratio, torque.values, angle, error.values], axis=1),
+        np.stack([slope for slope in slopes if slope is not None], axis=1),
+    )
+
+
+def _seconds(work: object, *args: object, **options: object) -> float:
+    begin = perf_counter()
+    work(*args, **options)  # type: ignore[operator]
+    return perf_counter() - begin
+
+
+def speed(count: int = 100_000, pairs: int = 7) -> list[Row]:
+    """Return the ratios of times on 360 equidistant angles and with the default crowded ones, pair by pair."""
+    designs = random_designs(count)
+    part = designs[: count // 10]  # the peer is timed on a tenth; it is linear in the number of designs
+    evaluate(designs, angles=360, crowd=False)
+    chunk = min(_CHUNKS, key=lambda size: _seconds(numpy_peer.evaluate, part, angles=360, chunk=size))
+    same, default = [], []
+    for _ in range(pairs):
+        peer = 10.0 * _seconds(numpy_peer.evaluate, part, angles=360, chunk=chunk)
+        same.append(peer / _seconds(evaluate, designs, angles=360, crowd=False))
+        default.append(peer / _seconds(evaluate, designs, angles=64, crowd=True))
+    return [
+        Row(f"values + gradients, 4 objectives, 360 angles: NumPy (chunks of {chunk}) / ours", same, at_least=20.0),
+        Row("the same, ours on the default 64 crowded angles", default),
+    ]
+
+
+def accuracy(count: int = 2_000) -> list[Row]:
+    """Return the greatest relative errors of the peak torque, reference: every local maximum refined from 512 angles."""
+    designs = random_designs(count, seed=2)
+    exact = find_peaks(MECHANISM, Signal.TORQUE, designs, kept=1, angles=512).values[:, 0]
+    peer, _ = numpy_peer.evaluate(designs, angles=360, chunk=128)
+    ours, _ = evaluate(designs, angles=64, crowd=True)
+    return [
+        Row(
+            "greatest relative error of peak torque: NumPy, 360 angles",
+            [float(np.max(np.abs(peer[:, 1] / exact - 1)))],
+        ),
+        Row("the same: ours, 64 crowded angles", [float(np.max(np.abs(ours[:, 1] / exact - 1)))], at_most=1e-9),
+    ]
+
+
+def _worst(values: Array, exact: Array) -> float:
+    return float(np.max(np.abs(values / exact - 1.0)))
+
+
+def memory() -> list[Row]:
+    """Return the peak memory of a process that evaluates a million designs, MB."""
+    command = [sys.executable, "-c", "from benchmarks.evaluation import million; million()"]
+    finished = subprocess.run(command, check=True, capture_output=True, text=True)
+    return [Row("peak memory of 1,000,000 designs with gradients, MB", [float(finished.stdout)], at_most=1000.0)]
+
+
+def million() -> None:
+    """Evaluate a million designs and print the process's peak memory, MB."""
+    evaluate(random_designs(1_000_000), angles=64, crowd=True)
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)

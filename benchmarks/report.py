@@ -1,0 +1,54 @@
+"""One measured figure, its limit, and the table of all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+from rich.console import Console
+from rich.table import Table
+
+
+@dataclass(frozen=True)
+class Row:
+    """What was measured, several times, and the limit that its median must keep."""
+
+    what: str
+    figures: list[float]
+    at_least: float | None = None
+    at_most: float | None = None
+
+    def kept(self) -> bool | None:
+        """Whether the median keeps the limit; None without one."""
+        if self.at_least is not None:
+            return median(self.figures) >= self.at_least
+        if self.at_most is not None:
+            return median(self.figures) <= self.at_most
+        return None
+
+    def cells(self) -> tuple[str, str, str, str, str]:
+        """Return what, median, range, limit and verdict."""
+        limit = "" if self.at_least is None else f">= {self.at_least:g}"
+        limit = limit if self.at_most is None else f"<= {self.at_most:g}"
+        verdict = {None: "", True: "kept", False: "MISSED"}[self.kept()]
+        spread = f"{min(self.figures):.3g} - {max(self.figures):.3g}" if len(self.figures) > 1 else ""
+        return self.what, f"{median(self.figures):.4g}", spread, limit, verdict
+
+
+def machine() -> str:
+    """Return the processor's name and the number of cores."""
+    cpu = Path("/proc/cpuinfo")
+    lines = cpu.read_text().splitlines() if cpu.exists() else []
+    name = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), "unknown processor")
+    return f"{os.cpu_count()} cores, {name}"
+
+
+def show(title: str, rows: Iterable[Row]) -> None:
+    """Print a table of figures."""
+    table = Table("figure", "median", "least - greatest", "limit", "", title=title, title_justify="left")
+    for row in rows:
+        table.add_row(*row.cells())
+    Console(width=140).print(table)
