@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -107,12 +107,10 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> 
     best: tuple[tuple[int, int], tuple[str, ...], tuple[Rule, ...]] | None = None
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
-            steps = _propagate(set(free) | set(fixed), rules)
-            if steps is None:
-                continue
-            score = (len(wanted) - len(_fulfilled(steps)), size)
-            if best is None or score < best[0]:
-                best = (score, free, steps)
+            for steps in _ways(set(free) | set(fixed), rules):
+                score = (len(wanted) - len(_fulfilled(steps)), size)
+                if best is None or score < best[0]:
+                    best = (score, free, steps)
     assert best is not None  # all unknowns free always works
     _, free, steps = best
     used = _fulfilled(steps)
@@ -128,23 +126,18 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> 
     )
 
 
-def _propagate(known: set[str], rules: list[Rule]) -> tuple[Rule, ...] | None:
-    """Apply rules until all unknowns are known; None if some stay unknown.
+def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
+    """Yield every order of rules that gives the unknowns which are not known yet.
 
     Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
     them alone, which completes the pair.
     """
-    steps: list[Rule] = []
-    while len(known) < len(UNKNOWNS):
-        spent = {step.origin for step in steps}
-        for rule in rules:
-            if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
-                steps.append(rule)
-                known = known | {rule.target}
-                break
-        else:
-            return None
-    return tuple(steps)
+    if len(known) == len(UNKNOWNS):
+        yield steps
+    spent = {step.origin for step in steps}
+    for rule in rules:
+        if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
+            yield from _ways(known | {rule.target}, rules, (*steps, rule))
 
 
 def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:

@@ -15,6 +15,7 @@ from .problem import Constraint, Objective, Problem
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
+_HUGE = 1e100
 LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
 """Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
 
@@ -71,15 +72,16 @@ class Evaluator:
         remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
         self.constraints = tuple(sorted(remaining, key=lambda c: _costly(QUANTITIES[c.quantity])))
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
+        self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
-    def screen(self, u: Array) -> tuple[Array, Array, Array]:
+    def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
         """Return dimensions (n, 3), minimised objectives (n, m) and violation (n,) of points of the unit box.
 
         The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
-        violate a constraint have NaN objectives. Peaks are screened (see `model.screening`).
+        violate a constraint by more than `band` have NaN objectives. Peaks are screened (see `model.screening`).
         """
         dimensions = self.sheet.dimensions(u)
         violation = self._geometry_violation(dimensions)
@@ -87,12 +89,12 @@ class Evaluator:
         # What is out of reach already needs no cycle computed.
         for costly in (False, True):
             constraints = [c for c in self.constraints if _costly(QUANTITIES[c.quantity]) == costly]
-            rows = np.flatnonzero(violation <= FEASIBLE if costly else np.isfinite(violation))
+            rows = np.flatnonzero(violation <= band + FEASIBLE if costly else np.isfinite(violation))
             if constraints and len(rows):
                 found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
                 for constraint, values in zip(constraints, found, strict=True):
                     violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
-        rows = np.flatnonzero(violation <= FEASIBLE)
+        rows = np.flatnonzero(violation <= band + FEASIBLE)
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
         if len(rows):
             found = self._quick([objective.quantity for objective in self.problem.objectives], dimensions[rows])
@@ -153,7 +155,11 @@ class Evaluator:
         def pieces(name: str) -> tuple[Array, Array, Array]:
             if name not in cache:
                 found = QUANTITIES[name].pieces(self.mechanism, dimensions)
-                cache[name] = (found.values, np.einsum("npd,ndk->npk", found.gradients, jacobian), found.labels)
+                # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
+                bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
+                values = np.where(bounded, found.values, np.copysign(np.inf, found.values))
+                slopes = np.where(bounded[:, :, None], found.gradients, 0.0)
+                cache[name] = (values, np.einsum("npd,ndk->npk", slopes, jacobian), found.labels)
             return cache[name]
 
         parts = []
@@ -208,9 +214,11 @@ def _objective_rows(
     if objective.sense == "minimise":
         return [(values, slopes, labels)]
     # A greatest-of is maximised through its highest piece: there the pieces do not tie to hold it up.
-    top = (-values[:, :1], -slopes[:, :1], labels[:, :1])
+    highest = _highest(values, slopes, labels)
+    top = (-highest[0], -highest[1], highest[2])
     if objective.target is None:
-        return [top]
+        # What is infinite is no optimum but out of reach.
+        return [(np.where(np.isfinite(top[0]), top[0], np.inf), top[1], top[2])]
     return [(values - objective.target, slopes, labels), (top[0] + objective.target, top[1], top[2])]
 
 
@@ -223,8 +231,19 @@ def _constraint_rows(
         rows.append(((values - constraint.upper) / scale, slopes / scale, labels))
     if constraint.lower is not None:
         scale = _scale(constraint.lower)
-        rows.append(((constraint.lower - values[:, :1]) / scale, -slopes[:, :1] / scale, labels[:, :1]))
+        highest = _highest(values, slopes, labels)
+        rows.append(((constraint.lower - highest[0]) / scale, -highest[1] / scale, highest[2]))
     return rows
+
+
+def _highest(values: Array, slopes: Array, labels: Array) -> tuple[Array, Array, Array]:
+    """Return the highest piece of each design: peaks come highest first, closed forms in any order."""
+    first = np.argmax(values, axis=1)[:, None]
+    return (
+        np.take_along_axis(values, first, axis=1),
+        np.take_along_axis(slopes, first[:, :, None], axis=1),
+        np.take_along_axis(labels, first, axis=1),
+    )
 
 
 def _stack(parts: list[tuple[int, Array, Array, Array]], n: int, k: int) -> Rows:

@@ -4,16 +4,13 @@ Each design solves Benson's problem from where it stands, min sum_i f_i with no 
 held, whose solutions are Pareto-optimal (H. P. Benson, "Existence of efficient solutions for vector maximization
 problems", JOTA 26(4), 1978). Merely mutual non-dominance, or a vanishing convex combination of some gradients, is not
 enough: where two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
-With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient a, a step solves
 
-    min  sum_i (t_i + t_i^2 / 2) + sum_i (K v_i + K^2 v_i^2 / 2) + (C w + C^2 w^2 / 2) + d' B d / 2   over d, t, v, w
-    subject to  p + g d <= F_i + t_i  (each piece p of objective i),   t_i <= v_i,   0 <= v_i,
-                c + a d <= w,   0 <= w,   0 <= u + d <= 1,
-
-where F_i is the objective's present value (the greatest of its pieces) and B the Hessian of the Lagrangian, taken by
-differences of exact gradients and made positive definite. v and w are exact penalties: where an objective and a
-constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution. Peaks that tie
-enter as separate pieces: a kink is a minimax, not noise. Designs advance together, so that every evaluation is a batch.
+`programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with the
+multipliers that the programme itself gives, made convex across what holds the step before anything else. A full step
+that bends out of what it is to hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
+Optimization", 2006, ch. 18.3): otherwise designs creep along curved constraints. A design that starts outside the
+constraints is first moved onto them the shortest way. Peaks that tie enter as separate pieces: a kink is a minimax, not
+noise. Designs advance together, so that every evaluation is a batch.
 """
 
 from __future__ import annotations
@@ -23,23 +20,24 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from .evaluation import Rows
+from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
+from .programme import LOSS, VIOLATION, Step, solve_step
 from .stationarity import Array, multipliers, strict_multipliers
 
-ITERATIONS = 60
-ACTIVE = 1e-8
-"""Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
+ITERATIONS = 100
 CONVERGED = 1e-9
 """Residual of Benson's problem at which a design is done."""
 _GRAIN = 1e-12  # losses and violations below it are rounding
-_STALLED = 1e-9  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
+_TIGHT = 1e-11  # the same as ACTIVE while a design may still move
+_NOISE = 1e-15  # of the objectives: rounding of the merit
+_STALLED = 1e-11  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
-_LOSS = 1e3  # K: what an objective's loss weighs against another's gain, ranges scaled to one
-_VIOLATION = 1e4  # C: the same for a constraint's relative violation
-_HALVINGS = 16
+_HEAVIEST = 1e8  # largest penalty of a violation
+_SHORTEST = 1e-13  # radius at which a design's polish ends
+_RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 
 
 class Evaluates(Protocol):
@@ -81,9 +79,12 @@ def polish(
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
-    scale: range of each objective over the front. chosen: improve these objectives only (all by default).
+    scale: range of each objective over the front. chosen: improve these objectives only (all by default). A design that
+    was feasible once is feasible in the end.
     """
     batch = _Batch(evaluator, start, scale, chosen)
+    if iterations:
+        batch.restore()
     for _ in range(iterations):
         if not batch.advance():
             break
@@ -99,52 +100,113 @@ class _Batch:
         self.chosen = tuple(range(len(scale))) if chosen is None else chosen
         self.u = np.clip(start, 0.0, 1.0)
         self.goals, self.limits = self._evaluate(self.u)
-        self.open = np.full(len(start), start.shape[1] > 0)
-        self.stalls = np.zeros(len(start), dtype=np.int64)
-        self.radius = np.full(len(start), 0.25)
+        n, k = start.shape
+        self.open = np.full(n, k > 0)
+        self.stalls = np.zeros(n, dtype=np.int64)
+        self.radius = np.full(n, 0.25)
+        self.moved = np.ones(n, dtype=bool)
+        self.weight = np.full(n, VIOLATION)
+        self.hessians = np.tile(np.eye(k), (n, 1, 1))
+        self.held = greatest(self.goals, len(scale))
+        self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
+
+    def restore(self) -> None:
+        """Move designs that violate constraints onto them, the shortest way."""
+        for _ in range(_RESTORING):
+            outside = np.flatnonzero(self.open & ~self._feasible())
+            if not len(outside):
+                break
+            steps = [self._programme(row, ()).move for row in outside.tolist()]
+            self._search(outside, np.array(steps), (), correct=False)
+        self.open[:] = self.u.shape[1] > 0
+        self.moved[:] = True
+        self.radius[:] = 0.25
+        self.stalls[:] = 0
+        self.held = greatest(self.goals, len(self.scale))
 
     def advance(self) -> bool:
         """Take one step with every open design; return whether any was open."""
-        weights: dict[int, tuple[Array, Array]] = {}
-        for row in np.flatnonzero(self.open).tolist():
-            residual, weights[row] = _state(self.u[row], _at(self.goals, row), _at(self.limits, row), self.chosen)
-            if residual < CONVERGED and np.max(self.limits.values[row], initial=0.0) <= _GRAIN:
+        for row in np.flatnonzero(self.open & self.moved).tolist():
+            if np.max(self.limits.values[row], initial=0.0) <= _GRAIN and self._residual(row) < CONVERGED:
                 self.open[row] = False
-                del weights[row]
-        if not weights:
+        rows = np.flatnonzero(self.open)
+        if not len(rows):
             return False
-        rows = np.array(list(weights))
-        hessians = self._hessians(rows, list(weights.values()))
-        steps = np.array(
-            [
-                _step(self.u[row], _at(self.goals, row), _at(self.limits, row), hessian, self.radius[row], self.chosen)
-                for row, hessian in zip(rows.tolist(), hessians, strict=True)
-            ]
-        )
-        self._search(rows, steps)
+        fresh = rows[self.moved[rows]]
+        if len(fresh):
+            # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one serve.
+            drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
+            self.hessians[fresh] = self._hessians(fresh, drafts)
+        steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
+        self._search(rows, np.array(steps), self.chosen, correct=True)
+        self.open &= self.stalls < 2
+        inside = rows[self._feasible()[rows]]
+        self.safe[inside] = self.u[inside]
+        self.held[inside] = greatest(self.goals, len(self.scale))[inside]
         return True
 
     def result(self) -> Polished:
         """Return where the designs stand."""
         n, m = len(self.u), len(self.scale)
+        lost = np.flatnonzero(~self._feasible() & np.isfinite(self.safe).all(axis=1))
+        if len(lost):
+            goals, limits = self._evaluate(self.safe[lost])
+            for source, row in enumerate(lost.tolist()):
+                self._put(row, self.safe[row], goals, limits, source)
         residual = np.zeros(n)
         pieces, active = [], []
         for row in range(n):
-            here, edge = _at(self.goals, row), _at(self.limits, row)
-            columns = _active_pieces(here, tuple(range(m)))
+            here, edge = alone(self.goals, row), alone(self.limits, row)
+            columns = active_pieces(here, tuple(range(m)))
             pieces.append((here.owner[columns].astype(np.float64), here.gradients[columns]))
-            active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], _box(self.u[row])]))
-            wanted = _active_pieces(here, self.chosen)
+            active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], box(self.u[row])]))
+            wanted = active_pieces(here, self.chosen)
             residual[row], _, _ = multipliers(here.gradients[wanted], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
-        return Polished(self.u, _greatest(self.goals, m), violation, residual, tuple(pieces), tuple(active))
+        return Polished(self.u, greatest(self.goals, m), violation, residual, tuple(pieces), tuple(active))
+
+    def _feasible(self) -> NDArray[np.bool_]:
+        return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= _GRAIN)
 
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
         goals, limits = self.evaluator.exact(u)
         factor = 1.0 / self.scale[goals.owner]
         return Rows(goals.values * factor, goals.gradients * factor[:, None], goals.labels, goals.owner), limits
 
-    def _hessians(self, rows: NDArray[np.int64], weights: list[tuple[Array, Array]]) -> Array:
+    def _put(self, row: int, u: Array, goals: Rows, limits: Rows, source: int) -> None:
+        self.u[row] = u
+        self.goals.put(row, goals, source)
+        self.limits.put(row, limits, source)
+
+    def _residual(self, row: int) -> float:
+        """Return the residual of Benson's problem; what is not quite active does not count, so that it becomes so."""
+        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        pieces = active_pieces(goals, self.chosen, within=_TIGHT)
+        edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], within=_TIGHT)])
+        return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges)[0]
+
+    def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
+        """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
+        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        while True:
+            step = self._solve(row, goals, limits, chosen)
+            if step.limits.sum() < 0.5 * self.weight[row] or self.weight[row] >= _HEAVIEST:
+                return step
+            self.weight[row] *= 10.0
+
+    def _solve(self, row: int, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Step:
+        return solve_step(
+            self.u[row],
+            goals,
+            limits,
+            self.hessians[row] if chosen else np.eye(self.u.shape[1]),
+            radius=self.radius[row],
+            chosen=chosen,
+            tops=self.held[row],
+            violation=self.weight[row],
+        )
+
+    def _hessians(self, rows: NDArray[np.int64], drafts: list[Step]) -> Array:
         """Return the Hessians (n, k, k) of the Lagrangians with fixed multipliers, made positive definite."""
         u = self.u[rows]
         n, k = u.shape
@@ -155,151 +217,84 @@ class _Batch:
             moved[:, column] += step
             moved = np.where(self.evaluator.valid(moved)[:, None], moved, u)
             goals, limits = self._evaluate(moved)
-            for i, (row, (goal_weight, limit_weight)) in enumerate(zip(rows.tolist(), weights, strict=True)):
-                change = _difference(_at(self.goals, row), _at(goals, i), goal_weight)
-                change = change + _difference(_at(self.limits, row), _at(limits, i), limit_weight)
+            for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
+                change = difference(alone(self.goals, row), alone(goals, i), np.minimum(draft.goals, LOSS))
+                change = change + difference(
+                    alone(self.limits, row), alone(limits, i), np.minimum(draft.limits, _HEAVIEST)
+                )
                 hessians[i, column] = change / step[i]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
-        hessians[~np.isfinite(hessians).all(axis=(1, 2))] = np.eye(k)
-        values, vectors = np.linalg.eigh(hessians)
-        return np.asarray(np.einsum("nij,nj,nkj->nik", vectors, np.clip(np.abs(values), _CURVATURE, 1e8), vectors))
+        return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
-    def _search(self, rows: NDArray[np.int64], steps: Array) -> None:
-        """Halve steps until the merit goes down: sum of losses, plus penalised greatest loss and violation."""
-        m, chosen = len(self.scale), list(self.chosen)
-        before = _greatest(self.goals, m)
+    def _search(self, rows: NDArray[np.int64], steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+        """Take the steps that lower the merit, corrected where they do not as they are; shrink the radius of the rest.
+
+        The merit is the sum of the objectives, plus penalised losses and greatest violation.
+        """
+        m, columns = len(self.scale), list(chosen)
+        before, held = greatest(self.goals, m)[:, columns], self.held[:, columns]
         violation = _beyond(self.limits.values.max(axis=1, initial=0.0))
+        self.moved[rows] = False
         pending = np.arange(len(rows))
-        length = 1.0
-        for _ in range(_HALVINGS):
+        steps = steps.copy()
+        for corrected in (False, True)[: 1 + correct]:
             at = rows[pending]
-            trial = np.clip(self.u[at] + length * steps[pending], 0.0, 1.0)
+            trial = np.clip(self.u[at] + steps[pending], 0.0, 1.0)
             valid = self.evaluator.valid(trial)
             trial = np.where(valid[:, None], trial, self.u[at])
             goals, limits = self._evaluate(trial)
-            change = (_greatest(goals, m) - before[at])[:, chosen]
+            after = greatest(goals, m)[:, columns]
+            loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
             worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
-            merit = change.sum(axis=1) + _LOSS * _beyond(change).sum(axis=1) + _VIOLATION * worse
-            moved = np.abs(trial - self.u[at]).max(axis=1)
-            accepted = valid & (merit < 0.0)
+            merit = (after - before[at] + LOSS * loss).sum(axis=1) + self.weight[at] * worse
+            distance = np.abs(trial - self.u[at]).max(axis=1)
+            # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
+            accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))
             for i in np.flatnonzero(accepted).tolist():
                 row = int(at[i])
-                self.u[row] = trial[i]
-                self.goals.put(row, goals, i)
-                self.limits.put(row, limits, i)
-                full = length == 1.0
-                self.radius[row] = min(0.5, max(self.radius[row] * full, 2.0 * moved[i], 1e-6))
+                self._put(row, trial[i], goals, limits, i)
+                self.moved[row] = True
+                if distance[i] > 0.5 * self.radius[row]:
+                    self.radius[row] = min(0.5, 2.0 * self.radius[row])
                 self.stalls[row] = self.stalls[row] + 1 if merit[i] > -_STALLED else 0
+            if correct and not corrected:
+                for i in np.flatnonzero(~accepted & valid).tolist():
+                    steps[pending[i]] = self._corrected(
+                        int(at[i]), steps[pending[i]], alone(goals, i), alone(limits, i), chosen
+                    )
             pending = pending[~accepted]
             if not len(pending):
                 break
-            length *= 0.5
-        # Nothing along the step helps any more: rounding, or a kink that was not seen; the residual will tell.
-        self.open[rows[pending]] = False
-        self.open &= self.stalls < 2
+        lost = rows[pending]
+        # Nothing along short steps helps any more: rounding, or a kink that was not seen; the residual will tell.
+        size = np.abs(steps[pending]).max(axis=1, initial=0.0)
+        self.radius[lost] = 0.25 * np.minimum(self.radius[lost], size)
+        self.open[lost] &= self.radius[lost] > _SHORTEST
+
+    def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
+        """Return the step that also holds what the first one bends out of; rows are those at its end."""
+        goals, limits = [
+            Rows(bent(here, there, step), here.gradients, here.labels, here.owner)
+            for here, there in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
+        ]
+        return self._solve(row, goals, limits, chosen).move
 
 
-def _greatest(rows: Rows, count: int) -> Array:
-    """Return the greatest piece of each owner, (n, count)."""
-    return np.stack([rows.values[:, rows.owner == owner].max(axis=1) for owner in range(count)], axis=1)
-
-
-def _at(rows: Rows, row: int) -> Rows:
-    return Rows(rows.values[row], rows.gradients[row], rows.labels[row], rows.owner)
-
-
-def _box(u: Array) -> Array:
-    """Return the gradients of the box's active bounds."""
-    edge = np.eye(len(u))
-    return np.concatenate([-edge[u < ACTIVE], edge[u > 1.0 - ACTIVE]])
-
-
-def _active_pieces(goals: Rows, chosen: tuple[int, ...]) -> NDArray[np.int64]:
-    """Return the pieces that tie for the greatest of each chosen objective."""
-    pieces = []
-    for owner in chosen:
-        columns = np.flatnonzero(goals.owner == owner)
-        values = goals.values[columns]
-        pieces.append(columns[values >= values.max() - ACTIVE])
-    return np.concatenate(pieces)
-
-
-def _state(u: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> tuple[float, tuple[Array, Array]]:
-    """Return residual of Benson's problem and multipliers of all goal rows and all limit rows."""
-    pieces = _active_pieces(goals, chosen)
-    near = np.flatnonzero(limits.values > -ACTIVE)
-    edges = np.concatenate([limits.gradients[near], _box(u)])
-    residual, convex, pushing = strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges)
-    weight, push = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
-    weight[pieces], push[near] = np.minimum(convex, _LOSS), np.minimum(pushing[: len(near)], _VIOLATION)
-    return residual, (weight, push)
-
-
-def _difference(here: Rows, there: Rows, weight: Array) -> Array:
-    """Return the weighted change of gradients, each piece matched by its label: peaks may swap their order."""
-    total = np.zeros(here.gradients.shape[1])
-    for index in np.flatnonzero(weight > 0.0):
-        same = np.flatnonzero((here.owner == here.owner[index]) & np.isfinite(there.values))
-        apart = np.abs(there.labels[same] - here.labels[index])
-        apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
-        # Rows of one owner with equal labels (lower and upper bound) keep their place.
-        nearest = same[np.lexsort((np.abs(same - index), np.round(apart, 3)))[0]]
-        total = total + weight[index] * (there.gradients[nearest] - here.gradients[index])
-    return total
-
-
-def _step(u: Array, goals: Rows, limits: Rows, hessian: Array, radius: float, chosen: tuple[int, ...]) -> Array:
-    """Solve the quadratic programme as a least-distance problem by non-negative least squares.
-
-    With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) it reads: min |x|^2 / 2 subject to G x >= h (Lawson and
-    Hanson, "Solving Least Squares Problems", 1974, ch. 23.4).
-    """
-    k, count = len(u), len(chosen)
-    size = k + 2 * count + 1
-    low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
-    blocks, bounds = [], []  # rows a z <= b for z = (d, t, v, w)
-
-    def demand(bound: Array, *parts: tuple[int, Array]) -> None:
-        block = np.zeros((len(bound), size))
-        for column, part in parts:
-            block[:, column : column + part.shape[1]] = part
-        blocks.append(block)
-        bounds.append(bound)
-
-    for place, owner in enumerate(chosen):
-        columns = np.flatnonzero((goals.owner == owner) & np.isfinite(goals.values))
-        top = goals.values[columns].max()
-        # Pieces far below cannot become the greatest within the radius; dropping them keeps the problem small.
-        columns = columns[goals.values[columns] > top - 1.0]
-        demand(top - goals.values[columns], (0, goals.gradients[columns]), (k + place, -np.ones((len(columns), 1))))
-    one, none = np.eye(count), np.zeros(count)
-    demand(none, (k, one), (k + count, -one))
-    demand(none, (k + count, -one))
-    near = np.flatnonzero(np.isfinite(limits.values))
-    demand(-limits.values[near], (0, limits.gradients[near]), (size - 1, -np.ones((len(near), 1))))
-    demand(np.zeros(1), (size - 1, -np.ones((1, 1))))
-    demand(high, (0, np.eye(k)))
-    demand(-low, (0, -np.eye(k)))
-    rows = np.concatenate(blocks)
-    scale = np.zeros((size, size))  # z = scale x + shift
-    scale[:k, :k] = np.linalg.inv(np.linalg.cholesky(hessian)).T
-    weights = np.concatenate([np.ones(count), np.full(count, _LOSS), [_VIOLATION]])
-    scale[k:, k:] = np.diag(1.0 / weights)
-    shift = np.concatenate([np.zeros(k), -1.0 / weights])
-    g, h = -rows @ scale, rows @ shift - np.concatenate(bounds)
-    lengths = np.linalg.norm(g, axis=1)
-    lengths[lengths == 0.0] = 1.0
-    matrix = np.vstack([(g / lengths[:, None]).T, h / lengths])
-    target = np.zeros(size + 1)
-    target[-1] = 1.0
-    try:
-        dual, _ = nnls(matrix, target, maxiter=50 * matrix.shape[1])
-    except RuntimeError:
-        return np.zeros(k)
-    rest = matrix @ dual - target
-    if rest[-1] == 0.0:
-        return np.zeros(k)
-    return np.asarray(np.clip((scale @ (-rest[:-1] / rest[-1]))[:k], low, high))
+def _convex(hessian: Array, normals: Array) -> Array:
+    """Return a positive definite matrix that agrees with the Hessian along what holds the step, if that can be."""
+    if not np.isfinite(hessian).all():
+        return np.eye(len(hessian))
+    values, vectors = np.linalg.eigh(hessian)
+    lengths = np.linalg.norm(normals, axis=1)
+    if values[0] < _CURVATURE and lengths.any():
+        _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
+        across = directions[: len(sizes)][sizes > 1e-6]
+        for weight in (1.0, 10.0, 100.0):
+            curved = hessian + weight * np.abs(values).max() * across.T @ across
+            if np.linalg.eigvalsh(curved)[0] >= _CURVATURE:
+                break
+        values, vectors = np.linalg.eigh(curved)
+    return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
 
 
 def _beyond(excess: Array) -> Array:

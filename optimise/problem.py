@@ -85,6 +85,12 @@ class Settings:
     samples: int | None = None
     seed: int = 1
 
+    def __post_init__(self) -> None:
+        for name, least in (("designs", 1), ("samples", 1), ("seed", 0)):
+            value = getattr(self, name)
+            if value is not None and value < least:
+                raise InputError(f"{name} must be at least {least}; got {value}")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
@@ -113,5 +119,12 @@ class Problem:
         for name in constrained:
             if constrained.count(name) > 1:
                 raise InputError(f"the constraint on {name} is given twice; merge the two")
+        if self.offset.lower <= 0.0 <= self.offset.upper:
+            for objective in self.objectives:
+                if objective.quantity == "rod_to_offset" and objective.sense == "maximise":
+                    raise InputError(
+                        "rod_to_offset grows without bound as the offset goes to zero, so it cannot be maximised; "
+                        f"got an offset from {self.offset.lower:g} to {self.offset.upper:g} m; keep the range off zero"
+                    )
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,33 +16,58 @@ from .problem import Problem
 from .sampling import around, first_samples, generator
 from .stationarity import Array
 
+FIRST = 16384
+"""Designs of the first round, everywhere."""
 SAMPLES = 4096
-"""Designs of a round."""
+"""Designs of each later round."""
 WIDTHS = (0.1, 0.05, 0.02, 0.01)
 """Spread of the zoom rounds, in the unit box."""
-_CROWD = 2000  # parents of a round
+BANDS = (0.0, 0.01, 0.04, 0.16)
+"""Relative violation that samples may have, in turn, until enough are found; the polish removes it. The first is left
+out where equalities remain: no sample meets them."""
+ENOUGH = 32
+"""Samples that are enough to zoom on."""
+_CROWD = 6000
+_BEST = 1000  # designs kept of a single objective
+_SHOWN = 400  # designs of which the hypervolume is told
 
 Callback = Callable[[Progress], None]
 
 
 @dataclass
 class Archive:
-    """Non-dominated designs found so far: sheet index, unit-box point (padded to three columns), objectives."""
+    """Non-dominated designs found so far: sheet index, unit-box point (padded to three columns), objectives.
+
+    band: by how much they may violate constraints, relative. feasible: designs seen that meet every constraint.
+    """
 
     sheet: NDArray[np.int64]
     u: Array
     values: Array
+    band: float = 0.0
     feasible: int = 0
 
-    def add(self, sheet: int, u: Array, values: Array) -> None:
-        """Take in feasible designs and drop what is dominated."""
-        padded = np.zeros((len(u), 3))
-        padded[:, : u.shape[1]] = u
-        self.feasible += len(u)
-        self.sheet = np.concatenate([self.sheet, np.full(len(u), sheet)])
+    @classmethod
+    def empty(cls, objectives: int) -> Archive:
+        """Return an archive without designs."""
+        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)))
+
+    def __len__(self) -> int:
+        return len(self.u)
+
+    def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
+        """Evaluate points (n, k) of a sheet, take in those that are feasible within the band, return how many."""
+        _, values, violation = evaluator.screen(u, band=self.band)
+        good = violation <= self.band + FEASIBLE
+        self.feasible += int((violation <= FEASIBLE).sum())
+        padded = np.zeros((int(good.sum()), 3))
+        padded[:, : u.shape[1]] = u[good]
+        self.sheet = np.concatenate([self.sheet, np.full(len(padded), index)])
         self.u = np.concatenate([self.u, padded])
-        self.values = np.concatenate([self.values, values])
-        self.keep(nondominated(self.values))
+        self.values = np.concatenate([self.values, values[good]])
+        alone = self.values.shape[1] == 1
+        self.keep(np.argsort(self.values[:, 0], kind="stable")[:_BEST] if alone else nondominated(self.values))
+        return len(padded)
 
     def keep(self, rows: NDArray[np.int64]) -> None:
         """Keep only these rows."""
@@ -51,29 +76,44 @@ class Archive:
 
 @dataclass
 class Run:
-    """State of one search."""
+    """What a search tells while it runs: its rounds, and the fronts that they ended with."""
 
     problem: Problem
     progress: Callback | None
     cancelled: Callable[[], bool] | None
     rounds: int
     start: float = field(default_factory=time.perf_counter)
-    history: list[Progress] = field(default_factory=list)
+    told: list[Progress] = field(default_factory=list)
+    fronts: list[Array] = field(default_factory=list)
 
-    def tell(self, stage: str, evaluators: list[Evaluator], feasible: int, volume: float) -> None:
-        """Record the end of a round."""
+    def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive, *more: Array) -> None:
+        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive."""
+        values = np.concatenate([archive.values, *more])
+        values = values[nondominated(values)]
+        self.fronts.append(values[:: 1 + len(values) // _SHOWN])
         entry = Progress(
             stage,
-            len(self.history) + 1,
-            max(self.rounds, len(self.history) + 1),
+            len(self.told) + 1,
+            max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in evaluators),
-            feasible,
-            volume,
-            time.perf_counter() - self.start,
+            archive.feasible,
+            hypervolume(self.fronts[-1], *scaling(values)) if len(values) else 0.0,
+            self.seconds(),
         )
-        self.history.append(entry)
+        self.told.append(entry)
         if self.progress is not None:
             self.progress(entry)
+
+    def history(self, ideal: Array, span: Array) -> tuple[Progress, ...]:
+        """Return the rounds with hypervolumes of one scaling, so that they compare."""
+        return tuple(
+            replace(entry, hypervolume=hypervolume(front, ideal, span))
+            for entry, front in zip(self.told, self.fronts, strict=True)
+        )
+
+    def seconds(self) -> float:
+        """Return the time since the start."""
+        return time.perf_counter() - self.start
 
     def stop(self) -> bool:
         """Whether the search is to end after this round."""
@@ -83,18 +123,21 @@ class Run:
 def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
     """Return the archive of non-dominated screened designs: first samples, then zooms."""
     run = run or Run(problem, None, None, 1 + len(WIDTHS))
-    archive = Archive(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, len(problem.objectives))))
-    samples = problem.settings.samples or SAMPLES
-    for attempt in range(3):
-        # A small feasible region wants more points before it is given up.
+    archive = Archive.empty(len(problem.objectives))
+    samples = problem.settings.samples or FIRST
+    loose = any(evaluator.loose for evaluator in evaluators)
+    for attempt, band in enumerate(BANDS[1:] if loose else BANDS[:-1]):
+        archive.band = band
+        found = 0
         for index, evaluator in enumerate(evaluators):
-            count = -(-samples * 8**attempt // len(evaluators))
+            # A small feasible region wants more points before it is given up.
+            count = -(-samples * 4**attempt // len(evaluators))
             points = first_samples(count, evaluator.dimension, problem.settings.seed, index)
-            screen_into(archive, index, evaluator, points)
-        if len(archive.u) or run.stop():
+            found += archive.screen(index, evaluator, points)
+        if found >= min(ENOUGH, samples) or run.stop():
             break
-    run.tell("sampling", evaluators, archive.feasible, volume(archive.values))
-    if len(archive.u):
+    run.tell("sampling", evaluators, archive)
+    if len(archive):
         zoom(problem, evaluators, archive, run)
     return archive
 
@@ -106,27 +149,13 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
         if run.stop():
             return
         random = generator(problem.settings.seed, 1000, step)
-        some = random.choice(len(archive.u), _CROWD, replace=False) if len(archive.u) > _CROWD else slice(None)
-        parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
+        if len(archive) > _CROWD:
+            archive.keep(np.sort(random.choice(len(archive), _CROWD, replace=False)))
+        parents, values, of = archive.u, archive.values, archive.sheet
         for index, evaluator in enumerate(evaluators):
             own = of == index
             if own.any() and evaluator.dimension:
                 count = max(1, int(samples * own.mean()))
                 points = around(parents[own][:, : evaluator.dimension], values[own], count, WIDTHS[step], random)
-                screen_into(archive, index, evaluator, points)
-        run.tell("zooming", evaluators, archive.feasible, volume(archive.values))
-
-
-def screen_into(archive: Archive, index: int, evaluator: Evaluator, u: Array) -> None:
-    """Screen points of one sheet and put the feasible ones into the archive."""
-    _, objectives, violation = evaluator.screen(u)
-    good = violation <= FEASIBLE
-    archive.add(index, u[good], objectives[good])
-
-
-def volume(values: Array) -> float:
-    """Return the hypervolume of designs in their own scaling; of a part of them where they are many."""
-    if not len(values):
-        return 0.0
-    ideal, span = scaling(values)
-    return hypervolume(values[:: 1 + len(values) // 400], ideal, span)
+                archive.screen(index, evaluator, points)
+        run.tell("zooming", evaluators, archive)

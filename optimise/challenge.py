@@ -1,0 +1,110 @@
+"""What polished designs must stand up to: fresh samples that may dominate them, and the gaps between them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from .evaluation import Evaluator
+from .hypervolume import choose, nondominated
+from .pile import Pile
+from .problem import Problem
+from .sampling import around, first_samples, generator
+from .search import FIRST, SAMPLES, Archive
+from .stationarity import Array
+
+_WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
+_POOL = 2000  # designs of the archive that gaps are filled from
+_CLEAR = 1e-6  # of the objectives' range: a domination that is more than rounding
+_NEIGHBOURS = 2  # an objective, between which gaps are looked for
+
+
+def challengers(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, attempt: int
+) -> list[tuple[int, Array]]:
+    """Return points by sheet that the polish should take up, none if the front is as good and as full as asked.
+
+    First those that dominate a polished design. Then, where designs are wanting, those that no polished design
+    dominates, and points half-way between neighbours.
+    """
+    best = pile.best()
+    front = pile.values[best] / pile.span
+    _sample(problem, evaluators, archive, pile, best, attempt)
+    screened = archive.values / pile.span
+    beating, uncovered = _against(screened, front)
+    # Samples within a band around the constraints prove nothing.
+    rows = np.flatnonzero(beating)[:_POOL] if not archive.band else np.zeros(0, np.int64)
+    wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
+    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32)))
+    if wanting > 0:
+        rows = np.flatnonzero(uncovered & ~beating)
+        rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting)
+        starts += by_sheet(evaluators, archive.sheet, archive.u, rows)
+        starts += _half_way(evaluators, pile, best, wanting)
+    return starts
+
+
+def by_sheet(
+    evaluators: list[Evaluator], sheet: NDArray[np.int64], u: Array, rows: NDArray[np.int64]
+) -> list[tuple[int, Array]]:
+    """Return the points u (n, 3) of some rows by the sheet (n,) that they lie on."""
+    return [
+        (index, u[rows[sheet[rows] == index]][:, : evaluator.dimension])
+        for index, evaluator in enumerate(evaluators)
+        if (sheet[rows] == index).any()
+    ]
+
+
+def _sample(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, best: NDArray[np.int64], attempt: int
+) -> None:
+    """Screen points everywhere, and around the polished designs as well as around their images on other sheets."""
+    seed, k = problem.settings.seed, len(evaluators)
+    random = generator(seed, 2000, attempt)
+    for index, evaluator in enumerate(evaluators):
+        if evaluator.dimension:
+            count = -(-(problem.settings.samples or FIRST) // k)
+            archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
+            count = -(-(problem.settings.samples or SAMPLES) // k)
+            parents = pile.u[best][:, : evaluator.dimension]
+            archive.screen(index, evaluator, around(parents, pile.values[best], count, _WIDTH, random))
+
+
+def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which screened designs dominate one of the front, and which none of the front dominates."""
+    kept = np.zeros(len(front) + len(screened), dtype=bool)
+    kept[nondominated(np.concatenate([front, screened]))] = True
+    beating = np.zeros(len(screened), dtype=bool)
+    for values in front[~kept[: len(front)]]:
+        apart = screened - values
+        beating |= (apart <= 0.0).all(axis=1) & (apart < -_CLEAR).any(axis=1)
+    return beating, kept[len(front) :]
+
+
+def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int) -> NDArray[np.int64]:
+    """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
+    if len(rows) <= count:
+        return rows
+    if front.shape[1] == 1:
+        return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
+    union = np.concatenate([front, screened[rows]])
+    picked = choose(union, len(front) + count, always=tuple(range(len(front))))
+    return rows[picked[picked >= len(front)] - len(front)]
+
+
+def _half_way(evaluators: list[Evaluator], pile: Pile, best: NDArray[np.int64], count: int) -> list[tuple[int, Array]]:
+    """Return the middles between neighbours on the front, the farthest apart first."""
+    scaled = pile.values[best] / pile.span
+    n, m = scaled.shape
+    if n < 2:
+        return []
+    nearest = cKDTree(scaled).query(scaled, k=min(n, 1 + _NEIGHBOURS * m))[1]
+    both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
+    pairs = np.unique(np.sort(both), axis=0)
+    pairs = best[pairs[pairs[:, 0] != pairs[:, 1]]]
+    pairs = pairs[pile.sheet[pairs[:, 0]] == pile.sheet[pairs[:, 1]]]
+    gap = np.linalg.norm((pile.values[pairs[:, 0]] - pile.values[pairs[:, 1]]) / pile.span, axis=1)
+    pairs = pairs[np.argsort(-gap, kind="stable")[:count]]
+    middle = 0.5 * (pile.u[pairs[:, 0]] + pile.u[pairs[:, 1]])
+    return by_sheet(evaluators, pile.sheet[pairs[:, 0]], middle, np.arange(len(pairs)))

@@ -1,0 +1,203 @@
+"""The search's second half: polish candidates, fill the gaps that they leave, choose what to deliver."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+from platform import python_version
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from ..objectives.analysis import analyse
+from ..objectives.registry import QUANTITIES
+from .challenge import by_sheet, challengers
+from .evaluation import Evaluator, constraints_of
+from .front import ParetoFront, Status
+from .hypervolume import choose, hypervolume, scaling
+from .pile import STATIONARY, Pile
+from .polish import polish
+from .problem import Problem
+from .search import Archive, Run
+from .stationarity import Array, multipliers
+
+ROUNDS = 4
+"""Rounds of the polish: the later ones fill gaps that the first one leaves."""
+BATCH = 64
+"""Designs polished between two questions whether to stop."""
+_POOL = 2000  # greedy choice among more would take longer than it gains
+_STARTS = 24  # for the best value of a single objective
+_EXTREMES = 6  # for the best value of one objective among several
+_APART = 0.1  # of the unit box: starts that are to lead to different optima
+
+
+def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
+    """Return the front from the designs of an archive; None if no candidate could be made feasible."""
+    pile = Pile(span_of(problem, archive.values))
+    several = len(problem.objectives) > 1
+    rows = _choice(problem, archive) if several else _spread(archive, 0, _STARTS)
+    starts = by_sheet(evaluators, archive.sheet, archive.u, rows)
+    stopped = run.stop()
+    if stopped:  # before the first batch: what was screened, as it is
+        for index, u in starts:
+            pile.add(index, evaluators[index], polish(evaluators[index], u, pile.span, iterations=0))
+    elif several:
+        starts += _extremes(evaluators, archive, pile.span)
+    for attempt in range(ROUNDS):
+        for index, u in starts:
+            for begin in range(0, len(u), BATCH):
+                stopped = stopped or run.stop()
+                if not stopped:
+                    batch = u[begin : begin + BATCH]
+                    pile.add(index, evaluators[index], polish(evaluators[index], batch, pile.span))
+                    run.tell("polishing", evaluators, archive, pile.values)
+        if stopped or attempt == ROUNDS - 1 or not len(pile):
+            break
+        starts = challengers(problem, evaluators, archive, pile, attempt)
+        if not starts:
+            break
+    if not len(pile):
+        return None
+    return _assemble(problem, evaluators, pile, run, "cancelled" if stopped or run.stop() else "done")
+
+
+def span_of(problem: Problem, values: Array) -> Array:
+    """Return the ranges (m,) that objectives (n, m) are scaled by; sizes where a single objective has no front."""
+    _, span = scaling(values)
+    sizes = np.array([abs(objective.target or 0.0) for objective in problem.objectives])
+    if values.shape[1] == 1:
+        best = np.abs(values.min(axis=0))
+        return np.asarray(np.maximum(np.maximum(best, sizes), np.ptp(values, axis=0)) + 1e-300)
+    # A target that the whole front meets has no range but rounding.
+    return np.maximum(span, 1e-6 * sizes)
+
+
+def _candidates(problem: Problem) -> int:
+    return max(16, int(1.3 * problem.settings.designs))
+
+
+def planned(problem: Problem) -> int:
+    """Return how many batches the polish takes if nothing needs filling."""
+    return -(-_candidates(problem) // BATCH)
+
+
+def _choice(problem: Problem, archive: Archive) -> NDArray[np.int64]:
+    """Return the rows of the archive whose polish is to become the front."""
+    best = np.argmin(archive.values, axis=0)
+    rows = np.arange(len(archive))
+    if len(rows) > _POOL:
+        rows = np.unique(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
+    always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
+    return rows[choose(archive.values[rows], _candidates(problem), always=always)]
+
+
+def _spread(archive: Archive, column: int, count: int) -> NDArray[np.int64]:
+    """Return the rows of designs that are best in an objective, each apart from the better ones."""
+    rows = np.argsort(archive.values[:, column], kind="stable")
+    chosen: list[int] = []
+    while len(rows) and len(chosen) < count:
+        best = int(rows[0])
+        chosen.append(best)
+        apart = np.abs(archive.u[rows] - archive.u[best]).max(axis=1) >= _APART
+        rows = rows[apart | (archive.sheet[rows] != archive.sheet[best])]
+    return np.array(chosen, dtype=np.int64)
+
+
+def _extremes(evaluators: list[Evaluator], archive: Archive, span: Array) -> list[tuple[int, Array]]:
+    """Return, for each objective, designs improved in it alone."""
+    return [
+        (index, polish(evaluators[index], u, span, chosen=(column,)).u)
+        for column in range(archive.values.shape[1])
+        for index, u in by_sheet(evaluators, archive.sheet, archive.u, _spread(archive, column, _EXTREMES))
+    ]
+
+
+def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, status: Status) -> ParetoFront:
+    rows = pile.best()
+    if len(problem.objectives) > 1:
+        best = tuple(dict.fromkeys(np.argmin(pile.values[rows], axis=0).tolist()))
+        rows = rows[choose(pile.values[rows], problem.settings.designs, always=best)]
+    values = pile.values[rows]
+    rows = rows[np.lexsort(values.T[::-1])]
+    values, dimensions = pile.values[rows], pile.dimensions[rows]
+    span = span_of(problem, values) if len(rows) > 1 else pile.span
+    goals = [pile.goals[row] for row in rows]
+    active = [pile.active[row] for row in rows]
+    residual = np.array(
+        [
+            multipliers(slopes * (pile.span / span)[owner.astype(int)][:, None], edges)[0]
+            for (owner, slopes), edges in zip(goals, active, strict=True)
+        ]
+    )
+    table = analyse(problem.mechanism, dimensions)
+    _slacks(table, problem, dimensions)
+    table["residual"] = residual
+    table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
+    evaluations = sum(evaluator.evaluations for evaluator in evaluators)
+    message = f"{len(rows)} design{'s' if len(rows) != 1 else ''}, {evaluations} evaluated"
+    if status == "cancelled":
+        message = f"cancelled: {message}, the front may be incomplete"
+    ideal = values.min(axis=0)
+    return ParetoFront(
+        problem=problem,
+        status=status,
+        message=message,
+        designs=table,
+        dimensions=dimensions,
+        values=values,
+        goals=tuple((owner, slopes * pile.span[owner.astype(int)][:, None]) for owner, slopes in goals),
+        active=tuple(active),
+        hypervolume=hypervolume(values, ideal, span),
+        history=run.history(ideal, span),
+        evaluations=evaluations,
+        seconds=run.seconds(),
+        seed=problem.settings.seed,
+        versions=versions(),
+    )
+
+
+def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
+    for constraint in constraints_of(problem):
+        quantity = QUANTITIES[constraint.quantity]
+        values = quantity.evaluate(problem.mechanism, dimensions).values
+        slack = np.full(len(values), np.inf)
+        if constraint.equality:
+            slack = -np.abs(values - float(constraint.lower or 0.0))
+        else:
+            if constraint.upper is not None:
+                slack = np.minimum(slack, constraint.upper - values)
+            if constraint.lower is not None:
+                slack = np.minimum(slack, values - constraint.lower)
+        table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+
+
+def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
+    """Return a front without designs, which says why."""
+    m = len(problem.objectives)
+    return ParetoFront(
+        problem=problem,
+        status=status,
+        message=message,
+        designs=pd.DataFrame(),
+        dimensions=np.zeros((0, 3)),
+        values=np.zeros((0, m)),
+        goals=(),
+        active=(),
+        hypervolume=0.0,
+        history=tuple(run.told),
+        evaluations=sum(evaluator.evaluations for evaluator in evaluators),
+        seconds=run.seconds(),
+        seed=problem.settings.seed,
+        versions=versions(),
+    )
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of this software and of what computes its numbers."""
+    found = {"python": python_version()}
+    for name in ("slidercrank", "numpy", "scipy", "numba", "moocore", "pandas"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "unknown"
+    return found

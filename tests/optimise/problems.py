@@ -1,0 +1,94 @@
+"""Problems that the tests of the optimiser share: a machine, a way to state a problem in one line, the shipped jobs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from slidercrank.model.links import Bar
+from slidercrank.model.loads import StrokeForce
+from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.job import load_job
+from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Sense, Settings
+from slidercrank.optimise.solve import solve
+
+JOBS = ("feeder", "sieve", "support")
+RUNS = Path(__file__).parents[2] / "runs"
+
+MACHINE = Mechanism(
+    speed=30.0,
+    crank=Bar(width=0.03, depth=0.02, density=7800.0),
+    rod=Bar(width=0.03, depth=0.02, density=7800.0),
+    slider_mass=2.0,
+    gravity=(0.0, -9.81),
+    loads=(StrokeForce(outward=-60.0, inward=60.0),),
+    tolerances=Tolerances(
+        crank=Tolerance(absolute=5e-5),
+        rod=Tolerance(absolute=1e-4),
+        offset=Tolerance(absolute=1e-4),
+        crank_angle=Tolerance(absolute=1e-3),
+    ),
+)
+
+Ends = tuple[float, float] | float
+Bounds = tuple[float | None, float | None] | float
+
+
+def degrees(angle: float) -> float:
+    """Return an angle given in degrees, rad."""
+    return math.radians(angle)
+
+
+def problem(
+    objectives: Mapping[str, Sense | float],
+    constraints: Mapping[str, Bounds] | None = None,
+    *,
+    crank: Ends = (0.02, 0.2),
+    rod: Ends = (0.06, 0.6),
+    offset: Ends = (0.0, 0.2),
+    mechanism: Mechanism = MACHINE,
+    designs: int = 100,
+    samples: int | None = None,
+    seed: int = 1,
+) -> Problem:
+    """Return a problem, SI. A number as objective is its target; a number as constraint asks this value."""
+    wanted = [
+        Objective(quantity=name, sense="target", target=wish)
+        if isinstance(wish, float)
+        else Objective(quantity=name, sense=wish)
+        for name, wish in objectives.items()
+    ]
+    held = []
+    for name, bounds in (constraints or {}).items():
+        lower, upper = bounds if isinstance(bounds, tuple) else (bounds, bounds)
+        held.append(Constraint(quantity=name, lower=lower, upper=upper))
+    return Problem(
+        name="test",
+        mechanism=mechanism,
+        crank=_range(crank),
+        rod=_range(rod),
+        offset=_range(offset),
+        objectives=tuple(wanted),
+        constraints=tuple(held),
+        settings=Settings(designs=designs, samples=samples, seed=seed),
+    )
+
+
+def _range(ends: Ends) -> Range:
+    lower, upper = ends if isinstance(ends, tuple) else (ends, ends)
+    return Range(lower=lower, upper=upper)
+
+
+@cache
+def shipped(job: str) -> Problem:
+    """Return the problem of a shipped job."""
+    return load_job(RUNS / f"{job}.toml")
+
+
+@cache
+def shipped_front(job: str) -> ParetoFront:
+    """Return the front of a shipped job."""
+    return solve(shipped(job))

@@ -1,0 +1,153 @@
+"""The contract of the search: what it accepts, how it reports, how it stops."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from slidercrank.model.links import Bar
+from slidercrank.model.loads import StrokeForce
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.front import Progress
+from slidercrank.optimise.problem import Sense
+from slidercrank.optimise.solve import solve
+
+from .problems import MACHINE, RUNS, degrees, problem, shipped_front
+
+HELD = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
+WISHES: dict[str, Sense] = {
+    "peak_torque": "minimise",
+    "time_ratio": "maximise",
+    "position_error": "minimise",
+    "transmission_angle": "maximise",
+    "footprint": "minimise",
+}
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+def test_any_number_of_objectives(count: int) -> None:
+    front = solve(problem(dict(itertools.islice(WISHES.items(), count)), HELD, designs=40))
+    assert front.status == "done"
+    assert len(front) == (1 if count == 1 else 40)
+    assert front.values.shape == (len(front), count)
+    assert 0.0 < front.hypervolume <= 1.0
+    assert (front.designs["residual"] <= 1e-6).all()
+
+
+def test_progress_counts_up_and_is_kept() -> None:
+    seen: list[Progress] = []
+    front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD), progress=seen.append)
+    assert len(seen) == len(front.history)
+    assert [entry.round for entry in seen] == list(range(1, len(seen) + 1))
+    assert all(one.evaluations <= two.evaluations for one, two in itertools.pairwise(seen))
+    assert {entry.stage for entry in seen} >= {"sampling", "zooming", "polishing"}
+
+
+@pytest.mark.parametrize("after", [1, 2, 4, 6])
+def test_cancelling_keeps_what_was_found(after: int) -> None:
+    rounds: list[Progress] = []
+    front = solve(
+        problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD),
+        progress=rounds.append,
+        cancelled=lambda: len(rounds) >= after,
+    )
+    assert front.status == "cancelled"
+    assert "cancelled" in front.message
+    assert len(front) > 0
+    assert len(rounds) <= after + 1
+
+
+def test_a_process_with_one_core_gives_the_same_front_bit_for_bit() -> None:
+    if not hasattr(os, "sched_setaffinity"):
+        pytest.skip("this system cannot bind a process to one core")
+    code = (
+        "import os, sys; os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[0]});"
+        "from slidercrank import load_job, solve;"
+        "sys.stdout.write(solve(load_job(sys.argv[1])).dimensions.tobytes().hex())"
+    )
+    command = [sys.executable, "-c", code, str(RUNS / "feeder.toml")]
+    finished = subprocess.run(command, check=True, capture_output=True, text=True)
+    assert finished.stdout == shipped_front("feeder").dimensions.tobytes().hex()
+
+
+def test_constraints_on_peaks_hold_exactly_and_bind() -> None:
+    wishes: dict[str, Sense] = {"time_ratio": "maximise", "peak_torque": "minimise"}
+    free = solve(problem(wishes, HELD, designs=40))
+    limit = float(np.median(free.designs["peak_pivot_force_N"]))
+    limited = solve(problem(wishes, HELD | {"peak_pivot_force": (None, limit)}, designs=40))
+    forces = QUANTITIES["peak_pivot_force"].evaluate(MACHINE, limited.dimensions).values
+    assert forces.max() <= limit * (1.0 + 1e-8)
+    assert forces.max() == pytest.approx(limit, rel=1e-6)
+    assert "slack_peak_pivot_force_N" in limited.designs
+
+
+def test_a_target_is_met_where_it_can_be() -> None:
+    front = solve(problem({"time_ratio": 1.15}, HELD))
+    assert front.designs["time_ratio"][0] == pytest.approx(1.15, abs=1e-8)
+
+
+def test_all_dimensions_given_leave_one_design() -> None:
+    wishes: dict[str, Sense] = {"peak_torque": "minimise", "time_ratio": "maximise"}
+    front = solve(problem(wishes, crank=0.1, rod=0.3, offset=0.05))
+    assert front.dimensions.tolist() == [[0.1, 0.3, 0.05]]
+
+
+def test_an_equality_that_no_rule_eliminates_is_met_by_the_solver() -> None:
+    front = solve(problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0}))
+    speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
+    assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
+
+
+def test_direction_of_rotation_matters_when_the_strokes_are_loaded_differently() -> None:
+    bar = Bar(width=0.03, depth=0.02, density=7800.0)
+
+    def best(speed: float) -> float:
+        load = StrokeForce(outward=-900.0, inward=0.0)
+        mechanism = Mechanism(speed=speed, crank=bar, rod=bar, slider_mass=1.0, loads=(load,))
+        given = problem({"peak_torque": "minimise"}, {"stroke": 0.2, "time_ratio": 1.3}, mechanism=mechanism)
+        return float(solve(given).designs["peak_torque_Nm"][0])
+
+    # With a positive offset the outward stroke is the slow one clockwise: pushing slowly takes less torque.
+    assert best(-2.0) < best(2.0)
+
+
+def test_no_crank_turns_fully() -> None:
+    front = solve(problem({"transmission_angle": "maximise"}, crank=(0.15, 0.2), rod=(0.06, 0.1)))
+    assert front.status == "infeasible"
+    assert "no crank turns fully" in front.message
+
+
+def test_a_front_reports_extremes_knee_picks_and_trade_offs() -> None:
+    front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=40))
+    extremes = front.extremes()
+    spans = np.ptp(front.values, axis=0)
+    for column, name in enumerate(("peak_torque", "time_ratio")):
+        # Ties to 1e-9 of the range go to the design that is better elsewhere.
+        assert front.values[extremes[name], column] <= front.values[:, column].min() + 1e-9 * spans[column]
+    row = front.pick("peak_torque", time_ratio=(1.15, None))
+    allowed = front.designs[front.designs["time_ratio"] >= 1.15]
+    assert front.designs["peak_torque_Nm"][row] == allowed["peak_torque_Nm"].min()
+    assert front.trade_offs(front.knee())
+    with pytest.raises(ValueError, match="no column"):
+        front.pick("peak_torque", nonsense=(1.0, 2.0))
+    with pytest.raises(ValueError, match="one of the objectives"):
+        front.pick("stroke")
+    with pytest.raises(ValueError, match="no design of the front"):
+        front.pick("peak_torque", time_ratio=(9.0, None))
+
+
+def test_rates_are_the_slope_of_the_front() -> None:
+    # Two objectives and a one-dimensional front: the rate is the slope between close designs on either side.
+    held = HELD | {"rod_to_crank": 3.5}
+    front = solve(problem({"position_error": "minimise", "time_ratio": "maximise"}, held, designs=400))
+    order = np.argsort(front.values[:, 1])
+    low, here, high = order[len(order) // 2 - 1 : len(order) // 2 + 2]
+    error, ratio = front.designs["position_error_mm"], front.designs["time_ratio"]
+    slope = (error[low] - error[high]) / (ratio[low] - ratio[high])
+    assert front.rates(int(here))[0, 1] == pytest.approx(slope, rel=0.02)
