@@ -37,7 +37,7 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
     """
     ideal, span = scaling(values)
     scaled = (values - ideal) / span
-    neighbours = min(len(parents), 2 * values.shape[1] + 1)
+    neighbours = min(len(parents), values.shape[1] + 1)
     if neighbours > 1:
         distance = np.asarray(cKDTree(scaled).query(scaled, k=neighbours)[0])
         sparse = distance[:, 1:].mean(axis=1) + 1e-9

@@ -27,7 +27,7 @@ BANDS = (0.0, 0.01, 0.04, 0.16)
 out where equalities remain: no sample meets them."""
 ENOUGH = 32
 """Samples that are enough to zoom on."""
-_CROWD = 6000
+_CROWD = 2000  # parents of a round
 _BEST = 1000  # designs kept of a single objective
 _SHOWN = 400  # designs of which the hypervolume is told
 
@@ -149,9 +149,8 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
         if run.stop():
             return
         random = generator(problem.settings.seed, 1000, step)
-        if len(archive) > _CROWD:
-            archive.keep(np.sort(random.choice(len(archive), _CROWD, replace=False)))
-        parents, values, of = archive.u, archive.values, archive.sheet
+        some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
+        parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
         for index, evaluator in enumerate(evaluators):
             own = of == index
             if own.any() and evaluator.dimension:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -10,15 +11,21 @@ from scipy.optimize import brentq, minimize_scalar
 
 from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem import Problem, Sense
 from slidercrank.optimise.solve import solve
-from tests.optimise.independent import footprint, stroke, time_ratio, transmission_angle
-from tests.optimise.problems import degrees, problem
+from tests.optimise.independent import Array, footprint, stroke, time_ratio, transmission_angle
+from tests.optimise.problems import Bounds, degrees, problem
 
 RATIOS = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0]
 STROKE = 0.1
-WIDE = {"crank": (0.005, 0.3), "rod": (0.02, 2.0), "offset": (0.0, 0.8)}
 DEGREE = math.degrees(1.0)
+
+
+def wide(
+    objectives: Mapping[str, Sense | float], held: Mapping[str, Bounds], offset: tuple[float, float] = (0.0, 0.8)
+) -> Problem:
+    """Return a problem whose ranges do not matter."""
+    return problem(objectives, held, crank=(0.005, 0.3), rod=(0.02, 2.0), offset=offset)
 
 
 def excess_angle(ratio: float) -> float:
@@ -36,8 +43,8 @@ def on_the_circle(x: float, b: float) -> tuple[float, float, float]:
 
         l = S sin(x) / (2 sin(b / 2)),    r = S cos(x) / (2 cos(b / 2)),
 
-    and the height of O over the line C D is the offset, e = OC sin(beta) = S (cos(b) - cos(2 x)) / (2 sin(b)). Both dead
-    centres lie on the same side of O where the angle at D is obtuse: b / 2 < x < 90 deg - b / 2.
+    and the height of O over the line C D is the offset, e = OC sin(beta) = S (cos(b) - cos(2 x)) / (2 sin(b)). Both
+    dead centres lie on the same side of O where the angle at D is obtuse: b / 2 < x < 90 deg - b / 2.
     """
     crank = math.cos(x) / (2.0 * math.cos(0.5 * b))
     rod = math.sin(x) / (2.0 * math.sin(0.5 * b))
@@ -62,7 +69,7 @@ def best_transmission_angle(ratio: float) -> float:
     return math.degrees(math.acos(math.sqrt(s / c) * (2.0 * c - s) / math.cos(0.5 * b)))
 
 
-def only(wanted: Problem) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.float64]], float]:
+def only(wanted: Problem) -> tuple[Array, float]:
     """Return the one design of a one-objective problem and its objective as minimised."""
     front = solve(wanted)
     assert front.status == "done", front.message
@@ -92,7 +99,7 @@ def test_the_closed_form_of_the_best_transmission_angle_is_what_a_search_along_t
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_best_transmission_angle_with_stroke_and_time_ratio_given(ratio: float) -> None:
     """Both are eliminated; one unknown is left."""
-    design, value = only(problem({"transmission_angle": "maximise"}, {"stroke": STROKE, "time_ratio": ratio}, **WIDE))
+    design, value = only(wide({"transmission_angle": "maximise"}, {"stroke": STROKE, "time_ratio": ratio}))
     assert -value * DEGREE == pytest.approx(best_transmission_angle(ratio), abs=1e-6)
     assert transmission_angle(design)[0] * DEGREE == pytest.approx(best_transmission_angle(ratio), abs=1e-6)
     assert stroke(design)[0] == pytest.approx(STROKE, rel=1e-9)
@@ -103,14 +110,8 @@ def test_best_transmission_angle_with_stroke_and_time_ratio_given(ratio: float) 
 @pytest.mark.parametrize("offset", [(0.0, 0.8), (-0.8, 0.0), (-0.8, 0.8)])
 def test_best_transmission_angle_with_the_time_ratio_as_a_bound(ratio: float, offset: tuple[float, float]) -> None:
     """The angle falls with the ratio, so that the bound is met exactly; it is not eliminated but kept by the search."""
-    wanted = problem(
-        {"transmission_angle": "maximise"},
-        {"stroke": STROKE, "time_ratio": (ratio, None)},
-        crank=WIDE["crank"],
-        rod=WIDE["rod"],
-        offset=offset,
-    )
-    design, value = only(wanted)
+    held: dict[str, Bounds] = {"stroke": STROKE, "time_ratio": (ratio, None)}
+    design, value = only(wide({"transmission_angle": "maximise"}, held, offset))
     assert -value * DEGREE == pytest.approx(best_transmission_angle(ratio), abs=1e-6)
     assert time_ratio(design)[0] == pytest.approx(ratio, rel=1e-8)
 
@@ -118,8 +119,8 @@ def test_best_transmission_angle_with_the_time_ratio_as_a_bound(ratio: float, of
 @pytest.mark.parametrize("ratio", [1.2, 1.6])
 def test_best_transmission_angle_with_an_equality_that_cannot_be_eliminated(ratio: float) -> None:
     """The footprint fixes the scale as the stroke does, but no formula gives a dimension from it."""
-    held = {"time_ratio": ratio, "footprint": 0.03}
-    design, value = only(problem({"transmission_angle": "maximise"}, held, **WIDE))
+    held: dict[str, Bounds] = {"time_ratio": ratio, "footprint": 0.03}
+    design, value = only(wide({"transmission_angle": "maximise"}, held))
     assert -value * DEGREE == pytest.approx(best_transmission_angle(ratio), abs=1e-6)
     assert footprint(design)[0] == pytest.approx(0.03, rel=1e-8)
     assert time_ratio(design)[0] == pytest.approx(ratio, rel=1e-8)
@@ -129,8 +130,8 @@ def test_best_transmission_angle_with_an_equality_that_cannot_be_eliminated(rati
 def test_greatest_time_ratio_with_a_least_transmission_angle(angle: float) -> None:
     """The same optimum from the other side: the ratio whose best angle is the one asked."""
     expected = brentq(lambda ratio: best_transmission_angle(ratio) - angle, 1.0 + 1e-9, 2.9, xtol=1e-14)
-    held = {"stroke": STROKE, "transmission_angle": (degrees(angle), None)}
-    _, value = only(problem({"time_ratio": "maximise"}, held, **WIDE))
+    held: dict[str, Bounds] = {"stroke": STROKE, "transmission_angle": (degrees(angle), None)}
+    _, value = only(wide({"time_ratio": "maximise"}, held))
     assert -value == pytest.approx(expected, rel=1e-9)
 
 
@@ -145,9 +146,10 @@ def test_greatest_time_ratio_under_the_rule_rod_is_3_2_offset(angle: float) -> N
     q = 1.0 / 3.2
     p = math.cos(degrees(angle)) - q
     b = math.asin(q / (1.0 - p)) - math.asin(q / (1.0 + p))
-    held = {"rod_to_offset": 3.2, "transmission_angle": (degrees(angle), None)}
-    for size in ({}, {"stroke": (0.08, 0.09)}, {"stroke": 0.085}):
-        design, value = only(problem({"time_ratio": "maximise"}, {**held, **size}, **WIDE))
+    held: dict[str, Bounds] = {"rod_to_offset": 3.2, "transmission_angle": (degrees(angle), None)}
+    sizes: list[dict[str, Bounds]] = [{}, {"stroke": (0.08, 0.09)}, {"stroke": 0.085}]
+    for size in sizes:
+        design, value = only(wide({"time_ratio": "maximise"}, {**held, **size}))
         assert -value == pytest.approx((math.pi + b) / (math.pi - b), rel=1e-9)
         assert design[0, 1] / design[0, 2] == pytest.approx(3.2, rel=1e-9)
 
@@ -157,16 +159,17 @@ def test_transmission_angle_for_a_time_ratio_under_the_rule_rod_is_3_2_offset(ra
     """Rule and ratio leave only the size free: p solves b(p) = b and mu = acos(p + q)."""
     q, b = 1.0 / 3.2, excess_angle(ratio)
     p = brentq(lambda p: math.asin(q / (1.0 - p)) - math.asin(q / (1.0 + p)) - b, 1e-9, 1.0 - q - 1e-12, xtol=1e-15)
-    for size in ({}, {"stroke": 0.085}):
-        held = {"rod_to_offset": 3.2, "time_ratio": ratio, **size}
-        design, value = only(problem({"transmission_angle": "maximise"}, held, **WIDE))
+    sizes: list[dict[str, Bounds]] = [{}, {"stroke": 0.085}]
+    for size in sizes:
+        held: dict[str, Bounds] = {"rod_to_offset": 3.2, "time_ratio": ratio, **size}
+        design, value = only(wide({"transmission_angle": "maximise"}, held))
         assert -value * DEGREE == pytest.approx(math.degrees(math.acos(p + q)), abs=1e-6)
         assert time_ratio(design)[0] == pytest.approx(ratio, rel=1e-8)
 
 
 @pytest.mark.parametrize("offset", [(0.0, 0.1), (-0.1, 0.0), (-0.05, 0.1)])
 def test_the_longest_rod_without_offset_transmits_best(offset: tuple[float, float]) -> None:
-    """For a stroke S, r(e) is concave (an arc of an ellipse) and flat at e = 0, where r = S / 2: r + |e| is least there.
+    """For a stroke S, r(e) is concave (an arc of an ellipse) and flat at e = 0, where r = S / 2 and r + |e| is least.
 
     Then cos(mu) = S / (2 l), least with the longest rod.
     """
@@ -177,14 +180,14 @@ def test_the_longest_rod_without_offset_transmits_best(offset: tuple[float, floa
 
 def test_the_smallest_footprint_without_offset_has_the_shortest_rod_that_transmits() -> None:
     """R = S / 2 and l = r / cos(mu): the rectangle is (l + 2 r) by 2 r."""
-    held = {"stroke": 0.2, "transmission_angle": (degrees(50.0), None)}
+    held: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(50.0), None)}
     _, value = only(problem({"footprint": "minimise"}, held, offset=0.0))
     rod = 0.1 / math.cos(degrees(50.0))
     assert value == pytest.approx(0.2 * (rod + 0.2), rel=1e-9)
 
 
 def test_the_mean_torque_against_friction_is_least_with_the_shortest_stroke() -> None:
-    """A force F against the motion takes the work 2 F S a turn: mean torque F S / pi, and S >= 2 r, equal without offset."""
+    """A force F against the motion takes the work 2 F S a turn: mean torque F S / pi; S >= 2 r, equal without offset."""
     rubbing = Mechanism(speed=10.0, loads=(StrokeForce(outward=-50.0, inward=50.0),))
     design, value = only(problem({"mean_torque": "minimise"}, crank=(0.03, 0.1), mechanism=rubbing))
     assert value == pytest.approx(50.0 * 0.06 / math.pi, rel=1e-9)
@@ -219,6 +222,6 @@ def test_a_target_that_can_be_met_is_met() -> None:
 def test_a_target_out_of_reach_is_approached() -> None:
     """Under 40 deg the greatest ratio is that of `best_transmission_angle`; asked is 1.5."""
     expected = brentq(lambda ratio: best_transmission_angle(ratio) - 40.0, 1.01, 2.0, xtol=1e-14)
-    held = {"stroke": STROKE, "transmission_angle": (degrees(40.0), None)}
-    _, value = only(problem({"time_ratio": 1.5}, held, **WIDE))
+    held: dict[str, Bounds] = {"stroke": STROKE, "transmission_angle": (degrees(40.0), None)}
+    _, value = only(wide({"time_ratio": 1.5}, held))
     assert value == pytest.approx(1.5 - expected, rel=1e-8)

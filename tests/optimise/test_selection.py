@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from numpy.typing import NDArray
+from scipy.optimize import Bounds, LinearConstraint, minimize
 
 from slidercrank.optimise.hypervolume import REFERENCE, choose, hypervolume, nondominated, scaling
 from slidercrank.optimise.stationarity import multipliers, strict_multipliers
 
+Array = NDArray[np.float64]
 UNIT = (np.zeros(3), np.ones(3))
 
 
@@ -63,14 +65,15 @@ def test_residual_is_the_least_norm_that_slsqp_finds(seed: int) -> None:
     assert np.all(pushing >= 0.0)
     assert np.linalg.norm(convex @ goals + pushing @ active) == pytest.approx(residual, abs=1e-12)
     rows = np.concatenate([goals, active])
-    found = minimize(
-        lambda w: float(np.sum((w @ rows) ** 2)),
-        np.concatenate([np.full(4, 0.25), np.zeros(2)]),
-        bounds=[(0.0, None)] * 6,
-        constraints={"type": "eq", "fun": lambda w: w[:4].sum() - 1.0},
-        method="SLSQP",
-        options={"ftol": 1e-15, "maxiter": 1000},
-    )
+
+    def size(weights: Array) -> float:
+        return float(np.sum((weights @ rows) ** 2))
+
+    start = np.array([0.25, 0.25, 0.25, 0.25, 0.0, 0.0])
+    whole = LinearConstraint(np.array([[1.0, 1.0, 1.0, 1.0, 0.0, 0.0]]), 1.0, 1.0)
+    bounds = Bounds(np.zeros(6), np.full(6, np.inf))
+    found = minimize(size, start, bounds=bounds, constraints=whole, method="SLSQP", options={"ftol": 1e-15})
+    # SLSQP resolves the squared norm to about 1e-10.
     assert residual == pytest.approx(np.sqrt(found.fun), abs=1e-5)
 
 

@@ -18,9 +18,9 @@ from slidercrank.optimise.front import Progress
 from slidercrank.optimise.problem import Sense
 from slidercrank.optimise.solve import solve
 
-from .problems import MACHINE, RUNS, degrees, problem, shipped_front
+from .problems import MACHINE, RUNS, Bounds, degrees, problem, shipped_front
 
-HELD = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
+HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
 WISHES: dict[str, Sense] = {
     "peak_torque": "minimise",
     "time_ratio": "maximise",
@@ -144,7 +144,7 @@ def test_a_front_reports_extremes_knee_picks_and_trade_offs() -> None:
 
 def test_rates_are_the_slope_of_the_front() -> None:
     # Two objectives and a one-dimensional front: the rate is the slope between close designs on either side.
-    held = HELD | {"rod_to_crank": 3.5}
+    held: dict[str, Bounds] = HELD | {"rod_to_crank": 3.5}
     front = solve(problem({"position_error": "minimise", "time_ratio": "maximise"}, held, designs=400))
     order = np.argsort(front.values[:, 1])
     low, here, high = order[len(order) // 2 - 1 : len(order) // 2 + 2]
