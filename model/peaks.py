@@ -43,6 +43,7 @@ _ITERATIONS = 60
 _TURN = 2.0 * math.pi
 _STRAY = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _FLAT = 1e-13
+_THIN = 1e-13  # rad: breakpoints closer than this are one
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,7 @@ def _find(
     peak, at = np.empty(kept), np.empty(kept)
     segment, pin = np.empty(kept, np.int64), np.empty(kept, np.int64)
     edge = np.empty((room, 4))  # of each segment: value and slope at its start and at its end
-    live = np.empty(room, np.bool_)
+    live, thin = np.empty(room, np.bool_), np.empty(room, np.bool_)
     theta = np.empty(angles + 8)
     f = np.empty(angles + 8)
     for n in range(designs.shape[0]):
@@ -167,9 +168,9 @@ def _find(
         best, best_at, best_segment = -1.0, 0.0, -1
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
+            thin[s] = b - a < _THIN
             live[s], outward = enter(d, block, 0, within(a, b), loads, watch, piece, shift)
-            if not live[s] or b - a < 1e-13:
-                live[s] = live[s] and b - a >= 1e-13
+            if thin[s] or not live[s]:
                 continue
             low = crowded(a, kappa)
             high = crowded(b, kappa)
@@ -195,8 +196,12 @@ def _find(
                     value, angle = _refine(kind, left, right, theta[i], d, block, 0, outward, loads, piece, shift)
                     found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
         for s in range(count):
-            # The breakpoint between segment `before` and segment s.
+            if thin[s]:
+                continue
+            # The breakpoint between segment `before` and segment s; between the two, breakpoints may coincide.
             before = s - 1 if s > 0 else count - 1
+            while thin[before]:
+                before = before - 1 if before > 0 else count - 1
             after = live[s]
             left = edge[before, 2] if live[before] else -1.0
             right = edge[s, 0] if after else -1.0

@@ -1,8 +1,8 @@
 """Peak torque and greatest position error of very many designs at once, with gradients.
 
-The same formulas as in `peaks`, with the innermost loop over designs, so that every operation is a vector instruction;
-the motion at an angle is computed once for all signals. All designs share the crowded angles; the two highest local
-maxima of each are refined. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
+The innermost loop is over designs, so that every operation is a vector instruction. All designs share the crowded
+angles, at which `locate` samples the curves and finds the cells of the two highest local maxima; these are refined by
+the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
 load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles: good
 for choosing designs, while what is delivered is evaluated by `peaks`. Tables and partial strokes are not handled here.
 """
@@ -20,6 +20,8 @@ from .arithmetic import STEP, analytic, inlined, inverse, kernel, root
 from .batches import in_chunks
 from .dynamics import smooth_load
 from .loads import AngleTable, PositionTable
+from .locate import LANES as LANES
+from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .peaks import ANGLES, watch_of
@@ -28,9 +30,8 @@ from .signals import Signal, design_motion, signal
 
 Array = NDArray[np.float64]
 
-LANES = 64
-"""Designs in a block: its working arrays stay in the first-level cache."""
 _STEPS = 7
+_SETTLED = 3e-9  # a step of the refinement, rad, whose square no longer shows in the value
 _TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
 _FLAT = 1e-13
 
@@ -71,100 +72,6 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
         q = inverse(root(cosine_tau * cosine_tau + y * y))
         return cosine_tau * q, -y * q
     return cosine_tau, -sine_tau
-
-
-@inlined
-def _sample(
-    kind: Any, sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, one: Any, two: Any
-) -> None:
-    """Values of all lanes at tau and -tau, the angles theta and pi - theta, which share most of the motion."""
-    for j in range(LANES):
-        d = design_at(block, j)
-        sine, cosine = _turned(sine_tau, cosine_tau, crowd, kappa[j])
-        one[j] = _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
-        two[j] = _value(kind, sine, -cosine, design_motion(sine, -cosine, d), d, direction)
-
-
-@inlined
-def _sample_both(
-    sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, one: Any, two: Any
-) -> None:
-    """Torque and worst-case position error of all lanes at tau and -tau; they share the motion."""
-    for j in range(LANES):
-        d = design_at(block, j)
-        sine, cosine = _turned(sine_tau, cosine_tau, crowd, kappa[j])
-        m, n = design_motion(sine, cosine, d), design_motion(sine, -cosine, d)
-        one[0, j] = _value(_TORQUE, sine, cosine, m, d, direction)
-        two[0, j] = _value(_TORQUE, sine, -cosine, n, d, direction)
-        one[1, j] = _value(_WORST, sine, cosine, m, d, direction)
-        two[1, j] = _value(_WORST, sine, -cosine, n, d, direction)
-
-
-@inlined
-def _sweep(kinds: Any, tau: Any, crowd: Any, kappa: Any, block: Any, direction: Any, samples: Any) -> None:
-    """Fill the samples (angles, signals, lanes). One loop a kind: within each the choice of formula is folded away."""
-    angles = tau.shape[1]
-    begin = 0
-    if kinds.shape[0] > 1 and kinds[0] == _TORQUE and kinds[1] == _WORST:
-        begin = 2
-        for k in range(angles // 2 + 1):
-            w = (angles - k) % angles
-            _sample_both(tau[0, k], tau[1, k], crowd, kappa, block, direction, samples[k], samples[w])
-    for q in range(begin, kinds.shape[0]):
-        for k in range(angles // 2 + 1):
-            w = (angles - k) % angles
-            one, two = samples[k, q], samples[w, q]
-            if kinds[q] == _TORQUE:
-                _sample(_TORQUE, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
-            elif kinds[q] == _WORST:
-                _sample(_WORST, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
-            else:
-                _sample(_RSS, tau[0, k], tau[1, k], crowd, kappa, block, direction, one, two)
-
-
-@inlined
-def _track(samples: Any, q: Any, top: Any) -> bool:
-    """Find each lane's highest sample, and the highest other local maximum that could still exceed it between samples.
-
-    A parabola through three samples rises above the middle one by a quarter of their half difference at most, so other
-    maxima below that are out. `top` gets place, half difference and second difference of both, the place -1 if there is
-    no second; returns whether any lane has one.
-    """
-    angles = samples.shape[0]
-    best, place = top[6], top[0]
-    for j in range(LANES):
-        best[j], place[j], top[3, j], top[7, j] = -1.0, 0.0, -1.0, -1.0
-    for k in range(angles):
-        here = samples[k, q]
-        at = float(k)
-        for j in range(LANES):
-            value, old, old_place = here[j], best[j], place[j]  # loads before choices: selections, not branches
-            best[j] = max(value, old)
-            place[j] = at if value > old else old_place
-    for k in range(angles):
-        before, here, after = samples[k - 1, q], samples[k, q], samples[k + 1 if k + 1 < angles else 0, q]
-        at = float(k)
-        rivals = 0.0
-        for j in range(LANES):
-            low, middle, high = before[j], here[j], after[j]
-            bound = middle + 0.125 * abs(high - low)
-            rival = (middle >= low) & (middle > high) & (bound > best[j]) & (place[j] != at)
-            rivals += 1.0 if rival else 0.0
-        if rivals > 0.0:
-            for j in range(LANES):
-                if here[j] >= before[j] and here[j] > after[j] and place[j] != at:
-                    bound = here[j] + 0.125 * abs(after[j] - before[j])
-                    if bound > best[j] and bound > top[7, j]:
-                        top[7, j], top[3, j] = bound, at
-    second = False
-    for j in range(LANES):
-        for i in (0, 3):
-            k = int(top[i, j])
-            second = second or (i == 3 and k >= 0)
-            before_j, after_j = samples[max(k, 0) - 1, q, j], samples[k + 1 if k + 1 < angles else 0, q, j]
-            top[i + 1, j] = 0.5 * (after_j - before_j)
-            top[i + 2, j] = after_j - 2.0 * samples[max(k, 0), q, j] + before_j
-    return second
 
 
 @analytic
@@ -219,45 +126,52 @@ def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slo
 def _refine(
     kind: Any, tau: Any, h: Any, top: Any, kappa: Any, block: Any, direction: Any, best: Any, sines: Any, cosines: Any
 ) -> Any:
-    """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola."""
-    low, high = np.full(LANES, -h), np.full(LANES, h)
-    delta, old, old_slope = np.empty(LANES), np.zeros(LANES), np.zeros(LANES)
-    base_sine, base_cosine = np.empty(LANES), np.empty(LANES)
-    sine, cosine, value, slope = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
+
+    top: place, vertex and curvature of `locate.two_highest`. A lane that has settled stays where it is, however many
+    steps the others take: what it gives does not depend on them.
+    """
+    share = 0.5 if kind == _RSS else 1.0  # `locate` samples its square, which curves twice as much
+    work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
-        base_sine[j], base_cosine[j] = tau[0, at], tau[1, at]
-        delta[j] = -top[1, j] / top[2, j] * h if top[2, j] < 0.0 else 0.0
+        work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h
+        work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = -h, h, 0.0, 0.0, 1.0
         best[j] = -1.0
     for step in range(_STEPS):
         for j in range(LANES):
-            t = delta[j]
+            t = work[6, j]
             t2 = t * t
             # Taylor series: |t| is at most one angle.
             s = t * (1.0 - t2 / 6.0 * (1.0 - t2 / 20.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0 * (1.0 - t2 / 110.0)))))
             c = 1.0 - t2 / 2.0 * (
                 1.0 - t2 / 12.0 * (1.0 - t2 / 30.0 * (1.0 - t2 / 56.0 * (1.0 - t2 / 90.0 * (1.0 - t2 / 132.0))))
             )
-            sine[j] = base_sine[j] * c + base_cosine[j] * s
-            cosine[j] = base_cosine[j] * c - base_sine[j] * s
-        _slopes(kind, sine, cosine, kappa, block, direction, value, slope)
+            work[0, j] = work[4, j] * c + work[5, j] * s
+            work[1, j] = work[5, j] * c - work[4, j] * s
+        _slopes(kind, work[0], work[1], kappa, block, direction, work[2], work[3])
+        moving = 0.0
         for j in range(LANES):
-            t, found, rise, peak = delta[j], value[j], slope[j], best[j]
-            floor, ceiling, last, last_slope = low[j], high[j], old[j], old_slope[j]
-            new_sine, new_cosine, old_sine, old_cosine = sine[j], cosine[j], sines[j], cosines[j]
-            second = top[2, j]
+            t, found, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
+            floor, ceiling, last, last_slope, moves = work[7, j], work[8, j], work[9, j], work[10, j], work[11, j]
+            new_sine, new_cosine, old_sine, old_cosine = work[0, j], work[1, j], sines[j], cosines[j]
+            curvature = share * top[2, j]
             better = found >= peak - _FLAT * abs(peak)  # on the flat top the later angle is the better
             best[j] = found if better else peak
             sines[j] = new_sine if better else old_sine
             cosines[j] = new_cosine if better else old_cosine
             floor = t if rise > 0.0 else floor
             ceiling = ceiling if rise > 0.0 else t
-            low[j], high[j] = floor, ceiling
-            bend = second / (h * h) if step == 0 else (rise - last_slope) / (t - last)
+            bend = curvature * found / (h * h) if step == 0 else (rise - last_slope) / (t - last)
             trial = t - rise / bend
             middle = 0.5 * (floor + ceiling)
-            old[j], old_slope[j] = t, rise
-            delta[j] = trial if (trial > floor) & (trial < ceiling) else middle
+            trial = trial if (trial > floor) & (trial < ceiling) else middle
+            moves = moves if abs(trial - t) > _SETTLED else 0.0
+            moving += moves
+            work[6, j] = trial if moves > 0.0 else t
+            work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = floor, ceiling, t, rise, moves
+        if moving == 0.0:
+            break
 
 
 @kernel
@@ -285,7 +199,9 @@ def _screen(
         tau[0, k], tau[1, k] = math.sin(k * h), math.cos(k * h)
     direction = 1.0 if raw[4] >= 0.0 else -1.0
     kappa = np.ones(LANES)
-    samples, top, slope = np.empty((angles, signals, LANES)), np.empty((8, LANES)), np.empty(LANES)
+    coarse = tau.astype(np.float32)
+    scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((4, LANES), np.float32)
+    samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
     value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
     for begin in range(0, n, LANES):
@@ -296,13 +212,14 @@ def _screen(
         if crowd:
             for j in range(LANES):
                 kappa[j] = crowding(lanes[0, j], lanes[1, j], lanes[2, j])
-        _sweep(kinds, tau, crowd, kappa, block, direction, samples)
+        prepare(block, kappa, direction, scaled)
+        sweep(kinds, coarse, crowd, scaled, samples)
         last = min(LANES, n - begin)
         for i in range(raw.shape[0] if gradients.shape[0] else 0):
             for j in range(LANES):
                 stepped[i, j] = lanes[i, j]
         for q in range(signals):
-            rivals = _track(samples, q, top)
+            rivals = two_highest(samples[row_of(kinds[q])], scaled, mark, top)
             for i in range(2 if rivals else 1):
                 _refine(
                     kinds[q], tau, h, top[3 * i : 3 * i + 3], kappa, block, direction, value[i], sines[i], cosines[i]

@@ -86,6 +86,9 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
             x = d.branch * (d.inner + fraction * (d.outer - d.inner))
             for second in (False, True):
                 n = _add(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
+    # A knot on a dead centre is no breakpoint. There the slider stands still, so that a force continuous over position
+    # has no kink over crank angle, while the crank angle of the knot has no derivative.
+    margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
         for i in range(loads.start[k], loads.start[k + 1]):
             at = loads.at[i]
@@ -94,7 +97,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
                     n = _add(cuts, n, at, _FIXED, at, k)
             else:
                 x = block[DESIGN + 2 * k + 1, j] + block[DESIGN + 2 * k, j] * at
-                if d.inner < x < d.outer:
+                if d.inner + margin < x < d.outer - margin:
                     for second in (False, True):
                         n = _add(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
     if n == 0:

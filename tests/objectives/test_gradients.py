@@ -119,11 +119,10 @@ def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
         assert away(gradients, expected).max() < CLOSE
 
 
-@pytest.mark.parametrize(("quantity", "machine"), CASES)
+# Rod to offset is infinite there.
+@pytest.mark.parametrize(("quantity", "machine"), [case for case in CASES if "rod_to_offset" not in str(case.id)])
 def test_gradient_without_offset_is_that_towards_positive_offsets(quantity: Quantity, machine: Mechanism) -> None:
     """At e = 0 lies a kink of all that depends on |e|, and symmetric machines tie there: one-sided differences."""
-    if quantity.name == "rod_to_offset":
-        pytest.skip("infinite without offset")
     designs = random_designs(60, seed=8) * [1.0, 1.0, 0.0]
     function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
     first = steps_to_the_nearest_edge(designs, kink_without_offset=False)
