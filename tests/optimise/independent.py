@@ -184,4 +184,5 @@ def residual(goals: Array, limits: Array, equal: Array) -> float:
         options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
     )
     assert found.status == 0
+    assert found.fun is not None
     return float(found.fun)

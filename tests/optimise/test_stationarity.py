@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import cvxpy as cp
+from typing import Any
+
+import cvxpy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -10,6 +12,7 @@ from numpy.typing import NDArray
 from slidercrank.optimise.stationarity import multipliers, strict_multipliers
 
 Array = NDArray[np.float64]
+cp: Any = cvxpy  # its own types know neither `sum` nor `norm`
 NOTHING = np.zeros((0, 3))
 
 

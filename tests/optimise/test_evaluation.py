@@ -1,0 +1,237 @@
+"""The quick and the exact evaluation of a problem agree, with the quantities and with differences."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from slidercrank.model.loads import AngleTable, StrokeForce
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.evaluation import (
+    FEASIBLE,
+    LEAST_TRANSMISSION_ANGLE,
+    Evaluator,
+    Rows,
+    constraints_of,
+    minimised,
+)
+from slidercrank.optimise.problem import Constraint, Objective, Problem
+from tests.optimise.independent import Array, excess, objectives, value
+from tests.optimise.problems import Bounds, degrees, problem
+
+FREE: dict[str, Bounds] = {
+    "stroke": (0.15, 0.25),
+    "transmission_angle": (degrees(25.0), None),
+    "peak_torque": (None, 40.0),
+    "rms_torque": (2.0, 30.0),
+    "footprint": (0.02, 0.3),
+    "rod_to_offset": (2.0, None),
+}
+WANTED = problem(
+    {
+        "peak_torque": "minimise",
+        "time_ratio": 1.15,
+        "transmission_angle": "maximise",
+        "peak_slider_speed": "maximise",
+        "footprint": 0.08,
+    },
+    FREE,
+    offset=(-0.15, 0.15),
+)
+ELIMINATED = problem({"peak_torque": "minimise"}, {"stroke": 0.2, "peak_torque": (None, 40.0)}, crank=(0.08, 0.11))
+
+
+def points(evaluator: Evaluator, count: int) -> Array:
+    u = np.random.default_rng(11).random((count, evaluator.dimension))
+    return u[evaluator.valid(u)]
+
+
+def greatest(rows: Rows, owner: int) -> Array:
+    return np.asarray(rows.values[:, rows.owner == owner].max(axis=1))
+
+
+@pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
+def test_screened_designs_are_those_that_are_feasible(wanted: Problem) -> None:
+    for sheet in sheets(wanted):
+        evaluator = Evaluator(wanted, sheet)
+        u = np.random.default_rng(12).random((3000, evaluator.dimension))
+        designs, values, violation = evaluator.screen(u)
+        good = violation <= FEASIBLE
+        assert 10 <= good.sum() < len(u)
+        assert np.isfinite(values[good]).all()
+        assert np.isnan(values[~good]).all()
+        # Screened peaks are exact but where they sit on the kink of a load that changes at the dead centres.
+        assert values[good] == pytest.approx(objectives(wanted, designs[good]), rel=2e-3, abs=1e-12)
+        for constraint in wanted.constraints:
+            assert excess(constraint, value(wanted, constraint.quantity, designs[good])).max() <= 2e-3
+        assert good.sum() >= 0.99 * sum(
+            np.logical_and.reduce(
+                [excess(c, value(wanted, c.quantity, designs[turns])) <= 0.0 for c in wanted.constraints]
+            ).sum()
+            for turns in [np.isfinite(violation) & (violation <= 0.0)]
+        )
+
+
+@pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
+def test_exact_rows_are_objectives_and_relative_violations(wanted: Problem) -> None:
+    for sheet in sheets(wanted):
+        evaluator = Evaluator(wanted, sheet)
+        u = points(evaluator, 300)
+        designs = sheet.dimensions(u)
+        goals, limits = evaluator.exact(u)
+        expected = objectives(wanted, designs)
+        for column in range(len(wanted.objectives)):
+            assert greatest(goals, column) == pytest.approx(expected[:, column], rel=1e-9, abs=1e-12)
+        for owner, constraint in enumerate(evaluator.constraints):
+            violation = excess(constraint, value(wanted, constraint.quantity, designs))
+            assert greatest(limits, owner) == pytest.approx(violation, rel=1e-9, abs=1e-10)
+
+
+@pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
+def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
+    """Fourth-order differences; rows whose pieces swap places between the points are left out."""
+    for sheet in sheets(wanted):
+        evaluator = Evaluator(wanted, sheet)
+        u = points(evaluator, 150)
+        u = u[((u > 0.01) & (u < 0.99)).all(axis=1)]
+        step = 1e-4
+        for column in range(evaluator.dimension):
+            move = np.zeros(evaluator.dimension)
+            move[column] = step
+            shifts = {n: evaluator.exact(u + n * move) for n in (-2, -1, 1, 2) if evaluator.valid(u + n * move).all()}
+            if len(shifts) < 4:
+                pytest.skip("a point near locking")
+            here = evaluator.exact(u)
+            for which in (0, 1):
+                slope = (
+                    8.0 * (shifts[1][which].values - shifts[-1][which].values)
+                    - (shifts[2][which].values - shifts[-2][which].values)
+                ) / (12.0 * step)
+                steady = np.all(
+                    [np.abs(shifts[n][which].labels - here[which].labels) < 0.05 for n in shifts],
+                    axis=0,
+                ) & np.isfinite(here[which].values)
+                exact = here[which].gradients[:, :, column]
+                size = np.maximum(np.abs(slope), np.abs(here[which].values))
+                wrong = steady & (np.abs(exact - slope) > 1e-5 * (1.0 + size))
+                # A piece may end within the step, where its neighbour takes its place under nearly the same label.
+                assert wrong.sum() <= 0.01 * steady.sum()
+
+
+def test_a_footprint_is_maximised_and_bounded_below_through_its_greatest_form() -> None:
+    """It is the greater of two forms: with an offset longer than the crank the second one."""
+    wanted = problem({"footprint": "maximise"}, {"footprint": (0.05, None)}, crank=(0.02, 0.05), offset=(0.06, 0.15))
+    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    u = points(evaluator, 50)
+    area = value(wanted, "footprint", evaluator.sheet.dimensions(u))
+    goals, limits = evaluator.exact(u)
+    assert greatest(goals, 0) == pytest.approx(-area, rel=1e-12)
+    assert greatest(limits, [c.quantity for c in evaluator.constraints].index("footprint")) == pytest.approx(
+        (0.05 - area) / 0.05, rel=1e-12, abs=1e-12
+    )
+
+
+def test_ties_of_a_peak_are_rows_of_their_own() -> None:
+    """Two equal forces half a turn apart, without masses: the peaks of the two strokes tie without offset."""
+    pushing = Mechanism(loads=(StrokeForce(outward=-100.0, inward=100.0),))
+    wanted = problem({"peak_torque": "minimise"}, offset=0.0, mechanism=pushing)
+    goals, _ = Evaluator(wanted, sheets(wanted)[0]).exact(np.array([[0.5, 0.3]]))
+    values = np.sort(goals.values[0])[::-1]
+    assert values[0] == pytest.approx(values[1], rel=1e-12)
+
+
+def test_an_infinite_quantity_makes_rows_without_slope() -> None:
+    """Without offset the rod is infinitely many offsets long: a lower bound holds, an upper one does not."""
+    for bounds, expected in (((3.2, None), -np.inf), ((None, 8.0), np.inf)):
+        for offset in ((0.0, 0.1), (-0.1, 0.0)):
+            wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2, "rod_to_offset": bounds}, offset=offset)
+            evaluator = Evaluator(wanted, sheets(wanted)[0])
+            u = np.full((1, 2), 0.5)
+            u[0, evaluator.sheet.free.index("offset")] = 0.0
+            _, limits = evaluator.exact(u)
+            owner = [c.quantity for c in evaluator.constraints].index("rod_to_offset")
+            assert greatest(limits, owner)[0] == expected
+            assert np.isfinite(limits.gradients).all()
+
+
+def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
+    """The transmission angle has a kink at zero offset: along either sheet it falls with |offset|."""
+    for offset in ((0.0, 0.1), (-0.1, 0.0)):
+        wanted = problem({"transmission_angle": "maximise"}, crank=0.1, rod=0.3, offset=offset)
+        goals, _ = Evaluator(wanted, sheets(wanted)[0]).exact(np.zeros((1, 1)))
+        # d mu / d a = -1 / sqrt(l^2 - r^2) for a range of 0.1 m; the objective is -mu.
+        assert goals.gradients[0, 0, 0] == pytest.approx(0.1 / math.sqrt(0.3**2 - 0.1**2), rel=1e-12)
+
+
+def test_the_transmission_angle_has_a_floor_where_none_is_set() -> None:
+    def floor(bounds: Bounds | None) -> tuple[float | None, float | None]:
+        held: dict[str, Bounds] = {} if bounds is None else {"transmission_angle": bounds}
+        found = {c.quantity: c for c in constraints_of(problem({"peak_torque": "minimise"}, held))}
+        return found["transmission_angle"].lower, found["transmission_angle"].upper
+
+    assert floor(None) == (pytest.approx(LEAST_TRANSMISSION_ANGLE), None)
+    assert floor((degrees(5.0), None)) == (degrees(5.0), None)
+    assert floor((None, degrees(60.0))) == (pytest.approx(LEAST_TRANSMISSION_ANGLE), degrees(60.0))
+    assert floor((None, degrees(8.0))) == (pytest.approx(degrees(4.0)), degrees(8.0))
+    assert floor(degrees(3.0)) == (degrees(3.0), degrees(3.0))
+
+
+def test_objectives_are_minimised_as_they_are_negated_or_as_distances() -> None:
+    values = np.array([1.0, 3.0])
+    assert minimised(Objective(quantity="stroke", sense="minimise"), values).tolist() == [1.0, 3.0]
+    assert minimised(Objective(quantity="stroke", sense="maximise"), values).tolist() == [-1.0, -3.0]
+    assert minimised(Objective(quantity="stroke", sense="target", target=2.5), values).tolist() == [1.5, 0.5]
+
+
+def test_a_band_lets_in_what_violates_by_less() -> None:
+    wanted = problem({"peak_torque": "minimise"}, {"stroke": (0.2, 0.201), "peak_slider_speed": 4.0})
+    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    assert evaluator.loose
+    u = points(evaluator, 4000)
+    designs, values, violation = evaluator.screen(u, band=0.1)
+    good = violation <= 0.1
+    assert good.sum() >= 10
+    assert np.isfinite(values[good]).all()
+    for name, low, high in (("stroke", 0.18, 0.2211), ("peak_slider_speed", 3.6, 4.4)):
+        assert value(wanted, name, designs[good]).min() >= low - 1e-9
+        assert value(wanted, name, designs[good]).max() <= high + 1e-9
+
+
+def test_a_bound_of_zero_is_absolute() -> None:
+    """A relative violation has no meaning there: 1 N m of mean torque counts as one."""
+    wanted = problem({"peak_torque": "minimise"}, {"mean_torque": (None, 0.0)})
+    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    u = points(evaluator, 20)
+    _, limits = evaluator.exact(u)
+    owner = [c.quantity for c in evaluator.constraints].index("mean_torque")
+    mean = value(wanted, "mean_torque", evaluator.sheet.dimensions(u))
+    assert greatest(limits, owner) == pytest.approx(mean, rel=1e-12)
+
+
+def test_loads_that_cannot_be_screened_are_evaluated_exactly() -> None:
+    table = AngleTable(angles=(0.0, 1.0, 3.0, 5.0), forces=(0.0, -50.0, -200.0, 0.0))
+    wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, mechanism=Mechanism(speed=3.0, loads=(table,)))
+    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    u = points(evaluator, 100)
+    designs, values, violation = evaluator.screen(u)
+    good = violation <= FEASIBLE
+    assert values[good, 0] == pytest.approx(value(wanted, "peak_torque", designs[good]), rel=1e-12)
+
+
+def test_evaluations_are_counted() -> None:
+    wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2})
+    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    u = points(evaluator, 30)
+    evaluator.screen(u)
+    evaluator.exact(u)
+    assert evaluator.evaluations == 2 * len(u)
+
+
+def test_the_cheapest_constraints_come_first() -> None:
+    names = [constraint.quantity for constraint in Evaluator(WANTED, sheets(WANTED)[0]).constraints]
+    costly = [name in ("peak_torque", "rms_torque") for name in names]
+    assert costly == sorted(costly)
+    assert all(isinstance(constraint, Constraint) for constraint in Evaluator(WANTED, sheets(WANTED)[0]).constraints)

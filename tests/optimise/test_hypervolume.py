@@ -1,0 +1,50 @@
+"""Hypervolume, non-dominance and choice against brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slidercrank.optimise.hypervolume import REFERENCE, choose, hypervolume, nondominated, scaling
+
+UNIT = (np.zeros(3), np.ones(3))
+
+
+def test_hypervolume_of_one_design_is_its_box() -> None:
+    value = hypervolume(np.array([[0.2, 0.5, 0.1]]), *UNIT)
+    assert value == pytest.approx(0.9 * 0.6 * 1.0 / REFERENCE**3, rel=1e-12)
+
+
+def test_hypervolume_agrees_with_counting_random_points() -> None:
+    random = np.random.default_rng(3)
+    designs = random.random((30, 3))
+    points = random.uniform(0.0, REFERENCE, (200_000, 3))
+    covered = np.zeros(len(points), dtype=bool)
+    for design in designs:
+        covered |= (points >= design).all(axis=1)
+    # Three standard deviations of a share counted among 200,000 points.
+    assert hypervolume(designs, *UNIT) == pytest.approx(covered.mean(), abs=3.0 * 0.5 / np.sqrt(200_000))
+
+
+def test_nondominated_agrees_with_comparing_all_pairs() -> None:
+    values = np.random.default_rng(4).integers(0, 6, (120, 3)).astype(float)
+    keep = []
+    for i, row in enumerate(values):
+        better = (values <= row).all(axis=1) & (values < row).any(axis=1)
+        same_before = (values[:i] == row).all(axis=1).any()
+        if not better.any() and not same_before:
+            keep.append(i)
+    assert nondominated(values).tolist() == keep
+
+
+def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:
+    values = np.random.default_rng(5).random((25, 3))
+    values = values[nondominated(values)]
+    ideal, span = scaling(values)
+    picked = [0]
+    while len(picked) < 6:
+        gains = [
+            hypervolume(values[[*picked, i]], ideal, span) if i not in picked else -1.0 for i in range(len(values))
+        ]
+        picked.append(int(np.argmax(gains)))
+    assert choose(values, 6, always=(0,)).tolist() == sorted(picked)

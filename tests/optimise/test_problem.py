@@ -1,0 +1,99 @@
+"""What a problem refuses, in Python as in a job file."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Settings
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import MACHINE, problem
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(1.0, 0.5), (math.nan, 1.0), (0.0, math.inf)])
+def test_a_range_has_two_finite_ends_in_order(lower: float, upper: float) -> None:
+    with pytest.raises(InputError, match="lower <= upper, both finite; got"):
+        Range(lower=lower, upper=upper)
+
+
+def test_a_range_of_one_value_is_fixed() -> None:
+    assert Range(lower=0.1, upper=0.1).fixed
+    assert not Range(lower=0.1, upper=0.2).fixed
+
+
+def test_a_constraint_needs_a_finite_bound_in_order() -> None:
+    with pytest.raises(InputError, match="needs a lower bound, an upper bound or a value"):
+        Constraint(quantity="stroke")
+    with pytest.raises(InputError, match="must be finite; got nan"):
+        Constraint(quantity="stroke", lower=math.nan)
+    with pytest.raises(InputError, match=r"is empty: min 2 exceeds max 1"):
+        Constraint(quantity="stroke", lower=2.0, upper=1.0)
+    assert Constraint(quantity="stroke", lower=1.0, upper=1.0).equality
+    assert not Constraint(quantity="stroke", lower=1.0).equality
+
+
+def test_an_unknown_quantity_is_named_with_the_nearest_one() -> None:
+    with pytest.raises(InputError, match="did you mean peak_torque"):
+        Objective(quantity="peak_torqe", sense="minimise")
+    with pytest.raises(InputError, match="no quantity is called"):
+        Constraint(quantity="strok", lower=1.0)
+
+
+def test_a_target_belongs_to_the_sense_target_only() -> None:
+    with pytest.raises(InputError, match="needs a target exactly when"):
+        Objective(quantity="time_ratio", sense="target")
+    with pytest.raises(InputError, match="needs a target exactly when"):
+        Objective(quantity="time_ratio", sense="maximise", target=1.2)
+    with pytest.raises(InputError, match="must be finite"):
+        Objective(quantity="time_ratio", sense="target", target=math.inf)
+
+
+def test_a_problem_needs_objectives_each_once() -> None:
+    box = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
+    torque = Objective(quantity="peak_torque", sense="minimise")
+    stroke = Constraint(quantity="stroke", lower=0.1)
+    with pytest.raises(InputError, match="at least one objective"):
+        Problem(name="", mechanism=MACHINE, objectives=(), **box)
+    with pytest.raises(InputError, match="peak_torque is given twice"):
+        Problem(name="", mechanism=MACHINE, objectives=(torque, torque), **box)
+    with pytest.raises(InputError, match="constraint on stroke is given twice"):
+        Problem(name="", mechanism=MACHINE, objectives=(torque,), constraints=(stroke, stroke), **box)
+
+
+@pytest.mark.parametrize("dimension", ["crank", "rod"])
+def test_links_are_longer_than_zero(dimension: str) -> None:
+    box = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
+    box[dimension] = Range(lower=0.0, upper=0.2)
+    with pytest.raises(InputError, match="longer than zero"):
+        Problem(name="", mechanism=MACHINE, objectives=(Objective(quantity="stroke", sense="minimise"),), **box)
+
+
+def test_rod_to_offset_is_not_maximised_where_the_offset_may_vanish() -> None:
+    for offset in ((0.0, 0.1), (-0.1, 0.0), (-0.1, 0.1)):
+        with pytest.raises(InputError, match="grows without bound"):
+            problem({"rod_to_offset": "maximise"}, offset=offset)
+    assert solve(problem({"rod_to_offset": "maximise"}, offset=(0.05, 0.1))).dimensions[0].tolist()[1:] == [0.6, 0.05]
+
+
+@pytest.mark.parametrize(("name", "value"), [("designs", 0), ("samples", 0), ("seed", -1)])
+def test_settings_are_within_their_limits(name: str, value: int) -> None:
+    values: dict[str, int] = {name: value}
+    with pytest.raises(InputError, match=f"{name} must be at least"):
+        Settings(**values)  # type: ignore[arg-type]
+
+
+def test_an_unknown_method_is_refused() -> None:
+    wanted = problem({"peak_torque": "minimise"})
+    unknown = Problem(
+        name="",
+        mechanism=MACHINE,
+        crank=wanted.crank,
+        rod=wanted.rod,
+        offset=wanted.offset,
+        objectives=wanted.objectives,
+        settings=Settings(method="guess"),
+    )
+    with pytest.raises(InputError, match="must be 'auto'; got 'guess'"):
+        solve(unknown)
