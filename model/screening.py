@@ -24,11 +24,14 @@ from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
-from .peaks import ANGLES, watch_of
+from .peaks import watch_of
 from .segments import crowding
 from .signals import Signal, design_motion, signal
 
 Array = NDArray[np.float64]
+
+ANGLES = 64
+"""Sampled angles a turn, where thousands of designs are only sorted."""
 
 _STEPS = 7
 _SETTLED = 3e-9  # a step of the refinement, rad, whose square no longer shows in the value

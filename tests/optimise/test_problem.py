@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -51,7 +52,7 @@ def test_a_target_belongs_to_the_sense_target_only() -> None:
 
 
 def test_a_problem_needs_objectives_each_once() -> None:
-    box = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
+    box: dict[str, Any] = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
     torque = Objective(quantity="peak_torque", sense="minimise")
     stroke = Constraint(quantity="stroke", lower=0.1)
     with pytest.raises(InputError, match="at least one objective"):
@@ -64,7 +65,7 @@ def test_a_problem_needs_objectives_each_once() -> None:
 
 @pytest.mark.parametrize("dimension", ["crank", "rod"])
 def test_links_are_longer_than_zero(dimension: str) -> None:
-    box = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
+    box: dict[str, Any] = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
     box[dimension] = Range(lower=0.0, upper=0.2)
     with pytest.raises(InputError, match="longer than zero"):
         Problem(name="", mechanism=MACHINE, objectives=(Objective(quantity="stroke", sense="minimise"),), **box)
