@@ -64,7 +64,7 @@ class Sheet:
             name: np.full(len(u), bounds.lower, dtype=u.dtype) for name, bounds in self.bounds.items() if bounds.fixed
         }
         for column, name in enumerate(self.free):
-            known[name] = self.lower[column] + (self.upper[column] - self.lower[column]) * u[:, column]
+            known[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
         with np.errstate(all="ignore"):
             for step in self.steps:
                 known[step.target] = step.formula(*(known[name] for name in step.sources)) + 0.0 * u.sum(axis=1)

@@ -32,7 +32,7 @@ CONVERGED = 1e-9
 _GRAIN = 1e-12  # losses and violations below it are rounding
 _TIGHT = 1e-11  # the same as ACTIVE while a design may still move
 _NOISE = 1e-15  # of the objectives: rounding of the merit
-_STALLED = 1e-11  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
+_STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
 _HEAVIEST = 1e8  # largest penalty of a violation
@@ -188,11 +188,16 @@ class _Batch:
     def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
         goals, limits = alone(self.goals, row), alone(self.limits, row)
-        while True:
-            step = self._solve(row, goals, limits, chosen)
-            if step.limits.sum() < 0.5 * self.weight[row] or self.weight[row] >= _HEAVIEST:
-                return step
+        first = step = self._solve(row, goals, limits, chosen)
+        light = self.weight[row]
+        while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
             self.weight[row] *= 10.0
+            step = self._solve(row, goals, limits, chosen)
+        if self.weight[row] > light and _left(limits, step.move) > max(0.5 * _left(limits, first.move), _GRAIN):
+            # A violation that no step within the radius removes: weight would only stiffen what follows.
+            self.weight[row] = light
+            return first
+        return step
 
     def _solve(self, row: int, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Step:
         return solve_step(
@@ -295,6 +300,12 @@ def _convex(hessian: Array, normals: Array) -> Array:
                 break
         values, vectors = np.linalg.eigh(curved)
     return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
+
+
+def _left(limits: Rows, move: Array) -> float:
+    """Return the greatest violation after a step, as far as slopes tell."""
+    near = np.isfinite(limits.values)
+    return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))
 
 
 def _beyond(excess: Array) -> Array:

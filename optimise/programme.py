@@ -23,7 +23,7 @@ from .stationarity import Array
 
 LOSS = 1e3
 """K: what an objective's loss weighs against another's gain, ranges scaled to one."""
-VIOLATION = 1e4
+VIOLATION = 1e2
 """C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
 _REACH = 1.0  # pieces farther below the greatest cannot become it within a step
 

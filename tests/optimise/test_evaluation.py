@@ -101,24 +101,20 @@ def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
         for column in range(evaluator.dimension):
             move = np.zeros(evaluator.dimension)
             move[column] = step
-            shifts = {n: evaluator.exact(u + n * move) for n in (-2, -1, 1, 2) if evaluator.valid(u + n * move).all()}
-            if len(shifts) < 4:
-                pytest.skip("a point near locking")
-            here = evaluator.exact(u)
+            around = [u + n * move for n in (-2, -1, 0, 1, 2)]
+            keep = np.all([evaluator.valid(points) for points in around], axis=0)
+            rows = [evaluator.exact(points[keep]) for points in around]
             for which in (0, 1):
-                slope = (
-                    8.0 * (shifts[1][which].values - shifts[-1][which].values)
-                    - (shifts[2][which].values - shifts[-2][which].values)
-                ) / (12.0 * step)
-                steady = np.all(
-                    [np.abs(shifts[n][which].labels - here[which].labels) < 0.05 for n in shifts],
-                    axis=0,
-                ) & np.isfinite(here[which].values)
-                exact = here[which].gradients[:, :, column]
-                size = np.maximum(np.abs(slope), np.abs(here[which].values))
-                wrong = steady & (np.abs(exact - slope) > 1e-5 * (1.0 + size))
+                values = [np.where(np.isfinite(row[which].values), row[which].values, np.nan) for row in rows]
+                slope = (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
+                here = rows[2][which]
+                steady = np.isfinite(slope) & np.isfinite(values[2])
+                for row in rows:
+                    steady &= np.abs(row[which].labels - here.labels) < 0.05
+                wrong = np.abs(here.gradients[:, :, column] - slope) > 1e-5 * (1.0 + np.abs(slope) + np.abs(values[2]))
                 # A piece may end within the step, where its neighbour takes its place under nearly the same label.
-                assert wrong.sum() <= 0.01 * steady.sum()
+                assert steady.sum() >= 100
+                assert (steady & wrong).sum() <= 0.01 * steady.sum()
 
 
 def test_a_footprint_is_maximised_and_bounded_below_through_its_greatest_form() -> None:
@@ -167,16 +163,18 @@ def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
 
 
 def test_the_transmission_angle_has_a_floor_where_none_is_set() -> None:
-    def floor(bounds: Bounds | None) -> tuple[float | None, float | None]:
+    def floor(bounds: Bounds | None) -> Constraint:
         held: dict[str, Bounds] = {} if bounds is None else {"transmission_angle": bounds}
-        found = {c.quantity: c for c in constraints_of(problem({"peak_torque": "minimise"}, held))}
-        return found["transmission_angle"].lower, found["transmission_angle"].upper
+        found = constraints_of(problem({"peak_torque": "minimise"}, held))
+        return next(constraint for constraint in found if constraint.quantity == "transmission_angle")
 
-    assert floor(None) == (float(LEAST_TRANSMISSION_ANGLE), None)
-    assert floor((degrees(5.0), None)) == (degrees(5.0), None)
-    assert floor((None, degrees(60.0))) == (float(LEAST_TRANSMISSION_ANGLE), degrees(60.0))
-    assert floor((None, degrees(8.0))) == (0.5 * degrees(8.0), degrees(8.0))
-    assert floor(degrees(3.0)) == (degrees(3.0), degrees(3.0))
+    assert floor(None).lower == pytest.approx(LEAST_TRANSMISSION_ANGLE)
+    assert floor(None).upper is None
+    assert floor((degrees(5.0), None)).lower == degrees(5.0)
+    assert floor((None, degrees(60.0))).lower == pytest.approx(LEAST_TRANSMISSION_ANGLE)
+    assert floor((None, degrees(60.0))).upper == degrees(60.0)
+    assert floor((None, degrees(8.0))).lower == pytest.approx(degrees(4.0))
+    assert floor(degrees(3.0)).equality
 
 
 def test_objectives_are_minimised_as_they_are_negated_or_as_distances() -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import replace
 
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Settings
+from slidercrank.optimise.problem import Constraint, Objective, Range, Settings
 from slidercrank.optimise.solve import solve
-from tests.optimise.problems import MACHINE, problem
+from tests.optimise.problems import problem
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(1.0, 0.5), (math.nan, 1.0), (0.0, math.inf)])
@@ -52,30 +52,29 @@ def test_a_target_belongs_to_the_sense_target_only() -> None:
 
 
 def test_a_problem_needs_objectives_each_once() -> None:
-    box: dict[str, Any] = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
-    torque = Objective(quantity="peak_torque", sense="minimise")
-    stroke = Constraint(quantity="stroke", lower=0.1)
+    base = problem({"peak_torque": "minimise"}, {"stroke": (0.1, None)})
     with pytest.raises(InputError, match="at least one objective"):
-        Problem(name="", mechanism=MACHINE, objectives=(), **box)
+        replace(base, objectives=())
     with pytest.raises(InputError, match="peak_torque is given twice"):
-        Problem(name="", mechanism=MACHINE, objectives=(torque, torque), **box)
+        replace(base, objectives=base.objectives * 2)
     with pytest.raises(InputError, match="constraint on stroke is given twice"):
-        Problem(name="", mechanism=MACHINE, objectives=(torque,), constraints=(stroke, stroke), **box)
+        replace(base, constraints=base.constraints * 2)
 
 
-@pytest.mark.parametrize("dimension", ["crank", "rod"])
-def test_links_are_longer_than_zero(dimension: str) -> None:
-    box: dict[str, Any] = {name: Range(lower=0.1, upper=0.2) for name in ("crank", "rod", "offset")}
-    box[dimension] = Range(lower=0.0, upper=0.2)
+def test_links_are_longer_than_zero() -> None:
+    base = problem({"peak_torque": "minimise"})
     with pytest.raises(InputError, match="longer than zero"):
-        Problem(name="", mechanism=MACHINE, objectives=(Objective(quantity="stroke", sense="minimise"),), **box)
+        replace(base, crank=Range(lower=0.0, upper=0.2))
+    with pytest.raises(InputError, match="longer than zero"):
+        replace(base, rod=Range(lower=0.0, upper=0.2))
 
 
 def test_rod_to_offset_is_not_maximised_where_the_offset_may_vanish() -> None:
     for offset in ((0.0, 0.1), (-0.1, 0.0), (-0.1, 0.1)):
         with pytest.raises(InputError, match="grows without bound"):
             problem({"rod_to_offset": "maximise"}, offset=offset)
-    assert solve(problem({"rod_to_offset": "maximise"}, offset=(0.05, 0.1))).dimensions[0].tolist()[1:] == [0.6, 0.05]
+    front = solve(problem({"rod_to_offset": "maximise"}, offset=(0.05, 0.1)))
+    assert front.dimensions[0].tolist()[1:] == [0.6, 0.05]
 
 
 @pytest.mark.parametrize(("name", "value"), [("designs", 0), ("samples", 0), ("seed", -1)])
@@ -86,15 +85,6 @@ def test_settings_are_within_their_limits(name: str, value: int) -> None:
 
 
 def test_an_unknown_method_is_refused() -> None:
-    wanted = problem({"peak_torque": "minimise"})
-    unknown = Problem(
-        name="",
-        mechanism=MACHINE,
-        crank=wanted.crank,
-        rod=wanted.rod,
-        offset=wanted.offset,
-        objectives=wanted.objectives,
-        settings=Settings(method="guess"),
-    )
+    base = problem({"peak_torque": "minimise"})
     with pytest.raises(InputError, match="must be 'auto'; got 'guess'"):
-        solve(unknown)
+        solve(replace(base, settings=Settings(method="guess")))
