@@ -1,41 +1,22 @@
 """The peer: the same four objectives and gradients in plain, chunked NumPy on equidistant crank angles.
 
 Written as a good NumPy programmer would: chunks that stay in the cache, the motion shared between torque and position
-error, what depends on the design alone computed once a design, and gradients by complex step at the highest sample only
-(envelope theorem), for many designs at a time. With the same 360 angles, it is what one would write without this
-software, so no refinement: its peak is the highest sample.
+error, and gradients by complex step at the highest sample only (envelope theorem) instead of over the whole grid.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from .machines import ANGLE, BAR, CRANK, GRAVITY, LOAD, OFFSET_SHARE, ROD, SLIDER, SPEED, Array
 
 _STEP = 1e-30
-_BATCH = 2048  # designs whose gradients are computed together: measured, 512 and 8192 are slower
-
-
-class _Motion(NamedTuple):
-    """The linkage at a crank angle: components of the rod, 1 / along, tan(phi), phi', phi'', x', x''."""
-
-    rs: Any
-    rc: Any
-    across: Any
-    along: Any
-    per_along: Any
-    tangent: Any
-    rod_1: Any
-    rod_2: Any
-    x_1: Any
-    x_2: Any
 
 
 def _size(z: Any) -> Any:
-    """Absolute value whose complex step is the derivative."""
-    return np.where(z.real < 0.0, -z, z) if np.iscomplexobj(z) else np.abs(z)
+    return np.where(np.real(z) < 0.0, -z, z)
 
 
 def _bar(length: Any) -> tuple[Any, Any, Any]:
@@ -52,50 +33,35 @@ def _bar(length: Any) -> tuple[Any, Any, Any]:
     )
 
 
-def _motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any) -> _Motion:
-    rs, rc = r * sine, r * cosine
-    across = e - rs
+def torque_and_error(sine: Any, cosine: Any, r: Any, l: Any, e: Any) -> tuple[Any, Any]:
+    """Return the sizes of drive torque (Newton-Euler) and worst-case position error."""
+    across = e - r * sine
     along = np.sqrt(l * l - across * across)
     per_along = 1.0 / along
     tangent = across * per_along
-    rod_1 = -rc * per_along
-    square = rod_1 * rod_1
-    rod_2 = rs * per_along + square * tangent
-    x_1 = -rs - across * rod_1
-    x_2 = -rc - along * square - across * rod_2
-    return _Motion(rs, rc, across, along, per_along, tangent, rod_1, rod_2, x_1, x_2)
-
-
-def _torque(m: _Motion, sine: Any, cosine: Any, r: Any, l: Any) -> Any:
-    """Size of the drive torque, by Newton and Euler: slider, rod, crank."""
+    rod_1 = -r * cosine * per_along
+    rod_2 = r * sine * per_along + rod_1 * rod_1 * tangent
+    x_1 = -r * sine - across * rod_1
+    x_2 = -r * cosine - along * rod_1 * rod_1 - across * rod_2
     w2 = SPEED**2
     mass, moment, inertia = _bar(l)
     _, crank_moment, _ = _bar(r)
     per_l = moment / l
-    pin_x, pin_y = -w2 * m.rc, -w2 * m.rs - GRAVITY
-    sx, sy = per_l * m.along, per_l * m.across
-    bx = (SLIDER * w2) * m.x_2 - LOAD
-    by = m.tangent * bx - ((inertia * w2) * m.rod_2 + sx * pin_y - sy * pin_x) * m.per_along
-    rod_w2, rod_a = w2 * (m.rod_1 * m.rod_1), w2 * m.rod_2
+    pin_x, pin_y = -r * cosine * w2, -r * sine * w2 - GRAVITY
+    sx, sy = per_l * along, per_l * across
+    bx = SLIDER * w2 * x_2 - LOAD
+    by = tangent * bx - (inertia * w2 * rod_2 + sx * pin_y - sy * pin_x) * per_along
+    rod_w2, rod_a = rod_1 * rod_1 * w2, rod_2 * w2
     ax = bx + mass * pin_x - sx * rod_w2 - sy * rod_a
     ay = by + mass * pin_y - sy * rod_w2 + sx * rod_a
-    return _size(m.rc * ay - m.rs * ax - (crank_moment * GRAVITY) * cosine)
-
-
-def _error(m: _Motion, sine: Any, cosine: Any, l: Any, e: Any) -> Any:
-    """Worst-case position error."""
-    error = CRANK * _size(cosine + m.tangent * sine) + (ROD * l) * m.per_along
-    return error + (OFFSET_SHARE * _size(e)) * _size(m.tangent) + ANGLE * _size(m.x_1)
-
-
-def torque(sine: Any, cosine: Any, r: Any, l: Any, e: Any) -> Any:
-    """Return the size of the drive torque, N m."""
-    return _torque(_motion(sine, cosine, r, l, e), sine, cosine, r, l)
-
-
-def error(sine: Any, cosine: Any, r: Any, l: Any, e: Any) -> Any:
-    """Return the worst-case position error, m."""
-    return _error(_motion(sine, cosine, r, l, e), sine, cosine, l, e)
+    torque = r * (cosine * ay - sine * ax) - crank_moment * cosine * GRAVITY
+    error = (
+        _size(cosine + tangent * sine) * CRANK
+        + l * per_along * ROD
+        + _size(tangent) * OFFSET_SHARE * _size(e)
+        + _size(x_1) * ANGLE
+    )
+    return _size(torque), error
 
 
 def closed_forms(r: Any, l: Any, e: Any) -> tuple[Any, Any]:
@@ -106,32 +72,23 @@ def closed_forms(r: Any, l: Any, e: Any) -> tuple[Any, Any]:
 
 
 def evaluate(designs: Array, *, angles: int, chunk: int) -> tuple[Array, Array]:
-    """Return values (4, n) and gradients (4, n, 3): time ratio, peak torque, transmission angle, position error.
-
-    chunk: designs swept together.
-    """
-    n = len(designs)
+    """Return values (n, 4) and gradients (n, 4, 3): time ratio, peak torque, transmission angle, position error."""
     theta = np.arange(angles) * (2.0 * np.pi / angles)
     sine, cosine = np.sin(theta), np.cos(theta)
-    values, gradients = np.empty((4, n)), np.empty((4, n, 3))
-    highest = np.empty((2, n), dtype=np.int64)
-    for begin in range(0, n, chunk):
-        r, l, e = (designs[begin : begin + chunk, i : i + 1] for i in range(3))
-        m = _motion(sine, cosine, r, l, e)
-        curves = _torque(m, sine, cosine, r, l), _error(m, sine, cosine, l, e)
-        rows = np.arange(len(r))
-        for at, row, curve in zip(highest, (1, 3), curves, strict=True):
-            at[begin : begin + chunk] = places = curve.argmax(axis=1)
-            values[row, begin : begin + chunk] = curve[rows, places]
-    for begin in range(0, n, _BATCH):
-        part = slice(begin, begin + _BATCH)
-        values[0, part], values[2, part] = closed_forms(*designs[part].T)
-        for v in range(3):
-            stepped = [designs[part, i] + (1j * _STEP if i == v else 0j) for i in range(3)]
-            ratio, angle = closed_forms(*stepped)
-            slopes = [ratio, angle]
-            for at, curve in zip(highest, (torque, error), strict=True):
-                slopes.append(curve(sine[at[part]], cosine[at[part]], *stepped))
-            for row, slope in zip((0, 2, 1, 3), slopes, strict=True):
-                gradients[row, part, v] = slope.imag / _STEP
+    values, gradients = np.empty((len(designs), 4)), np.empty((len(designs), 4, 3))
+    for begin in range(0, len(designs), chunk):
+        part = designs[begin : begin + chunk]
+        curves = torque_and_error(sine, cosine, *(part[:, i : i + 1] for i in range(3)))
+        for column, curve in zip((1, 3), curves, strict=True):
+            at = curve.argmax(axis=1)
+            values[begin : begin + chunk, column] = curve[np.arange(len(part)), at]
+            for v in range(3):
+                stepped = [part[:, i] + (1j * _STEP if i == v else 0j) for i in range(3)]
+                slope = torque_and_error(sine[at], cosine[at], *stepped)[column // 2].imag / _STEP
+                gradients[begin : begin + chunk, column, v] = slope
+    values[:, 0], values[:, 2] = closed_forms(*designs.T)
+    for v in range(3):
+        stepped = [designs[:, i] + (1j * _STEP if i == v else 0j) for i in range(3)]
+        for column, value in zip((0, 2), closed_forms(*stepped), strict=True):
+            gradients[:, column, v] = value.imag / _STEP
     return values, gradients
