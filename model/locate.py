@@ -30,13 +30,13 @@ from .signals import Signal
 LANES = 64
 """Designs in a block: its working arrays stay in the first-level cache."""
 # Rows of the numbers that the curves need.
-_R, _E, _BRANCH, _OUTWARD, _KAPPA, _DOUBT = range(6)
-_W2, _ALPHA, _INERTIA, _ALONG, _ACROSS, _MASS, _DAMPING, _STIFFNESS, _FORCE_OUTWARD, _FORCE_INWARD = range(6, 16)
+_R, _E, _BRANCH, _KAPPA, _DOUBT, _W2, _ALPHA, _INERTIA, _ALONG, _ACROSS = range(10)
+_MASS, _DAMPING, _STIFFNESS, _STIFFNESS_LESS_MASS, _FORCE_POSITIVE, _FORCE_NEGATIVE = range(10, 16)
 _ROD_ALONG, _ROD_ACROSS, _CRANK_COSINE, _CRANK_SINE, _CONSTANT = range(16, 21)
 _OF_CRANK, _OF_ROD, _OF_OFFSET, _OF_ANGLE = range(21, 25)
 ROWS = 25
 _TORQUE, _WORST = int(Signal.TORQUE), int(Signal.POSITION_ERROR)
-_ZERO, _EIGHTH, _ONE, _TWO = np.float32(0.0), np.float32(0.125), np.float32(1.0), np.float32(2.0)
+_ZERO, _EIGHTH, _HALF, _ONE, _TWO = (np.float32(x) for x in (0.0, 0.125, 0.5, 1.0, 2.0))
 _LOCKED = np.float32(2.0**-22)  # least square of cos(phi): below, rounding could make it negative
 _ROUNDING = 2.0**-20  # of a sample, with room, where the linkage is far from locking
 
@@ -68,12 +68,15 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         angle = d.angle_error * l
         errors = d.crank_error + d.rod_error + d.offset_error + angle
         per = 1.0 / (errors if errors > 0.0 else 1.0)
-        b[_R, j], b[_E, j], b[_BRANCH, j], b[_OUTWARD, j] = d.r / l, d.e / l, d.branch, d.branch * direction
+        b[_R, j], b[_E, j], b[_BRANCH, j] = d.r / l, d.e / l, d.branch
         b[_KAPPA, j], b[_DOUBT, j] = kappa[j], min(1.0, _ROUNDING * l / (l - d.r - abs(d.e)))
         b[_W2, j], b[_ALPHA, j], b[_INERTIA, j] = w2 / pace, d.acceleration / pace, one * inertia
         b[_ALONG, j], b[_ACROSS, j], b[_MASS, j] = one * rod_along, one * rod_across, one * mass
         b[_DAMPING, j], b[_STIFFNESS, j] = one * damping, one * stiffness
-        b[_FORCE_OUTWARD, j], b[_FORCE_INWARD, j] = one * outward, one * inward
+        b[_STIFFNESS_LESS_MASS, j] = one * (stiffness - mass)
+        # Which force acts while x' is positive.
+        b[_FORCE_POSITIVE, j] = one * (outward if d.branch * direction > 0.0 else inward)
+        b[_FORCE_NEGATIVE, j] = one * (inward if d.branch * direction > 0.0 else outward)
         b[_ROD_ALONG, j], b[_ROD_ACROSS, j] = one * fall_along, one * fall_across
         b[_CRANK_COSINE, j], b[_CRANK_SINE, j], b[_CONSTANT, j] = one * fall_cosine, one * fall_sine, one * constant
         b[_OF_CRANK, j], b[_OF_ROD, j] = per * d.crank_error, per * d.rod_error
@@ -94,51 +97,49 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     """Torque, worst case and square of the root-sum-square, each at theta and at pi - theta, which share the motion.
 
-    Of what follows, x_1 and the like belong to theta, y_1 to pi - theta; `turn` is -phi' at theta and phi' there.
+    What is `odd` changes its sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to
+    pi - theta. `turn` is -phi' at theta.
     """
     rs, rc = b[_R, j] * sine, b[_R, j] * cosine
     across = b[_E, j] - rs
     square = max(_ONE - across * across, _LOCKED)
-    per_along = b[_BRANCH, j] * (_ONE / math.sqrt(square))  # one instruction and a Newton step; a division takes longer
+    secant = _ONE / math.sqrt(square)  # one instruction and a Newton step
+    per_along = b[_BRANCH, j] * secant
     along = square * per_along
     tangent = across * per_along
     turn = rc * per_along
     turn_2 = turn * turn
     rod_2 = rs * per_along + turn_2 * tangent
+    centripetal = along * turn_2 + across * rod_2
     swing = across * turn
     x_1, y_1 = swing - rs, -swing - rs
-    centripetal = along * turn_2 + across * rod_2
-    x_2, y_2 = -rc - centripetal, rc - centripetal
-    speeding, even = b[_ALPHA, j] * turn, b[_W2, j] * rod_2
-    w_turn = b[_W2, j] * turn
-    w_turn_2 = w_turn * turn
-    spin = b[_INERTIA, j] * turn
+    w_rod_2, w_turn = b[_W2, j] * rod_2, b[_W2, j] * turn
+    w_turn_2, speeding, spin = w_turn * turn, b[_ALPHA, j] * turn, b[_INERTIA, j] * turn
     sx = b[_ALONG, j] * along - b[_ACROSS, j] * across
     sy = b[_ALONG, j] * across + b[_ACROSS, j] * along
     u_even, u_odd, v_even, v_odd = sine * sy, cosine * sx, sine * sx, cosine * sy
-    x_u, y_u, x_v, y_v = u_even + u_odd, u_even - u_odd, v_odd - v_even, -v_odd - v_even
-    fixed = b[_CONSTANT, j] + b[_CRANK_SINE, j] * sine
-    falling = turn * (b[_ROD_ALONG, j] * along - b[_ROD_ACROSS, j] * across) - b[_CRANK_COSINE, j] * cosine
-    outward, inward, sign = b[_FORCE_OUTWARD, j], b[_FORCE_INWARD, j], b[_OUTWARD, j]
-    x_force = outward if x_1 * sign > _ZERO else inward
-    y_force = outward if y_1 * sign > _ZERO else inward
-    spring, spring_odd = b[_STIFFNESS, j] * along, b[_STIFFNESS, j] * rc
-    x_force = b[_MASS, j] * x_2 + b[_DAMPING, j] * x_1 + (spring + spring_odd) + x_force
-    y_force = b[_MASS, j] * y_2 + b[_DAMPING, j] * y_1 + (spring - spring_odd) + y_force
-    x_torque = (even - speeding) * (x_u - spin) - x_v * (w_turn + w_turn_2) - speeding * x_u + x_1 * x_force
-    y_torque = (even + speeding) * (y_u + spin) + y_v * (w_turn - w_turn_2) + speeding * y_u + y_1 * y_force
+    even = b[_CONSTANT, j] + b[_CRANK_SINE, j] * sine
+    even += w_rod_2 * u_even + speeding * (spin - _TWO * u_odd) + w_turn_2 * v_even - w_turn * v_odd
+    odd = turn * (b[_ROD_ALONG, j] * along - b[_ROD_ACROSS, j] * across) - b[_CRANK_COSINE, j] * cosine
+    odd += w_rod_2 * (u_odd - spin) - _TWO * speeding * u_even + w_turn * v_even - w_turn_2 * v_odd
+    force_even = b[_STIFFNESS, j] * along - b[_MASS, j] * centripetal - b[_DAMPING, j] * rs
+    force_odd = b[_STIFFNESS_LESS_MASS, j] * rc + b[_DAMPING, j] * swing
+    positive, negative = b[_FORCE_POSITIVE, j], b[_FORCE_NEGATIVE, j]
+    x_force = force_even + force_odd + (positive if x_1 > _ZERO else negative)
+    y_force = force_even - force_odd + (positive if y_1 > _ZERO else negative)
     lean = tangent * sine
-    x_r, y_r = b[_OF_CRANK, j] * (lean + cosine), b[_OF_CRANK, j] * (lean - cosine)
-    x_angle, y_angle = b[_OF_ANGLE, j] * x_1, b[_OF_ANGLE, j] * y_1
-    rod, offset = b[_OF_ROD, j] * per_along, b[_OF_OFFSET, j] * tangent
-    worst, both = abs(rod) + abs(offset), rod * rod + offset * offset
+    x_crank, y_crank = lean + cosine, lean - cosine
+    of_crank, of_angle = b[_OF_CRANK, j], b[_OF_ANGLE, j]
+    rod, offset = b[_OF_ROD, j] * secant, b[_OF_OFFSET, j] * tangent
+    both, squares = rod + abs(offset), rod * rod + offset * offset
+    x_square, y_square = of_crank * of_crank * x_crank * x_crank, of_crank * of_crank * y_crank * y_crank
     return (
-        abs(x_torque + (fixed + falling)),
-        abs(y_torque + (fixed - falling)),
-        abs(x_r) + abs(x_angle) + worst,
-        abs(y_r) + abs(y_angle) + worst,
-        x_r * x_r + x_angle * x_angle + both,
-        y_r * y_r + y_angle * y_angle + both,
+        abs(x_1 * x_force + (even + odd)),
+        abs(y_1 * y_force + (even - odd)),
+        of_crank * abs(x_crank) + of_angle * abs(x_1) + both,
+        of_crank * abs(y_crank) + of_angle * abs(y_1) + both,
+        x_square + of_angle * of_angle * x_1 * x_1 + squares,
+        y_square + of_angle * of_angle * y_1 * y_1 + squares,
     )
 
 
@@ -177,15 +178,16 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
         for kind in kinds:
             wanted = wanted or (row_of(kind) == 2) == squares
         for k in range(angles // 2 + 1 if wanted else 0):
-            w = (angles - k) % angles
+            # Where an angle is its own mirror image the other row is one to spare: written twice, it would be slow.
+            w = angles - k + 1 if 2 * k < angles else 0
             if squares:
-                _sample_squares(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w + 1])
+                _sample_squares(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
             else:
-                _sample(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w + 1])
+                _sample(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
     for kind in kinds:
         q = row_of(kind)
         for j in range(LANES):
-            samples[q, 0, j], samples[q, angles + 1, j] = samples[q, angles, j], samples[q, 1, j]
+            samples[q, 0, j] = samples[q, angles, j]
 
 
 @inlined
@@ -199,12 +201,27 @@ def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) ->
 
 
 @inlined
+def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
+    """Fill three rows of `top` from the samples around each lane's first (i = 0) or second maximum."""
+    for j in range(LANES):
+        place = int(mark[2 * i + 1, j])
+        top[3 * i, j] = place - 1
+        place = max(place, 1)
+        mark[4, j], mark[5, j], mark[6, j] = samples[place - 1, j], samples[place, j], samples[place + 1, j]
+    for j in range(LANES):
+        low, middle, high = mark[4, j], mark[5, j], mark[6, j]
+        second = (high - middle) - (middle - low)
+        top[3 * i + 1, j] = _HALF * (low - high) / second if second < _ZERO else _ZERO
+        top[3 * i + 2, j] = second / middle if middle > _ZERO else _ZERO
+
+
+@inlined
 def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
     """Find each lane's highest sample, and the highest other local maximum that could exceed it between samples.
 
     samples: of one signal. `top` (6, LANES) gets of both the place, the vertex of the parabola through its samples (in
     spacings from there), and their second difference over the middle one; the place is -1 if there is no second.
-    Returns whether any lane has one. mark: (4, LANES), for working.
+    Returns whether any lane has one. mark: (7, LANES), for working.
     """
     angles = samples.shape[0] - 2
     for j in range(LANES):
@@ -240,13 +257,7 @@ def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
                     low, middle, high = samples[i - 1, j], samples[i, j], samples[i + 1, j]
                     if _rival(low, middle, high, mark[0, j], mark[1, j], i) > _ZERO and middle > mark[2, j]:
                         mark[2, j], mark[3, j] = middle, i
-    for j in range(LANES):
-        for i in range(2):
-            place = int(mark[2 * i + 1, j])
-            top[3 * i, j] = place - 1
-            place = max(place, 1)
-            low, middle, high = samples[place - 1, j], samples[place, j], samples[place + 1, j]
-            second = (high - middle) - (middle - low)
-            top[3 * i + 1, j] = 0.5 * (low - high) / second if second < 0.0 else 0.0
-            top[3 * i + 2, j] = second / middle if middle > 0.0 else 0.0
+    _vertices(samples, 0, mark, top)
+    if any_rival:
+        _vertices(samples, 1, mark, top)
     return any_rival

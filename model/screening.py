@@ -34,7 +34,7 @@ ANGLES = 64
 """Sampled angles a turn, where thousands of designs are only sorted."""
 
 _STEPS = 7
-_SETTLED = 3e-9  # a step of the refinement, rad, whose square no longer shows in the value
+_SETTLED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value
 _TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
 _FLAT = 1e-13
 
@@ -139,7 +139,7 @@ def _refine(
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
         work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h
-        work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = -h, h, 0.0, 0.0, 1.0
+        work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = -h, h, 0.0, 0.0, 1.0 if top[0, j] >= 0.0 else 0.0
         best[j] = -1.0
     for step in range(_STEPS):
         for j in range(LANES):
@@ -159,20 +159,24 @@ def _refine(
             floor, ceiling, last, last_slope, moves = work[7, j], work[8, j], work[9, j], work[10, j], work[11, j]
             new_sine, new_cosine, old_sine, old_cosine = work[0, j], work[1, j], sines[j], cosines[j]
             curvature = share * top[2, j]
-            better = found >= peak - _FLAT * abs(peak)  # on the flat top the later angle is the better
-            best[j] = found if better else peak
-            sines[j] = new_sine if better else old_sine
-            cosines[j] = new_cosine if better else old_cosine
             floor = t if rise > 0.0 else floor
             ceiling = ceiling if rise > 0.0 else t
             bend = curvature * found / (h * h) if step == 0 else (rise - last_slope) / (t - last)
             trial = t - rise / bend
             middle = 0.5 * (floor + ceiling)
             trial = trial if (trial > floor) & (trial < ceiling) else middle
-            moves = moves if abs(trial - t) > _SETTLED else 0.0
-            moving += moves
-            work[6, j] = trial if moves > 0.0 else t
-            work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = floor, ceiling, t, rise, moves
+            # So short a step is taken without another look: its square still counts in the value, its cube does not.
+            goes_on = moves if (abs(trial - t) > _SETTLED) | (step == 0) else 0.0
+            ahead = 0.0 if goes_on > 0.0 else trial - t
+            found += 0.5 * rise * ahead
+            # On the flat top the later angle is the better.
+            better = (moves > 0.0) & (found >= peak - _FLAT * abs(peak))
+            best[j] = found if better else peak
+            sines[j] = new_sine + new_cosine * ahead if better else old_sine
+            cosines[j] = new_cosine - new_sine * ahead if better else old_cosine
+            moving += goes_on
+            work[6, j] = trial if goes_on > 0.0 else t
+            work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = floor, ceiling, t, rise, goes_on
         if moving == 0.0:
             break
 
@@ -203,7 +207,7 @@ def _screen(
     direction = 1.0 if raw[4] >= 0.0 else -1.0
     kappa = np.ones(LANES)
     coarse = tau.astype(np.float32)
-    scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((4, LANES), np.float32)
+    scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((7, LANES), np.float32)
     samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
     value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
@@ -228,7 +232,7 @@ def _screen(
                     kinds[q], tau, h, top[3 * i : 3 * i + 3], kappa, block, direction, value[i], sines[i], cosines[i]
                 )
             for j in range(LANES):
-                one, two = value[0, j], (value[1, j] if rivals and top[3, j] >= 0.0 else -1.0)
+                one, two = value[0, j], (value[1, j] if rivals else -1.0)
                 x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]
                 value[0, j] = max(one, two)
                 x = x_2 if two > one else x
