@@ -36,14 +36,16 @@ from .signals import Signal, design_motion, signal
 Array = NDArray[np.float64]
 
 ANGLES = 128
-"""Sampled angles a turn. Measured on 750,000 random machines with all kinds of loads: 64 miss the highest of two close
-peaks on 19, 128 on 3, where it is then off by up to 2e-4; margins and peers in benchmarks/peak_accuracy.py."""
+"""Sampled angles a turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds
+of loads (64 angles: on 19), then off by up to 2e-4; hence the finer row of samples around near-highest tops."""
+_FINER, _NEAR = 16, 0.95  # samples of that row, and how near the highest a sample must be to get one
 KEPT = 6
 """Peaks kept of a design, highest first."""
 _ITERATIONS = 60
 _TURN = 2.0 * math.pi
 _STRAY = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _FLAT = 1e-13
+_SAME = 1e-7  # rad: a flat top is not located better
 _THIN = 1e-13  # rad: breakpoints closer than this are one
 
 
@@ -109,6 +111,29 @@ def _refine(
         if value >= best - _FLAT * best:
             best, at = value, theta
     return best, at
+
+
+@inlined
+def _divide(
+    kind: Any, a: Any, b: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any
+) -> Any:
+    """Sample a finer row between a and b: value and angle of its highest sample, and the spacing."""
+    step = (b - a) / _FINER
+    best, at = -1.0, a
+    for i in range(1, _FINER):
+        value = _value(kind, a + i * step, d, block, j, outward, loads, piece, shift)
+        if value > best:
+            best, at = value, a + i * step
+    return best, at, step
+
+
+@inlined
+def _known(angles: Any, count: Any, theta: Any) -> bool:
+    """Whether a peak at that angle is in the list."""
+    known = False
+    for i in range(count):
+        known = known or abs(angles[i] - theta) < _SAME
+    return known
 
 
 @inlined
@@ -195,7 +220,16 @@ def _find(
                 if top:
                     left, right = theta[max(i - 1, 0)], theta[min(i + 1, points - 1)]
                     value, angle = _refine(kind, left, right, theta[i], d, block, 0, outward, loads, piece, shift)
-                    found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
+                    if not _known(at, found, angle):
+                        found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
+                    if f[i] > _NEAR * best:
+                        left, right = theta[max(i - 2, 0)], theta[min(i + 2, points - 1)]
+                        high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift)
+                        if high > value + _FLAT * value:
+                            left, right = max(left, angle - step), min(right, angle + step)
+                            high, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift)
+                            if not _known(at, found, angle):
+                                found = _keep(peak, at, segment, pin, found, high, angle, s, -1)
         for s in range(count):
             if thin[s]:
                 continue
@@ -226,7 +260,8 @@ def _find(
                     gradients[n, i, v] = 0.0
                 continue
             values[n, i] = peak[i]
-            where[n, i] = at[i] - _TURN * math.floor(at[i] / _TURN)
+            turned = at[i] - _TURN * math.floor(at[i] / _TURN)
+            where[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
             s = segment[i]
             _, outward = enter(d, block, 0, within(cuts.angle[s], cuts.angle[s + 1]), loads, watch, piece, shift)
             # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
