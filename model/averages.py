@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
-from .batches import in_chunks
+from .batches import in_chunks, turning
 from .dynamics import forces
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
@@ -120,7 +120,7 @@ def _average(
 
 def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
     """Return mean and RMS drive torque for designs (n, 3): crank, rod, offset, m, each turning fully."""
-    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    designs = turning(designs)
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
     slopes = np.empty((2, n if gradients else 0, 3))

@@ -8,6 +8,28 @@ from functools import lru_cache
 from os import cpu_count
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import AssemblyError
+
+
+def turning(designs: ArrayLike) -> NDArray[np.float64]:
+    """Return designs (n, 3): crank, rod, offset, m, as a contiguous array; what follows needs every one to turn fully.
+
+    Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.
+    """
+    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    turns = (designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (designs[:, 0] > 0.0)
+    if not turns.all():
+        row = int(np.flatnonzero(~turns)[0])
+        crank, rod, offset = 1e3 * designs[row]
+        raise AssemblyError(
+            "rod must exceed crank + |offset|, and the crank zero, for full rotation; "
+            f"got rod {rod:g} mm, crank {crank:g} mm, offset {offset:g} mm in design {row}; leave such designs out"
+        )
+    return designs
+
 
 @lru_cache(maxsize=1)
 def threads() -> ThreadPoolExecutor:

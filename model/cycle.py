@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import kernel
 from .dynamics import forces
+from .errors import InputError
 from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
@@ -84,10 +85,22 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
 def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    The branch is the mechanism's. Where a load jumps (exactly on a dead centre) the inward stroke's value is given.
+    Where a load jumps (exactly on a dead centre) the inward stroke's value is given. Raises `InputError` for arrays of
+    linkages and for a linkage on another branch than the mechanism's.
     """
     linkage.require_full_rotation()
+    if np.shape(linkage.rotates_fully):
+        raise InputError(
+            f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"
+        )
+    if linkage.branch != mechanism.branch:
+        raise InputError(
+            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {mechanism.branch}; "
+            "set branch in both"
+        )
     angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
+    if not np.all(np.isfinite(angles)):
+        raise InputError("crank angles must be finite")
     raw = raw_vector(mechanism)
     raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     out = np.empty((_COLUMNS, len(angles)))

@@ -131,7 +131,9 @@ class Linkage:
         angles = (geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions))
         if self.branch == "crossed":
             angles = (np.pi - angles[0], np.pi - angles[1])
-        return angles[0] % (2.0 * np.pi), angles[1] % (2.0 * np.pi)
+        inner, outer = (np.mod(angle, 2.0 * np.pi) for angle in angles)
+        # Rounding takes a tiny negative angle to 2 pi itself.
+        return np.where(inner < 2.0 * np.pi, inner, 0.0)[()], np.where(outer < 2.0 * np.pi, outer, 0.0)[()]
 
     @property
     def stroke(self) -> Any:
@@ -174,6 +176,8 @@ class Linkage:
         theta, speed, acceleration = (
             np.asarray(value, dtype=np.float64) for value in (crank_angle, speed, acceleration)
         )
+        if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(acceleration))):
+            raise InputError("crank speed and acceleration must be finite")
         m = self._motion(theta)
         w2 = speed * speed
         shape = np.broadcast_shapes(np.shape(m.x), speed.shape, acceleration.shape)

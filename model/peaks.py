@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
-from .batches import in_chunks
+from .batches import in_chunks, turning
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .segments import (
@@ -307,7 +307,7 @@ def find_peaks(
     during: for torque, "outward stroke" or "inward stroke" restricts the search; the position error counts over the
     window of the mechanism's tolerances. kept: peaks returned a design. angles: samples a turn.
     """
-    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    designs = turning(designs)
     n = len(designs)
     values, where = np.empty((n, kept)), np.empty((n, kept))
     slopes = np.empty((n if gradients else 0, kept, 3))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import STEP, analytic, inlined, inverse, kernel, root
-from .batches import in_chunks
+from .batches import in_chunks, turning
 from .dynamics import smooth_load
 from .loads import AngleTable, PositionTable
 from .locate import LANES as LANES
@@ -270,7 +270,7 @@ def screen(
     kinds: signals that `screens` accepts; evaluated together they share the motion. angles: samples a turn, a multiple
     of 4. crowd: concentrate them where the linkage comes close to locking.
     """
-    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    designs = turning(designs)
     n, signals = len(designs), len(kinds)
     values, where = np.empty((signals, n)), np.empty((signals, n))
     slopes = np.empty((signals if gradients else 0, n, 3))

@@ -23,13 +23,12 @@ from numpy.typing import NDArray
 
 from .evaluation import Rows
 from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
-from .programme import LOSS, VIOLATION, Step, solve_step
+from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
 from .stationarity import Array, multipliers, strict_multipliers
 
 ITERATIONS = 100
 CONVERGED = 1e-9
 """Residual of Benson's problem at which a design is done."""
-_GRAIN = 1e-12  # losses and violations below it are rounding
 _TIGHT = 1e-11  # the same as ACTIVE while a design may still move
 _NOISE = 1e-15  # of the objectives: rounding of the merit
 _STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
@@ -127,7 +126,7 @@ class _Batch:
     def advance(self) -> bool:
         """Take one step with every open design; return whether any was open."""
         for row in np.flatnonzero(self.open & self.moved).tolist():
-            if np.max(self.limits.values[row], initial=0.0) <= _GRAIN and self._residual(row) < CONVERGED:
+            if np.max(self.limits.values[row], initial=0.0) <= ROUNDING and self._residual(row) < CONVERGED:
                 self.open[row] = False
         rows = np.flatnonzero(self.open)
         if not len(rows):
@@ -166,7 +165,7 @@ class _Batch:
         return Polished(self.u, greatest(self.goals, m), violation, residual, tuple(pieces), tuple(active))
 
     def _feasible(self) -> NDArray[np.bool_]:
-        return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= _GRAIN)
+        return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)
 
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
         goals, limits = self.evaluator.exact(u)
@@ -193,7 +192,7 @@ class _Batch:
         while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
             self.weight[row] *= 10.0
             step = self._solve(row, goals, limits, chosen)
-        if self.weight[row] > light and _left(limits, step.move) > max(0.5 * _left(limits, first.move), _GRAIN):
+        if self.weight[row] > light and _left(limits, step.move) > max(0.5 * _left(limits, first.move), ROUNDING):
             # A violation that no step within the radius removes: weight would only stiffen what follows.
             self.weight[row] = light
             return first
@@ -310,4 +309,4 @@ def _left(limits: Rows, move: Array) -> float:
 
 def _beyond(excess: Array) -> Array:
     """Return what exceeds rounding."""
-    return np.maximum(excess - _GRAIN, 0.0)
+    return np.maximum(excess - ROUNDING, 0.0)

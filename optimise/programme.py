@@ -6,9 +6,10 @@ With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient
     subject to  p + g d <= F_i + t_i  (each piece p of objective i),   t_i <= v_i,   0 <= v_i,
                 c + a d <= w,   0 <= w,   0 <= u + d <= 1,   |d| <= radius,
 
-where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. v and w are exact
-penalties: where an objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme
-without a solution. Without objectives the step is the shortest one that fulfils the constraints.
+where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
+has room for rounding, so that a gain too small to show is not weighed as a loss. v and w are exact penalties: where an
+objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution.
+Without objectives the step is the shortest one that fulfils the constraints.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ LOSS = 1e3
 """K: what an objective's loss weighs against another's gain, ranges scaled to one."""
 VIOLATION = 1e2
 """C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
+ROUNDING = 1e-12
+"""Losses and violations below it are rounding."""
 _REACH = 1.0  # pieces farther below the greatest cannot become it within a step
 
 
@@ -82,7 +85,7 @@ def solve_step(
         rows = demand(bound, (0, goals.gradients[columns]), (k + place, -np.ones((len(columns), 1))))
         pieces.append((columns, rows))
     one, none = np.eye(count), np.zeros(count)
-    losing = demand(none, (k, one), (k + count, -one))
+    losing = demand(np.full(count, ROUNDING), (k, one), (k + count, -one))
     demand(none, (k + count, -one))
     near = np.flatnonzero(np.isfinite(limits.values))
     limiting = demand(-limits.values[near], (0, limits.gradients[near]), (size - 1, -np.ones((len(near), 1))))
@@ -130,4 +133,7 @@ def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) 
     rest = matrix @ dual - target
     if rest[-1] == 0.0:
         return np.zeros(k), np.zeros(len(rows))
-    return (scale @ (-rest[:-1] / rest[-1]))[:k], dual / lengths / -rest[-1]
+    x, held = -rest[:-1] / rest[-1], dual > 0.0
+    # Between pieces that oppose each other large multipliers cancel: what holds the step places it more exactly.
+    x = x + np.linalg.lstsq(g[held], h[held] - g[held] @ x, rcond=1e-12)[0]
+    return (scale @ x)[:k], dual / lengths / -rest[-1]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle import cycle
-from slidercrank.model.errors import AssemblyError
+from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
 from tests.model.cases import MACHINES, SMOOTH, TOLERANCES, linkage_of, random_designs
@@ -22,7 +22,7 @@ THETA = np.linspace(-2.0, 8.0, 101)
 def test_curves_are_those_of_the_linkage(machine: Mechanism) -> None:
     sign = 1.0 if machine.branch == "open" else -1.0
     for design in random_designs(20, seed=81):
-        got = cycle(machine, Linkage(*design), THETA)
+        got = cycle(machine, linkage_of(design, machine.branch), THETA)
         at = linkage_of(design, machine.branch).at(THETA, speed=machine.speed, acceleration=machine.acceleration)
         np.testing.assert_array_equal(got.crank_angle, THETA)
         # The same formulas, once with contracted multiplications and once without.
@@ -38,7 +38,7 @@ def test_curves_are_those_of_the_linkage(machine: Mechanism) -> None:
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_position_error_adds_up_the_parts_of_all_tolerances(machine: Mechanism) -> None:
     for design in random_designs(20, seed=82):
-        got = cycle(machine, Linkage(*design), THETA)
+        got = cycle(machine, linkage_of(design, machine.branch), THETA)
         parts = error_parts(machine, design, THETA)
         np.testing.assert_allclose(got.position_error, sum(np.abs(part) for part in parts), rtol=1e-11)
         np.testing.assert_allclose(got.position_error_rss, np.sqrt(sum(part**2 for part in parts)), rtol=1e-11)
@@ -88,3 +88,18 @@ def test_position_error_predicts_a_finite_one() -> None:
 def test_cycle_needs_full_rotation() -> None:
     with pytest.raises(AssemblyError, match="for full rotation"):
         cycle(SMOOTH, Linkage(0.25, 0.3, 0.1), THETA)
+
+
+def test_linkage_on_another_branch_than_the_mechanism_is_refused() -> None:
+    with pytest.raises(InputError, match="same branch; got crossed and open"):
+        cycle(Mechanism(), Linkage(0.05, 0.2, 0.03, "crossed"), THETA)
+
+
+def test_several_linkages_at_once_are_refused() -> None:
+    with pytest.raises(InputError, match=r"one linkage at a time; got an array of shape \(2,\)"):
+        cycle(Mechanism(), Linkage(0.05, [0.2, 0.3], 0.03), THETA)
+
+
+def test_curves_at_no_angle_are_refused() -> None:
+    with pytest.raises(InputError, match="crank angles must be finite"):
+        cycle(Mechanism(), Linkage(0.05, 0.2, 0.03), [0.0, math.nan])

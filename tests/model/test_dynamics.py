@@ -34,7 +34,7 @@ def machines(*, loads: bool = True) -> list[Mechanism]:
 
 
 def curves(machine: Mechanism, design: Array, theta: Any = THETA) -> Cycle:
-    return cycle(machine, Linkage(*design), theta)
+    return cycle(machine, Linkage(*design, machine.branch), theta)
 
 
 @dataclasses.dataclass(frozen=True)

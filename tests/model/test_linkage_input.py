@@ -157,3 +157,14 @@ def test_root_that_belongs_to_the_sum_of_the_dead_centres_is_refused() -> None:
 def test_one_bad_stroke_among_many_is_named() -> None:
     with pytest.raises(AssemblyError, match="got stroke 900 mm, rod 300 mm, offset 50 mm"):
         crank_from_stroke([0.1, 0.9], rod=0.3, offset=0.05)
+
+
+@pytest.mark.parametrize("motion", [{"speed": math.nan}, {"acceleration": math.inf}, {"speed": [1.0, math.nan]}])
+def test_crank_motion_that_is_not_a_number_is_refused(motion: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="crank speed and acceleration must be finite"):
+        Linkage(0.1, 0.3, 0.02).at(0.3, **motion)
+
+
+def test_dead_centre_a_rounding_error_below_zero_is_at_zero() -> None:
+    _, outer = Linkage(0.1, 0.3, -1e-18).dead_centre_angles
+    assert outer == 0.0

@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.averages import average_torque
 from slidercrank.model.cycle import cycle
+from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage import Linkage, crank_from_stroke
 from slidercrank.model.links import RigidLink
 from slidercrank.model.loads import AngleTable, PositionTable, StrokeForce, Viscous
 from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.peaks import KEPT, find_peaks
+from slidercrank.model.screening import screen
 from slidercrank.model.signals import Signal
 from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, linkage_of, random_designs
 from tests.model.sweep import ANGLES, greatest
@@ -65,7 +68,7 @@ def test_peak_is_that_of_the_curve_over_the_cycle(name: str, signal: Signal) -> 
     designs = DESIGNS[:60]
 
     def curve(design: Array, theta: Array) -> Array:
-        of_cycle = cycle(machine, Linkage(*design.reshape(3)), theta.ravel())
+        of_cycle = cycle(machine, Linkage(*design.reshape(3), machine.branch), theta.ravel())
         parts = [getattr(of_cycle, field) for field in FIELDS[signal]]
         size: Array = np.sqrt(sum(part**2 for part in parts)).reshape(theta.shape)
         return size
@@ -277,3 +280,15 @@ def test_higher_of_two_close_peaks_is_found_where_the_samples_show_only_the_lowe
     for angles in (20, 22, 40, 128):
         found = find_peaks(machine, Signal.GUIDE_FORCE, design, angles=angles, kept=1).values
         np.testing.assert_allclose(found[0, 0], swept[0], rtol=EXACT, err_msg=f"{angles} angles")
+
+
+@pytest.mark.parametrize("design", [(0.1, 0.12, 0.03), (0.1, 0.13, -0.03), (-0.1, 0.3, 0.0), (0.1, math.nan, 0.0)])
+def test_designs_that_do_not_turn_have_no_peaks_and_no_averages(design: tuple[float, float, float]) -> None:
+    designs = np.array([[0.1, 0.3, 0.02], design])
+    message = "for full rotation; got rod .* in design 1"
+    with pytest.raises(AssemblyError, match=message):
+        find_peaks(SMOOTH, Signal.TORQUE, designs)
+    with pytest.raises(AssemblyError, match=message):
+        screen(SMOOTH, (Signal.TORQUE,), designs)
+    with pytest.raises(AssemblyError, match=message):
+        average_torque(SMOOTH, designs)

@@ -74,8 +74,7 @@ def only(wanted: Problem) -> tuple[Array, float]:
     front = solve(wanted)
     assert front.status == "done", front.message
     assert len(front) == 1
-    # At a flat optimum the rounding of the value, 1e-15, hides slopes of about 1e-6: no step is seen to improve it.
-    assert front.designs["residual"][0] <= 1e-5
+    assert front.designs["residual"][0] <= 1e-6
     return front.dimensions, float(front.values[0, 0])
 
 
@@ -216,8 +215,8 @@ def test_the_peak_torque_of_a_static_force_is_least_with_the_longest_rod() -> No
 
 def test_a_target_that_can_be_met_is_met() -> None:
     design, value = only(problem({"time_ratio": 1.25}, {"stroke": 0.2, "rod_to_offset": 3.2}))
-    assert value == pytest.approx(0.0, abs=1e-11)  # where the polish takes both sides of the target for tied
-    assert time_ratio(design)[0] == pytest.approx(1.25, abs=1e-11)
+    assert value == pytest.approx(0.0, abs=1e-12)
+    assert time_ratio(design)[0] == pytest.approx(1.25, rel=1e-12)
 
 
 def test_a_target_out_of_reach_is_approached() -> None:
