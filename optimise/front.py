@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..objectives.registry import quantity
+from .pile import STATIONARY
 from .problem import Objective, Problem
+from .stationarity import multipliers
 
 Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range per range: a loss below is rounding
@@ -120,6 +122,11 @@ class ParetoFront:
         units = np.array([quantity(objective.quantity).unit.factor for objective in self.objectives])
         spans = units * np.where(np.ptp(self.values, axis=0) > 0.0, np.ptp(self.values, axis=0), 1.0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
+        residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
+        if residual <= STATIONARY:
+            # Along what is left of the slopes all objectives would gain a little, without end: the design counts as
+            # exactly stationary.
+            slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
         for b in range(m):
             losses = _cheapest(slopes, owner, self.active[row], b, m) if k else None
