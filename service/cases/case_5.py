@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ CRANK, ROD, SPEED = 0.040, 0.064, 251.0
 OFFSETS = (0.0, 0.010, 0.020)
 MACHINE = Mechanism(speed=SPEED, crank=RigidLink(mass=0.2), rod=RigidLink(mass=0.5), slider_mass=0.8)
 EXPERIMENT, EXPERIMENT_SPEED = Linkage(0.0381, 0.1524), 20.994
+Array = NDArray[np.float64]
 _RPM = 2.0 * math.pi / 60.0
 _TURN = 2.0 * math.pi
 
@@ -39,19 +42,17 @@ def lumped_feeder() -> Mechanism:
     return Mechanism(speed=SPEED, slider_mass=masses()[1])
 
 
-def exact_torque(offset: float, crank_angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def exact_torque(offset: float, crank_angle: Array) -> Array:
     """Return the drive torque against the inertia of the reciprocating mass, N m: virtual work, m3 x_t x_tt / w."""
     at = linkage(offset).at(crank_angle, speed=SPEED)
-    torque: NDArray[np.float64] = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
+    torque: Array = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
     return torque
 
 
-def formula_torque(
-    offset: float, crank_angle: NDArray[np.float64], *, as_equation_20: bool = False
-) -> NDArray[np.float64]:
+def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = False) -> Array:
     """Return the drive torque by T = k F_i tan(alpha), N m, in one of its two readings."""
     rotating, reciprocating = masses()
-    torque: NDArray[np.float64] = tangent_torque(
+    torque: Array = tangent_torque(
         linkage(offset),
         crank_angle,
         speed=SPEED,
@@ -132,11 +133,8 @@ def formulas(t: float, e: float) -> dict[str, float]:
     under = c**2 - h**2
 
     def equation_20(first: float, second: float) -> float:
-        return (
-            -(w**2) * k * cosine
-            - w**2 * k * (k * math.cos(2.0 * t) - e * sine) / under**first
-            - (w * k * cosine * h) ** 2 / under**second
-        )
+        one = w**2 * k * (k * math.cos(2.0 * t) - e * sine) / math.pow(under, first)
+        return -(w**2) * k * cosine - one - (w * k * cosine * h) ** 2 / math.pow(under, second)
 
     return {
         "equation_10": 1e3 * ((k + c) - k * cosine + under**0.5),
@@ -163,10 +161,8 @@ def _torques() -> dict[str, float]:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])
         found[f"torque_{name}"] = float(find_peaks(machine, Signal.TORQUE, designs).values[0, 0])
-        found[f"formula_s_{name}"] = _greatest(lambda t, e=offset: formula_torque(e, t), 0.0, _TURN)
-        found[f"formula_20_{name}"] = _greatest(
-            lambda t, e=offset: formula_torque(e, t, as_equation_20=True), 0.0, _TURN
-        )
+        found[f"formula_s_{name}"] = _greatest(partial(formula_torque, offset), 0.0, _TURN)
+        found[f"formula_20_{name}"] = _greatest(partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN)
     for offset in OFFSETS[1:]:
         inner, outer = (float(angle) for angle in linkage(offset).dead_centre_angles)
         strokes = {
@@ -174,21 +170,21 @@ def _torques() -> dict[str, float]:
             "return": (outer, outer + (inner - outer) % _TURN),
         }
         for stroke, ends in strokes.items():
-            found[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(lambda t, e=offset: exact_torque(e, t), *ends)
+            found[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(partial(exact_torque, offset), *ends)
     return found
 
 
-def _greatest(curve: object, start: float, end: float) -> float:
+def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> float:
     """Return the greatest size of a smooth curve over an interval: sampled, then refined between samples."""
     from scipy.optimize import minimize_scalar
 
     angles = np.linspace(start, end, 2001)
-    best = int(np.argmax(np.abs(curve(angles))))  # type: ignore[operator]
-    low, high = angles[max(best - 1, 0)], angles[min(best + 1, len(angles) - 1)]
+    best = int(np.argmax(np.abs(curve(angles))))
+    low, high = float(angles[max(best - 1, 0)]), float(angles[min(best + 1, len(angles) - 1)])
     found = minimize_scalar(
-        lambda t: -float(np.abs(curve(np.array(t)))),  # type: ignore[operator]
+        lambda t: -float(np.abs(curve(np.array(t)))),
         bounds=(low, high),
         method="bounded",
         options={"xatol": 1e-11},
     )
-    return -float(found.fun)
+    return float(np.abs(curve(np.array(found.x))))

@@ -38,6 +38,7 @@ def polygon_figure() -> Sheet:
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
         subtitle="crank 3, rod 8, offset 2 (no dimension); crank angle −30°, −15 rad/s, −10 rad/s²",
         units=("no dimension", "1/s", "1/s²"),
+        length=1.0,
     )
 
 
@@ -94,7 +95,7 @@ def in_line_figure() -> Sheet:
     x = 1e3 * at.slider_position
     panels = (
         Panel(
-            "paths, mm",
+            "paths: y, mm",
             "x, mm",
             (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1)),
             equal=True,
@@ -193,7 +194,7 @@ def offset_figure() -> Sheet:
             turns=True,
         ),
         Panel(
-            "inertia torque by k F tan(alpha), N m",
+            "torque by k F tan(alpha), N m",
             _CRANK_ANGLE,
             over_offsets(lambda offset: case_5.formula_torque(offset, theta)),
             turns=True,
@@ -225,7 +226,7 @@ def offset_figure() -> Sheet:
     )
     return Sheet(
         "Case 5: effect of the offset over two cycles (Obaseki and Alfred, Figs. 15 to 18)",
-        "crank 40, rod 64 mm, 251 rad/s; 1.05 kg with the slider, 0.35 kg at the crank pin; offsets of the mirror image",
+        "crank 40, rod 64 mm, 251 rad/s; 1.05 kg with the slider, 0.35 kg at the crank pin; offset −e",
         panels,
         columns=2,
     )

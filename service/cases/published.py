@@ -30,9 +30,10 @@ class Numbers:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A number of a publication. printed: as printed, None if it is not; where `formula`, the value of a printed formula. exact: in the same unit, None if unknown.
+    """A number of a publication.
 
-    where: its place in the publication. why: the reason where it does not agree, or what the number is.
+    where: its place there. printed: as printed, None if it is not; where `formula`, the value of a printed formula.
+    exact: in the same unit, None if it cannot be computed. why: the reason where both do not agree.
     """
 
     key: str

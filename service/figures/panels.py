@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from .style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, TITLE, VERMILION, dress, limits, new_figure, place, write
@@ -33,7 +35,10 @@ _POINTS: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Line:
-    """A curve through (x, y), each (n,), as shown; single points if `points`. style: which of the line styles."""
+    """A curve through (x, y), each (n,), as shown, with a gap where y is nan; single points if `points`.
+
+    style: which of the line styles.
+    """
 
     label: str
     x: Array
@@ -46,7 +51,7 @@ class Line:
 class Panel:
     """Lines over a common axis. title, across: with unit. names: (text, x, y) of what is named in the drawing.
 
-    equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. log: of y.
+    equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns.
     """
 
     title: str
@@ -55,7 +60,6 @@ class Panel:
     names: tuple[tuple[str, float, float], ...] = ()
     equal: bool = False
     turns: bool = False
-    log: bool = False
 
 
 @dataclass(frozen=True)
@@ -88,8 +92,7 @@ def _draw(axes: Axes, panel: Panel) -> None:
         style = _POINTS if line.points else _STYLES[line.style % len(_STYLES)]
         axes.plot(line.x, line.y, label=line.label, zorder=4 if line.points else 3, **style)
     _scale(axes, panel)
-    for text, x, y in panel.names:
-        axes.annotate(text, xy=(x, y), xytext=(4, 4), textcoords="offset points", fontsize=SMALL, color=INK, zorder=6)
+    _name(axes, panel)
     axes.text(0.0, 1.04, panel.title, transform=axes.transAxes, va="bottom", fontsize=SMALL, color=INK, weight="bold")
     axes.set_xlabel(panel.across, fontsize=TEXT)
     labelled = [line for line in panel.lines if line.label]
@@ -100,21 +103,72 @@ def _draw(axes: Axes, panel: Panel) -> None:
         )
 
 
+_PLACES = tuple(
+    (distance * x, distance * y)
+    for distance in (5.0, 14.0)
+    for x, y in ((1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.2), (0, -1.2), (1.2, 0), (-1.2, 0))
+)
+"""Where a name may stand, points from what it names; the first is taken unless another is clearer."""
+
+
+def _name(axes: Axes, panel: Panel) -> None:
+    """Write each name beside its point, where it covers the least of other names and of lines."""
+    if not panel.names:
+        return
+    axes.apply_aspect()
+    drawn = np.concatenate([axes.transData.transform(_dense(line)) for line in panel.lines])
+    taken: list[Bbox] = []
+    for text, x, y in panel.names:
+        axes.plot(x, y, marker="o", markersize=2.6, color=INK, zorder=5)
+        best: tuple[float, Annotation] | None = None
+        for place_x, place_y in _PLACES:
+            label = axes.annotate(
+                text,
+                xy=(x, y),
+                xytext=(place_x, place_y),
+                textcoords="offset points",
+                ha="left" if place_x > 0.0 else "right" if place_x < 0.0 else "center",
+                va="bottom" if place_y > 0.0 else "top" if place_y < 0.0 else "center",
+                fontsize=SMALL,
+                color=INK,
+                zorder=6,
+            )
+            box = label.get_window_extent()
+            covered = int(box.count_contains(drawn))
+            outside = not (axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1)
+            cost = covered + 1000.0 * outside + sum(1000.0 for other in taken if box.overlaps(other))
+            if best is None or cost < best[0]:
+                if best is not None:
+                    best[1].remove()
+                best = (cost, label)
+            else:
+                label.remove()
+        assert best is not None
+        taken.append(best[1].get_window_extent())
+
+
+def _dense(line: Line) -> Array:
+    """Return points (m, 2) close to each other along a line."""
+    at = np.linspace(0.0, len(line.x) - 1.0, 60 * len(line.x))
+    index = np.arange(len(line.x))
+    return np.stack([np.interp(at, index, line.x), np.interp(at, index, line.y)], axis=1)
+
+
 def _scale(axes: Axes, panel: Panel) -> None:
     values = np.concatenate([line.y for line in panel.lines])
-    low, high = float(values.min()), float(values.max())
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.12)
         return
-    if panel.log:
-        axes.set_yscale("log")
-    else:
-        if low < 0.0 < high:
-            axes.axhline(0.0, color=FRAME, linewidth=0.8, zorder=1)
-        axes.set_ylim(limits(low, high))
+    if low < 0.0 < high:
+        axes.axhline(0.0, color=FRAME, linewidth=0.8, zorder=1)
+    axes.set_ylim(limits(low, high))
     ends = np.concatenate([line.x for line in panel.lines])
-    axes.set_xlim(float(ends.min()), float(ends.max()))
+    if any(line.points for line in panel.lines):
+        axes.set_xlim(limits(float(ends.min()), float(ends.max()), 0.03))
+    else:
+        axes.set_xlim(float(ends.min()), float(ends.max()))
     if panel.turns:
         axes.set_xticks(_quarters(ends))
 

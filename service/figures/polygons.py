@@ -15,7 +15,7 @@ from .panels import Line, Panel, Sheet, draw_sheet
 from .style import save, shown
 
 BRANCHES: tuple[Branch, ...] = ("open", "crossed")
-_UNITS = ("m", "m/s", "m/s²")
+_UNITS = ("mm", "m/s", "m/s²")
 _COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, the same on both branches
 CRANK_ANGLE = math.radians(30.0)
 """Drawn unless another one is asked for: no link of any common proportion is then normal to the slider line."""
@@ -37,9 +37,17 @@ def both_branches(
 
 
 def polygon_sheet(
-    found: Mapping[Branch, Polygons], *, title: str, subtitle: str, units: tuple[str, str, str] = _UNITS
+    found: Mapping[Branch, Polygons],
+    *,
+    title: str,
+    subtitle: str,
+    units: tuple[str, str, str] = _UNITS,
+    length: float = 1e3,
 ) -> Sheet:
-    """Return the three polygons as panels, one line for each branch; the vertices are named."""
+    """Return the three polygons as panels, one line for each branch; the vertices are named.
+
+    units: of position, velocity and acceleration. length: the unit of positions in a metre.
+    """
     panels = []
     for name, unit, vertices in zip(
         ("position", "velocity", "acceleration"),
@@ -49,7 +57,7 @@ def polygon_sheet(
     ):
         lines, names = [], []
         for index, branch in enumerate(found):
-            points = getattr(found[branch], name)
+            points = getattr(found[branch], name) * (length if name == "position" else 1.0)
             closed = np.concatenate([points, points[:1]]) if name != "position" else points
             lines.append(Line(branch, closed[:, 0], closed[:, 1], index))
             for number, (vertex, (x, y)) in enumerate(zip(vertices, points, strict=True)):

@@ -22,7 +22,7 @@ def there_and_back(designs: Array, theta: Array, branch: Branch) -> dict[Solutio
     linkage = linkage_of(designs, branch)
     per_speed = linkage.at(theta, speed=1.0).slider_velocity
     counts: dict[Solution, int] = {}
-    for solution, sign in (("outward", 1.0), ("inward", -1.0)):
+    for solution, sign in zip(SOLUTIONS, (1.0, -1.0), strict=True):
         there = sign * linkage.sign * per_speed > 0.1 * linkage.crank
         part, angle = linkage_of(designs[there], branch), theta[there]
         at = part.at(angle, speed=SPEED, acceleration=ACCELERATION)
@@ -101,7 +101,7 @@ def test_a_dead_centre_is_refused_because_the_crank_motion_is_undetermined() -> 
     for position in linkage.dead_centres:
         with pytest.raises(InputError, match=r"dead centres, where the crank motion is undetermined; got position \d"):
             crank_motion(linkage, position, velocity=0.0, acceleration=1.0, solution="outward")
-    with pytest.raises(InputError, match="got position 13.26"):
+    with pytest.raises(InputError, match=r"got position 13\.26"):
         crank_motion(linkage, [0.05, linkage.dead_centres[0]], velocity=0.0, acceleration=1.0, solution="outward")
 
 
@@ -114,12 +114,13 @@ def test_a_position_out_of_reach_is_refused_with_its_value(position: float) -> N
 
 def test_a_solution_on_the_other_branch_is_refused() -> None:
     linkage = Linkage(0.10, 0.08, 0.05)  # rod shorter than crank + offset
-    position = linkage.at(math.radians(-2.0)).slider_position
-    assert linkage.at(crank_angle_at(linkage, position, solution="outward")).slider_position == pytest.approx(position)
-    near = Linkage(0.10, 0.08, 0.05).at(math.radians(5.0)).slider_position - 0.14
-    with pytest.raises(AssemblyError, match="solution must lie on the open branch"):
-        for solution in SOLUTIONS:
-            crank_angle_at(linkage, near, solution=solution)
+    found = crank_angle_at(linkage, 0.05, solution="inward")
+    assert linkage.at(found).slider_position == pytest.approx(0.05, rel=1e-13)
+    with pytest.raises(AssemblyError, match=r"the outward solution must lie on the open branch; got position 50 mm"):
+        crank_angle_at(linkage, 0.05, solution="outward")
+    crossed = Linkage(0.10, 0.08, 0.05, "crossed")
+    found = crank_angle_at(crossed, 0.05, solution="outward")
+    assert crossed.at(found).slider_position == pytest.approx(0.05, rel=1e-13)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, "far"])

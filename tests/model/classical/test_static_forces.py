@@ -13,7 +13,7 @@ from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Branch, Mechanism
-from tests.model.cases import random_designs
+from tests.model.cases import linkage_of, random_designs
 
 THETA = np.linspace(0.1, 6.3, 50)
 
@@ -37,7 +37,7 @@ def test_in_line_forces_are_the_published_formulas() -> None:
 def test_forces_are_those_of_the_dynamics_without_masses(branch: Branch) -> None:
     machine = Mechanism(loads=(StrokeForce(outward=80.0, inward=80.0),), branch=branch)
     for design in random_designs(20, seed=61, least_margin=0.01):
-        linkage = Linkage(*design, branch)
+        linkage = linkage_of(design, branch)
         found, at = static_forces(linkage, THETA, load=80.0), cycle(machine, linkage, THETA)
         steep = 1e-13 * 80.0 * np.abs(found.rod_force).max() / 80.0
         np.testing.assert_allclose(found.crank_torque, at.torque, rtol=0, atol=steep)
