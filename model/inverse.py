@@ -68,8 +68,9 @@ def crank_angle_at(linkage: Linkage, slider_position: ArrayLike, *, solution: So
         f"the {solution} solution must lie on the {linkage.branch} branch",
         "ask for the other solution or the other branch",
     )
-    wrapped: Array = np.mod(theta, 2.0 * math.pi)
-    return wrapped
+    wrapped = np.mod(theta, 2.0 * math.pi)
+    # The remainder of a tiny negative angle is rounded to the whole turn.
+    return np.where(wrapped < 2.0 * math.pi, wrapped, 0.0)
 
 
 def crank_motion(

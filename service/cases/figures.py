@@ -24,7 +24,7 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
     """Write the figures of the cases, case_<number>_<what>.png; yield each file as soon as it is written."""
     folder.mkdir(parents=True, exist_ok=True)
     for number in numbers:
-        for name, make, size in _FIGURES[number]:
+        for name, make, size in FIGURES[number]:
             path = folder / f"case_{number}_{name}.png"
             save(draw_sheet(make(), width=size[0], height=size[1]), path)
             yield path
@@ -232,7 +232,7 @@ def offset_figure() -> Sheet:
     )
 
 
-_FIGURES: dict[int, tuple[tuple[str, Callable[[], Sheet], tuple[float, float]], ...]] = {
+FIGURES: dict[int, tuple[tuple[str, Callable[[], Sheet], tuple[float, float]], ...]] = {
     1: (("polygons", polygon_figure, (4.6, 4.2)),),
     2: (("motion", sieve_figure, (6.2, 2.35)), ("sensitivity", sensitivity_figure, (6.2, 2.35))),
     3: (("motion_and_forces", in_line_figure, (6.2, 2.35)),),

@@ -96,6 +96,12 @@ def test_crank_angle_at_a_dead_centre_is_that_of_the_closed_form(branch: Branch)
             assert abs(math.remainder(float(found) - float(angle), 2.0 * math.pi)) < 1e-7
 
 
+def test_crank_angles_are_less_than_a_whole_turn() -> None:
+    # An offset so small that the angle rounds to a whole turn: -1e-17 rad modulo 2 pi.
+    found = crank_angle_at(Linkage(1.0, 3.0, -1e-17), 4.0, solution="outward")
+    assert found == 0.0
+
+
 def test_a_dead_centre_is_refused_because_the_crank_motion_is_undetermined() -> None:
     linkage = Linkage(0.04, 0.064, 0.02)
     for position in linkage.dead_centres:

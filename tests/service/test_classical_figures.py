@@ -194,7 +194,7 @@ def test_offset_panels_are_the_motion_and_virtual_work_of_the_feeder() -> None:
 
 
 SHEETS: dict[str, tuple[Callable[[], Sheet], tuple[float, float]]] = {
-    name: (make, size) for of_case in of_cases._FIGURES.values() for name, make, size in of_case
+    name: (make, size) for of_case in of_cases.FIGURES.values() for name, make, size in of_case
 } | {
     "static forces": (lambda: static_forces_sheet(MACHINE, LINKAGE), (8.0, 2.35)),
     "approximations": (lambda: approximations_sheet(MACHINE, LINKAGE), (7.6, 3.0)),
