@@ -19,6 +19,7 @@ from typer.core import TyperGroup
 
 from ..model.errors import SlidercrankError
 from .analyse_command import analyse
+from .cases_command import cases
 from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
@@ -100,7 +101,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, check, schema, front, export):
+for command in (optimise, analyse, check, schema, front, export, cases):
     app.command()(command)
 
 

@@ -1,0 +1,113 @@
+"""The approximate models beside the exact one, over crank angle and over offset."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..cycle import cycle
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .lumped import lumped, rotating_and_reciprocating
+from .series import series_acceleration, series_torque, tangent_torque
+
+Array = NDArray[np.float64]
+
+ACCELERATION = ("series",)
+TORQUE = ("two masses by mass centre", "two masses, half and half", "series", "k F tan(alpha)")
+"""The approximations, in the order of every table and figure."""
+_ANGLES = 1440
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Exact and approximate curves of one design at constant speed; each (n,), SI.
+
+    accelerations: of the slider, by the names of `ACCELERATION`. torques: inertia torque that the drive gives, by the
+    names of `TORQUE`.
+    """
+
+    crank_angle: Array
+    acceleration: Array
+    accelerations: Mapping[str, Array]
+    torque: Array
+    torques: Mapping[str, Array]
+
+
+def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Comparison:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad: inertia alone, at constant speed.
+
+    Loads, gravity and the acceleration of the crank are left out. Masses of the formulas: the rod by its mass centre.
+    Raises `InputError` without a crank speed, and for a mass centre that is not between the pins.
+    """
+    linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
+    inert = _inertia_alone(mechanism)
+    exact = cycle(inert, linkage, crank_angle)
+    theta, speed = exact.crank_angle, mechanism.speed
+    rotating, reciprocating = rotating_and_reciprocating(inert, linkage)
+    torques = (
+        cycle(lumped(inert, linkage), linkage, theta).torque,
+        cycle(lumped(inert, linkage, crank_pin_share=0.5), linkage, theta).torque,
+        series_torque(linkage, theta, speed=speed, reciprocating_mass=reciprocating),
+        tangent_torque(linkage, theta, speed=speed, rotating_mass=rotating, reciprocating_mass=reciprocating),
+    )
+    return Comparison(
+        theta,
+        exact.slider_acceleration,
+        {ACCELERATION[0]: series_acceleration(linkage, theta, speed=speed)},
+        exact.torque,
+        dict(zip(TORQUE, torques, strict=True)),
+    )
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Greatest error of each approximation over the cycle as a share of the exact peak; each (offsets,).
+
+    peak_acceleration, peak_torque: exact, m/s^2 and N m. Errors of a torque that is zero throughout are `nan`.
+    """
+
+    offset: Array
+    peak_acceleration: Array
+    peak_torque: Array
+    accelerations: Mapping[str, Array]
+    torques: Mapping[str, Array]
+
+
+def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLike) -> Errors:
+    """Return the errors for each offset (n,), m, with crank and rod of one linkage; 1440 crank angles each.
+
+    Raises `AssemblyError` for an offset with which the linkage does not turn fully.
+    """
+    values = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
+    theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
+    rows = [
+        compare(mechanism, Linkage(linkage.crank, linkage.rod, offset, mechanism.branch), theta) for offset in values
+    ]
+    return Errors(
+        values,
+        np.array([np.abs(row.acceleration).max() for row in rows]),
+        np.array([np.abs(row.torque).max() for row in rows]),
+        {
+            name: np.array([relative_error(row.accelerations[name], row.acceleration) for row in rows])
+            for name in ACCELERATION
+        },
+        {name: np.array([relative_error(row.torques[name], row.torque) for row in rows]) for name in TORQUE},
+    )
+
+
+def relative_error(approximate: Array, exact: Array) -> float:
+    """Return the greatest difference as a share of the greatest exact size; `nan` if that is zero."""
+    peak = float(np.abs(exact).max())
+    return float(np.abs(approximate - exact).max()) / peak if peak > 0.0 else math.nan
+
+
+def _inertia_alone(mechanism: Mechanism) -> Mechanism:
+    if mechanism.speed == 0.0:
+        raise InputError("the approximate models need a crank speed; got 0 rad/s; give one")
+    return replace(mechanism, loads=(), gravity=(0.0, 0.0), acceleration=0.0)

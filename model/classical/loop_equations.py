@@ -1,0 +1,132 @@
+r"""The two loop equations solved by Newton's and Raphson's iteration: an independent check of the closed form.
+
+    f_1 = r cos(theta) + l cos(phi) - x = 0        J = d(f_1, f_2) / d(x, phi) = | -1   -l sin(phi) |
+    f_2 = r sin(theta) + l sin(phi) - e = 0                                      |  0    l cos(phi) |
+
+The rates follow from the same matrix by linear solves: J (x', phi') = -df/dtheta, and once more for the second ones.
+Source of the approach: J. Gupta, "Offset-Slider Crank Mechanism", course report ME748, section 3.1, whose rod points
+the other way and whose offset is the mirror image.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..linkage import Linkage
+
+Array = NDArray[np.float64]
+
+_LAST_STEP = 1e-10
+"""A step that ends the iteration, rad and shares of the rod: what is left is half its square times tan(phi)."""
+
+
+@dataclass(frozen=True)
+class LoopSolution:
+    """Motion by iteration; arrays of the broadcast shape, SI and radians. iterations: steps taken at each angle."""
+
+    crank_angle: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    rod_angle: Array
+    rod_velocity: Array
+    rod_acceleration: Array
+    iterations: NDArray[np.int64]
+
+
+def solve_loop(
+    linkage: Linkage,
+    crank_angle: ArrayLike,
+    *,
+    speed: ArrayLike = 0.0,
+    acceleration: ArrayLike = 0.0,
+    start: tuple[ArrayLike, ArrayLike] | None = None,
+    most: int = 60,
+) -> LoopSolution:
+    """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2); all broadcast.
+
+    start: slider position (m) and rod angle (rad) to start from. By default the rod lies along the slider line on the
+    linkage's branch; from there the rod angle rises or falls to the solution without overshooting, because the sine is
+    concave up to a quarter turn. From another start the solution that is found may lie on the other branch.
+    most: iterations allowed.
+
+    Raises `AssemblyError` where the linkage cannot be assembled, `InputError` where the iteration does not end.
+    """
+    linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # refuses what cannot be assembled
+    theta, w, alpha, r, l, e = np.broadcast_arrays(
+        *(np.asarray(value, dtype=np.float64) for value in (crank_angle, speed, acceleration)),
+        linkage.crank,
+        linkage.rod,
+        linkage.offset,
+    )
+    pin = r * np.stack([np.cos(theta), np.sin(theta)])
+    if start is None:
+        start = (pin[0] + linkage.sign * l, 0.0 if linkage.sign > 0.0 else math.pi)
+    x, phi = (np.broadcast_to(np.asarray(value, dtype=np.float64), theta.shape).copy() for value in start)
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(phi))):
+        raise InputError("the start of the iteration must be finite; give a slider position and a rod angle")
+    iterations = np.zeros(theta.shape, dtype=np.int64)
+    moving = np.ones(theta.shape, dtype=np.bool_)
+    for _ in range(most):
+        residual = np.stack([pin[0] + l * np.cos(phi) - x, pin[1] + l * np.sin(phi) - e], axis=-1)
+        step = _solve(_jacobian(l, phi), -residual, moving, theta)
+        x, phi = x + np.where(moving, step[..., 0], 0.0), phi + np.where(moving, step[..., 1], 0.0)
+        iterations += moving
+        moving = moving & (np.maximum(np.abs(step[..., 0]) / l, np.abs(step[..., 1])) > _LAST_STEP)
+        if not np.any(moving):
+            break
+    else:
+        raise InputError(_not_converged(most, moving, theta))
+    jacobian = _jacobian(l, phi)
+    everywhere = np.ones(theta.shape, dtype=np.bool_)
+    turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
+    first = _solve(jacobian, -turned * w[..., None], everywhere, theta)
+    # Differentiated again: J (x_tt, phi_tt) = w^2 pin + phi_t^2 rod - alpha d(pin)/dtheta.
+    bent = np.stack([pin[0], pin[1]], axis=-1) * (w * w)[..., None]
+    rod = np.stack([l * np.cos(phi), l * np.sin(phi)], axis=-1) * (first[..., 1] ** 2)[..., None]
+    second = _solve(jacobian, bent + rod - turned * alpha[..., None], everywhere, theta)
+    return LoopSolution(
+        theta,
+        x,
+        first[..., 0],
+        second[..., 0],
+        np.arctan2(np.sin(phi), np.cos(phi)),
+        first[..., 1],
+        second[..., 1],
+        iterations,
+    )
+
+
+def _jacobian(l: Array, phi: Array) -> Array:
+    rows = [[-np.ones_like(phi), -l * np.sin(phi)], [np.zeros_like(phi), l * np.cos(phi)]]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def _solve(jacobian: Array, right: Array, wanted: NDArray[np.bool_], theta: Array) -> Array:
+    """Solve at the angles that are wanted; zero elsewhere."""
+    singular = wanted & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
+    if np.any(singular):
+        raise InputError(
+            "the Jacobian must not be singular: the rod stood normal to the slider line; "
+            f"got it at crank angle {_first_degrees(singular, theta):.6g} deg; start with another rod angle"
+        )
+    found = np.zeros_like(right)
+    found[wanted] = np.linalg.solve(jacobian[wanted], right[wanted][..., None])[..., 0]
+    return found
+
+
+def _not_converged(most: int, moving: NDArray[np.bool_], theta: Array) -> str:
+    return (
+        f"the iteration must end within {most} steps; got none at crank angle "
+        f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
+    )
+
+
+def _first_degrees(where: NDArray[np.bool_], theta: Array) -> Any:
+    return math.degrees(float(theta[where].flat[0]))

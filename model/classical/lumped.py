@@ -1,0 +1,94 @@
+"""The two-mass rod: the rod replaced by a point mass at each pin, one turning with the crank, one with the slider.
+
+By its mass centre at the distance a from the crank pin and b = l - a from the slider pin: m b / l at the crank pin,
+m a / l at the slider pin. Mass and mass centre are kept; the inertia about the mass centre becomes m a b, so that the
+model is exact for a rod of just that inertia. Any other split (half and half, as in Eqs. 31 to 36 of M. Obaseki and
+P. B. Alfred, "Modeling and Investigating the Effect of Offset Distance on Slider-Crank Mechanism", 2020) moves the mass
+centre too, unless it is that of the rod.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..errors import InputError
+from ..linkage import Linkage
+from ..links import Bar, Link, RigidLink
+from ..mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Mass (kg), mass centre along and across the link (m) and inertia about the mass centre (kg m^2)."""
+
+    mass: float
+    centre: float
+    centre_across: float
+    inertia: float
+
+
+def mass_properties(link: Link, length: float) -> MassProperties:
+    """Return the mass properties of a link for its length between pin centres, m."""
+    if isinstance(link, Bar):
+        return MassProperties(link.mass(length), 0.5 * length, 0.0, link.principal_inertias(length)[0])
+    centre = 0.5 * length if link.centre is None else link.centre
+    inertia = link.mass * length**2 / 12.0 if link.inertia is None else link.inertia
+    return MassProperties(link.mass, centre, link.centre_across, inertia)
+
+
+def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
+    """Return the share of the rod's mass that its mass centre gives to the crank pin, b / l.
+
+    Raises `InputError` for a mass centre that is not between the pins: one mass would be negative.
+    """
+    length = float(linkage.rod)
+    share = 1.0 - mass_properties(mechanism.rod, length).centre / length
+    if not 0.0 <= share <= 1.0:
+        raise InputError(
+            "the mass centre of the rod must lie between its pins for two point masses; "
+            f"got {1e3 * length * (1.0 - share):g} mm from the crank pin of a rod of {1e3 * length:g} mm; "
+            "use the exact model"
+        )
+    return share
+
+
+def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None) -> Mechanism:
+    """Return the mechanism of one linkage with a massless rod, its mass on crank pin and slider.
+
+    crank_pin_share: of the rod's mass at the crank pin; b / l if None. How far the mass centre lies off the rod's axis
+    is lost.
+    """
+    share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
+    if not 0.0 <= share <= 1.0:
+        raise InputError(f"the share of the crank pin must be from 0 to 1; got {share:g}")
+    radius = float(linkage.crank)
+    rod = mass_properties(mechanism.rod, float(linkage.rod)).mass
+    crank, added = mass_properties(mechanism.crank, radius), share * rod
+    total = crank.mass + added
+    centre = (crank.mass * crank.centre + added * radius) / total if total > 0.0 else 0.0
+    across = crank.mass * crank.centre_across / total if total > 0.0 else 0.0
+    inertia = (
+        crank.inertia
+        + crank.mass * ((crank.centre - centre) ** 2 + (crank.centre_across - across) ** 2)
+        + added * ((radius - centre) ** 2 + across**2)
+    )
+    return replace(
+        mechanism,
+        crank=RigidLink(mass=total, centre=centre, centre_across=across, inertia=inertia),
+        rod=RigidLink(mass=0.0, inertia=0.0),
+        slider_mass=mechanism.slider_mass + (1.0 - share) * rod,
+    )
+
+
+def rotating_and_reciprocating(
+    mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
+) -> tuple[float, float]:
+    """Return the rotating mass at the crank pin, with the crank's own part of it, and the reciprocating mass, kg.
+
+    The crank counts by its first moment, m centre / r (Eq. 35 of the paper); its counterweight does not.
+    """
+    length, radius = float(linkage.rod), float(linkage.crank)
+    share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
+    rod = mass_properties(mechanism.rod, length).mass
+    crank = mass_properties(mechanism.crank, radius)
+    return crank.mass * crank.centre / radius + share * rod, mechanism.slider_mass + (1.0 - share) * rod

@@ -1,0 +1,80 @@
+"""Static forces of the massless linkage under a load on the slider, without friction.
+
+Equilibrium of slider, rod and crank for a load P along the slider line, positive outward as all loads are:
+
+    rod force (compression)      F = -P / |cos(phi)|
+    guide on the slider (+y)     N = P tan(phi) on the open branch, -P tan(phi) on the crossed one
+    crank torque                 T = -P r (cos(theta) tan(phi) - sin(theta)) on the open branch, P on the crossed one
+
+T is what the drive has to give, counter-clockwise. Without offset, with phi' = -phi = asin(r sin(theta) / l) and a load
+p = -P towards the crank, F = p / cos(phi'), N = p tan(phi') and T = -p r (sin(theta) + cos(theta) tan(phi')): Eqs. 12
+and 13 of the report "In-line Slider Crank Mechanism" (Amrita School of Engineering, 2021).
+
+Mechanical advantage: load on the slider over the tangential force at the crank pin that holds it, r / |x'|. It grows
+without bound towards the dead centres; on them no crank torque is needed, and it is infinite.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..linkage import Linkage
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StaticForces:
+    """Arrays of the broadcast shape; SI and radians.
+
+    rod_force: along the rod, N, positive in compression. guide_reaction: of the guide on the slider along +y, N.
+    crank_torque: that the drive has to give, N m, counter-clockwise. tangential_force: crank_torque / crank, N.
+    mechanical_advantage: size of the load over that of the tangential force; `inf` on a dead centre.
+    slider_force_per_torque: size of the load over that of the crank torque, 1/m; `inf` on a dead centre.
+    """
+
+    crank_angle: Array
+    load: Array
+    rod_force: Array
+    guide_reaction: Array
+    crank_torque: Array
+    tangential_force: Array
+    mechanical_advantage: Array
+    slider_force_per_torque: Array
+
+
+def static_forces(linkage: Linkage, crank_angle: ArrayLike, *, load: ArrayLike) -> StaticForces:
+    """Return the forces at crank angles, rad, that balance a load on the slider, N outward; all broadcast.
+
+    The advantage does not depend on the load and is given for a zero load, too. Raises `AssemblyError` where the
+    linkage cannot be assembled, `InputError` for a load that is not finite.
+    """
+    p = np.asarray(load, dtype=np.float64)
+    if not np.all(np.isfinite(p)):
+        raise InputError("the load on the slider must be finite; give it in N, positive outward")
+    at = linkage.at(crank_angle)
+    theta, phi = at.crank_angle, at.rod_angle
+    tangent = np.tan(phi)
+    outward = linkage.sign * p
+    arm = linkage.crank * (np.cos(theta) * tangent - np.sin(theta))  # x'
+    torque = -outward * arm
+    # Closer to a dead centre than rounding of the crank angle tells: on it.
+    still = np.abs(arm) <= 4.0 * np.finfo(np.float64).eps * (1.0 + np.abs(theta)) * linkage.crank
+    with np.errstate(divide="ignore"):
+        per_torque = np.where(still, np.inf, 1.0 / np.abs(arm))
+    fields = (
+        theta,
+        p,
+        -p / np.abs(np.cos(phi)),
+        outward * tangent,
+        torque,
+        torque / linkage.crank,
+        linkage.crank * per_torque,
+        per_torque,
+    )
+    shape = np.broadcast_shapes(*(np.shape(field) for field in fields))
+    return StaticForces(*(np.broadcast_to(field, shape) for field in fields))

@@ -1,0 +1,54 @@
+"""Case 1: Norton's row c by Boyle and Liu, with lengths taken as metres."""
+
+from __future__ import annotations
+
+import math
+
+from ...model.classical.polygons import Polygons, polygons
+from ...model.inverse import crank_motion
+from ...model.linkage import Linkage
+from ...model.mechanism import Branch
+from .published import Numbers
+
+ANGLE, SPEED, ACCELERATION = math.radians(-30.0), -15.0, -10.0
+BRANCHES: tuple[Branch, ...] = ("open", "crossed")
+
+
+def linkage(branch: Branch = "open") -> Linkage:
+    """Return the mechanism."""
+    return Linkage(3.0, 8.0, 2.0, branch)
+
+
+def numbers() -> Numbers:
+    """Return the exact values by key."""
+    exact: dict[str, float] = {}
+    for branch in BRANCHES:
+        at = linkage(branch).at(ANGLE, speed=SPEED, acceleration=ACCELERATION)
+        exact |= {
+            f"{branch}_position": float(at.slider_position),
+            f"{branch}_velocity": float(at.slider_velocity),
+            f"{branch}_rod_velocity": float(at.rod_velocity),
+            f"{branch}_acceleration": float(at.slider_acceleration),
+            f"{branch}_rod_acceleration": float(at.rod_acceleration),
+        }
+    back = crank_motion(
+        linkage(),
+        exact["open_position"],
+        velocity=exact["open_velocity"],
+        acceleration=exact["open_acceleration"],
+        solution="outward",
+    )
+    pin = polygons(linkage(), ANGLE).position[1]
+    vertices = len(Polygons.POSITION) + len(Polygons.VELOCITY) + len(Polygons.ACCELERATION)
+    given = 9  # of each polygon the origin and the slider's line
+    return Numbers(
+        exact
+        | {
+            "backsolved_angle": math.degrees(math.remainder(float(back.crank_angle), 2.0 * math.pi)),
+            "backsolved_speed": float(back.speed),
+            "backsolved_acceleration": float(back.acceleration),
+            "below_horizontal": -math.degrees(math.atan2(pin[1], pin[0])),
+            "given_coordinates": given,
+            "found_coordinates": 2 * vertices - given,
+        }
+    )

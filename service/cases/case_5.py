@@ -1,0 +1,190 @@
+"""Case 5: the feeder, with the offset of the mirror image, and the paper's experiment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.classical.lumped import rotating_and_reciprocating
+from ...model.classical.series import series_acceleration, series_torque, tangent_torque
+from ...model.linkage import Linkage
+from ...model.links import RigidLink
+from ...model.mechanism import Mechanism
+from ...model.peaks import find_peaks
+from ...model.signals import Signal
+from .published import Numbers
+
+CRANK, ROD, SPEED = 0.040, 0.064, 251.0
+OFFSETS = (0.0, 0.010, 0.020)
+MACHINE = Mechanism(speed=SPEED, crank=RigidLink(mass=0.2), rod=RigidLink(mass=0.5), slider_mass=0.8)
+EXPERIMENT, EXPERIMENT_SPEED = Linkage(0.0381, 0.1524), 20.994
+Array = NDArray[np.float64]
+_RPM = 2.0 * math.pi / 60.0
+_TURN = 2.0 * math.pi
+
+
+def linkage(offset: float) -> Linkage:
+    """Return the feeder for the paper's offset, m."""
+    return Linkage(CRANK, ROD, -offset)
+
+
+def masses() -> tuple[float, float]:
+    """Return rotating and reciprocating mass, kg, both links half and half as in the paper."""
+    return rotating_and_reciprocating(MACHINE, linkage(0.020))
+
+
+def lumped_feeder() -> Mechanism:
+    """Return the machine whose inertia torque the paper computes: all mass that moves, on the slider."""
+    return Mechanism(speed=SPEED, slider_mass=masses()[1])
+
+
+def exact_torque(offset: float, crank_angle: Array) -> Array:
+    """Return the drive torque against the inertia of the reciprocating mass, N m: virtual work, m3 x_t x_tt / w."""
+    at = linkage(offset).at(crank_angle, speed=SPEED)
+    torque: Array = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
+    return torque
+
+
+def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = False) -> Array:
+    """Return the drive torque by T = k F_i tan(alpha), N m, in one of its two readings."""
+    rotating, reciprocating = masses()
+    torque: Array = tangent_torque(
+        linkage(offset),
+        crank_angle,
+        speed=SPEED,
+        rotating_mass=rotating,
+        reciprocating_mass=reciprocating,
+        as_equation_20=as_equation_20,
+    )
+    return torque
+
+
+def numbers() -> Numbers:
+    """Return the values of the model, and those of the paper's formulas, by key."""
+    feeder, half = linkage(0.020), linkage(0.010)
+    inner, outer = (float(angle) for angle in feeder.dead_centre_angles)
+    forward = (outer - inner) % _TURN
+    rotating, reciprocating = masses()
+    exact = {
+        "speed": 2400.0 * _RPM,
+        "rod": 3.2 * 20.0,
+        "greatest_crank_to_offset": 3.2 - 1.0,
+        "stroke": 1e3 * float(feeder.stroke),
+        "stroke_10": 1e3 * float(half.stroke),
+        "excess_angle": math.degrees(forward) - 180.0,
+        "forward_angle": math.degrees(forward),
+        "return_angle": 360.0 - math.degrees(forward),
+        "inner_dead_centre": math.degrees(inner),
+        "outer_dead_centre": math.degrees(outer),
+        "forward_time": forward / SPEED,
+        "return_time": (_TURN - forward) / SPEED,
+        "period": _TURN / SPEED,
+        "cycles": (0.06 - 0.01) * SPEED / _TURN,
+        "time_ratio": float(feeder.time_ratio),
+        "time_ratio_10": float(half.time_ratio),
+        "least_transmission_angle": math.degrees(float(feeder.least_transmission_angle)),
+        "greatest_rod_angle": 90.0 - math.degrees(float(feeder.least_transmission_angle)),
+        "rotating_mass": rotating,
+        "reciprocating_mass": reciprocating,
+        **_torques(),
+    }
+    ends = EXPERIMENT.at([math.pi, 0.0], speed=EXPERIMENT_SPEED).slider_acceleration
+    series = series_acceleration(EXPERIMENT, [math.pi, 0.0], speed=EXPERIMENT_SPEED)
+    exact |= {
+        "experiment_speed": 200.0 * _RPM,
+        "experiment_max": float(ends[0]),
+        "experiment_min": float(ends[1]),
+        "experiment_series_max": float(series[0]),
+        "experiment_series_min": float(series[1]),
+    }
+    centred, at = linkage(0.0), feeder.at(math.radians(30.0), speed=SPEED)
+    sixty = math.radians(60.0)
+    exact |= {
+        "series_acceleration_0": float(centred.at(0.0, speed=SPEED).slider_acceleration),
+        "series_acceleration_60": float(centred.at(sixty, speed=SPEED).slider_acceleration),
+        "series_torque_60": float(exact_torque(0.0, np.array(sixty))),
+        "equation_10": 1e3 * (CRANK + ROD - float(at.slider_position)),
+        "equation_13": -float(at.slider_velocity),
+        "equation_20": float(at.slider_acceleration),
+        "equation_20_mended": float(at.slider_acceleration),
+        "equation_22": -math.degrees(float(at.rod_angle)),
+        "equation_27": -float(at.rod_velocity),
+        "equation_30": -float(at.rod_acceleration),
+        "equation_42b": -reciprocating * float(at.slider_acceleration),
+    }
+    printed = {
+        "series_acceleration_0": float(series_acceleration(centred, 0.0, speed=SPEED)),
+        "series_acceleration_60": float(series_acceleration(centred, sixty, speed=SPEED)),
+        "series_torque_60": float(series_torque(centred, sixty, speed=SPEED, reciprocating_mass=reciprocating)),
+        **formulas(math.radians(30.0), 0.020),
+    }
+    return Numbers(exact, printed)
+
+
+def formulas(t: float, e: float) -> dict[str, float]:
+    """Return what the paper's equations give as they are printed, in its own notation; lengths in m."""
+    k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
+    sine, cosine = math.sin(t), math.cos(t)
+    h = e + k * sine
+    under = c**2 - h**2
+
+    def equation_20(first: float, second: float) -> float:
+        one = w**2 * k * (k * math.cos(2.0 * t) - e * sine) / math.pow(under, first)
+        return -(w**2) * k * cosine - one - (w * k * cosine * h) ** 2 / math.pow(under, second)
+
+    return {
+        "equation_10": 1e3 * ((k + c) - k * cosine + under**0.5),
+        "equation_13": w * k * sine + w * k * cosine * h / under**0.5,
+        "equation_20": equation_20(1.5, 2.5),
+        "equation_20_mended": equation_20(0.5, 1.5),
+        "equation_22": math.degrees(math.asin(e / c + k / c * sine)),
+        "equation_27": w * k * cosine / under**0.5,
+        "equation_30": -(w**2) * k * sine / under**0.5 - (w * k * cosine) ** 2 * h / under**1.5,
+        "equation_42b": m3
+        * (
+            w**2 * k * cosine
+            + w**2 * k * (k - 2.0 * k * sine**2 - sine) / under**0.5
+            - (w * k * cosine * h) ** 2 / under**1.5
+        ),
+    }
+
+
+def _torques() -> dict[str, float]:
+    """Return greatest torques, N m: exact ones and those of the paper's formula."""
+    found: dict[str, float] = {}
+    machine = lumped_feeder()
+    for offset in OFFSETS:
+        name = f"{1e3 * offset:.0f}"
+        designs = np.array([[CRANK, ROD, -offset]])
+        found[f"torque_{name}"] = float(find_peaks(machine, Signal.TORQUE, designs).values[0, 0])
+        found[f"formula_s_{name}"] = _greatest(partial(formula_torque, offset), 0.0, _TURN)
+        found[f"formula_20_{name}"] = _greatest(partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN)
+    for offset in OFFSETS[1:]:
+        inner, outer = (float(angle) for angle in linkage(offset).dead_centre_angles)
+        strokes = {
+            "forward": (inner, inner + (outer - inner) % _TURN),
+            "return": (outer, outer + (inner - outer) % _TURN),
+        }
+        for stroke, ends in strokes.items():
+            found[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(partial(exact_torque, offset), *ends)
+    return found
+
+
+def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> float:
+    """Return the greatest size of a smooth curve over an interval: sampled, then refined between samples."""
+    from scipy.optimize import minimize_scalar
+
+    angles = np.linspace(start, end, 2001)
+    best = int(np.argmax(np.abs(curve(angles))))
+    low, high = float(angles[max(best - 1, 0)]), float(angles[min(best + 1, len(angles) - 1)])
+    found = minimize_scalar(
+        lambda t: -float(np.abs(curve(np.array(t)))),
+        bounds=(low, high),
+        method="bounded",
+        options={"xatol": 1e-11},
+    )
+    return float(np.abs(curve(np.array(found.x))))

@@ -1,0 +1,241 @@
+"""The figures of the five publications, drawn anew: data of each as a sheet, and the files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...model.classical.series import series_acceleration, series_torque
+from ...model.classical.static_forces import static_forces
+from ...model.linkage import Linkage
+from ..figures.panels import Line, Panel, Sheet, draw_sheet
+from ..figures.polygons import both_branches, polygon_sheet
+from ..figures.style import save
+from . import case_1, case_2, case_3, case_4, case_5
+
+_TURN = np.linspace(0.0, 2.0 * math.pi, 721)
+_CRANK_ANGLE = "crank angle, deg"
+
+
+def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
+    """Write the figures of the cases, case_<number>_<what>.png; yield each file as soon as it is written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for number in numbers:
+        for name, make, size in FIGURES[number]:
+            path = folder / f"case_{number}_{name}.png"
+            save(draw_sheet(make(), width=size[0], height=size[1]), path)
+            yield path
+
+
+def polygon_figure() -> Sheet:
+    """Return the polygons of case 1 (its Fig. 2)."""
+    found = both_branches(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
+    return polygon_sheet(
+        found,
+        title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
+        subtitle="crank 3, rod 8, offset 2 (no dimension); crank angle −30°, −15 rad/s, −10 rad/s²",
+        units=("no dimension", "1/s", "1/s²"),
+        length=1.0,
+    )
+
+
+def sieve_figure() -> Sheet:
+    """Return rod and slider motion of the sieve over the cycle (case 2, its Figs. 4 to 6 and 19)."""
+    at = case_2.SIEVE.at(_TURN, speed=case_2.SPEED)
+    degrees = np.degrees(_TURN)
+    curves = (
+        ("slider position, mm", 1e3 * at.slider_position),
+        ("rod angle, deg", np.degrees(at.rod_angle)),
+        ("slider velocity, m/s", at.slider_velocity),
+        ("rod angular velocity, rad/s", at.rod_velocity),
+        ("slider acceleration, m/s²", at.slider_acceleration),
+        ("rod angular acceleration, rad/s²", at.rod_acceleration),
+    )
+    panels = tuple(Panel(title, _CRANK_ANGLE, (Line("", degrees, y),), turns=True) for title, y in curves)
+    return Sheet(
+        "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)",
+        "crank 140, rod 310, offset −60 mm, 300 rpm",
+        panels,
+        columns=2,
+    )
+
+
+def sensitivity_figure() -> Sheet:
+    """Return slider motion with a longer crank and with a longer rod, one at a time (case 2, its Figs. 7 to 12)."""
+    changed = (("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
+    panels = []
+    for title, field, factor in (
+        ("slider position, mm", "slider_position", 1e3),
+        ("slider velocity, m/s", "slider_velocity", 1.0),
+        ("slider acceleration, m/s²", "slider_acceleration", 1.0),
+    ):
+        for label, linkage in changed:
+            lines = tuple(
+                Line(name, np.degrees(_TURN), factor * getattr(of.at(_TURN, speed=case_2.SPEED), field), style)
+                for style, (name, of) in enumerate((("as designed", case_2.SIEVE), (label, linkage)))
+            )
+            panels.append(Panel(title, _CRANK_ANGLE, lines, turns=True))
+    return Sheet(
+        "Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)",
+        "crank 140, rod 310, offset −60 mm, 300 rpm",
+        tuple(panels),
+        columns=2,
+    )
+
+
+def in_line_figure() -> Sheet:
+    """Return paths, velocities and static forces of the in-line example (case 3)."""
+    linkage, degrees = case_3.LINKAGE, np.degrees(_TURN)
+    at = linkage.at(_TURN, speed=case_3.SPEED)
+    pin = 1e3 * linkage.crank_point(_TURN, along=float(linkage.crank)).position
+    forces = static_forces(linkage, _TURN, load=case_3.LOAD)
+    x = 1e3 * at.slider_position
+    panels = (
+        Panel(
+            "paths: y, mm",
+            "x, mm",
+            (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1)),
+            equal=True,
+        ),
+        Panel("slider position, mm", _CRANK_ANGLE, (Line("", degrees, x),), turns=True),
+        Panel(
+            "angular velocities, rad/s",
+            _CRANK_ANGLE,
+            (Line("crank", degrees, np.full_like(x, case_3.SPEED)), Line("rod", degrees, at.rod_velocity, 1)),
+            turns=True,
+        ),
+        Panel("slider velocity, m/s", _CRANK_ANGLE, (Line("", degrees, at.slider_velocity),), turns=True),
+        Panel(
+            "static forces, N",
+            _CRANK_ANGLE,
+            (Line("rod, compression", degrees, forces.rod_force), Line("guide", degrees, forces.guide_reaction, 1)),
+            turns=True,
+        ),
+        Panel("crank torque, N m", _CRANK_ANGLE, (Line("", degrees, forces.crank_torque),), turns=True),
+    )
+    return Sheet(
+        "Case 3: in-line slider-crank, motion and static forces (its formulas for one example)",
+        "crank 50, rod 150 mm, no offset, 10 rad/s; 100 N on the slider towards the crank",
+        panels,
+        columns=2,
+    )
+
+
+def position_error_figure() -> Sheet:
+    """Return the contributions to the position error, exact and as printed (case 4, its Figs. 3 to 7)."""
+    printed = case_4.printed_table()
+    at = printed["crank_angle_deg"]
+    fine = np.linspace(at[0], at[-1], 361)
+    exact = case_4.contributions(np.radians(fine))
+    columns = dict(zip(case_4.COLUMNS, list(printed)[3:], strict=True))
+    titles = {
+        "crank": "from the crank, 0.1 %",
+        "rod": "from the rod, 0.1 %",
+        "offset": "from the offset, 0.1 %",
+        "crank_angle": "from the crank angle, 0.1°",
+        "total": "total, with signs",
+    }
+    panels = tuple(
+        Panel(
+            f"position error {titles[name]}, mm",
+            _CRANK_ANGLE,
+            (Line("exact", fine, exact[name]), Line("printed", at, printed[columns[name]], points=True)),
+        )
+        for name in case_4.COLUMNS
+    )
+    return Sheet(
+        "Case 4: position error (Chetana and Vineeth Kumar, Figs. 3 to 7)",
+        "crank 1400, rod 1800, offset −50 mm, which fit Table 1; the printed crank-angle column is a misprint",
+        panels,
+        columns=2,
+    )
+
+
+def offset_figure() -> Sheet:
+    """Return acceleration and inertia torque over two cycles for the three offsets (case 5, its Figs. 15 to 18)."""
+    theta = np.linspace(0.0, 4.0 * math.pi, 2881)
+    degrees = np.degrees(theta)
+    _, reciprocating = case_5.masses()
+
+    def over_offsets(curve: Callable[[float], np.ndarray]) -> tuple[Line, ...]:
+        return tuple(
+            Line(f"e = {1e3 * offset:.0f} mm", degrees, curve(offset), style)
+            for style, offset in enumerate(case_5.OFFSETS)
+        )
+
+    def acceleration(linkage: Linkage) -> np.ndarray:
+        found: np.ndarray = linkage.at(theta, speed=case_5.SPEED).slider_acceleration
+        return found
+
+    centred = case_5.linkage(0.0)
+    panels = (
+        Panel(
+            "slider acceleration, exact, m/s²",
+            _CRANK_ANGLE,
+            over_offsets(lambda offset: acceleration(case_5.linkage(offset))),
+            turns=True,
+        ),
+        Panel(
+            "slider acceleration, e = 0, m/s²",
+            _CRANK_ANGLE,
+            (
+                Line("exact", degrees, acceleration(centred)),
+                Line("series, Eq. 52", degrees, series_acceleration(centred, theta, speed=case_5.SPEED), 1),
+            ),
+            turns=True,
+        ),
+        Panel(
+            "inertia torque, exact, N m",
+            _CRANK_ANGLE,
+            over_offsets(lambda offset: case_5.exact_torque(offset, theta)),
+            turns=True,
+        ),
+        Panel(
+            "torque by k F tan(alpha), N m",
+            _CRANK_ANGLE,
+            over_offsets(lambda offset: case_5.formula_torque(offset, theta)),
+            turns=True,
+        ),
+        Panel(
+            "inertia torque, e = 0, N m",
+            _CRANK_ANGLE,
+            (
+                Line("exact", degrees, case_5.exact_torque(0.0, theta)),
+                Line(
+                    "series, Eq. 53",
+                    degrees,
+                    series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=reciprocating),
+                    1,
+                ),
+                Line("k F tan(alpha)", degrees, case_5.formula_torque(0.0, theta), 2),
+            ),
+            turns=True,
+        ),
+        Panel(
+            "inertia torque, e = 20 mm, N m",
+            _CRANK_ANGLE,
+            (
+                Line("exact", degrees, case_5.exact_torque(0.020, theta)),
+                Line("k F tan(alpha)", degrees, case_5.formula_torque(0.020, theta), 2),
+            ),
+            turns=True,
+        ),
+    )
+    return Sheet(
+        "Case 5: effect of the offset over two cycles (Obaseki and Alfred, Figs. 15 to 18)",
+        "crank 40, rod 64 mm, 251 rad/s; 1.05 kg with the slider, 0.35 kg at the crank pin; offset −e",
+        panels,
+        columns=2,
+    )
+
+
+FIGURES: dict[int, tuple[tuple[str, Callable[[], Sheet], tuple[float, float]], ...]] = {
+    1: (("polygons", polygon_figure, (4.6, 4.2)),),
+    2: (("motion", sieve_figure, (6.2, 2.35)), ("sensitivity", sensitivity_figure, (6.2, 2.35))),
+    3: (("motion_and_forces", in_line_figure, (6.2, 2.35)),),
+    4: (("position_error", position_error_figure, (6.2, 2.35)),),
+    5: (("offset", offset_figure, (6.2, 2.5)),),
+}

@@ -1,0 +1,138 @@
+"""What the publications print, and the verdict on it.
+
+Each case has a data file with its printed numbers, as text: the digits printed say how exact they claim to be. The
+exact value comes from the model by the row's key. A number that the model does not confirm needs a reason, written by
+the project, in `why`; whether it is confirmed is decided here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.resources import files
+from typing import Any, Literal
+
+CASES = (1, 2, 3, 4, 5)
+_SAME = 1e-9
+"""How far, of its value, a printed formula may be from the exact one: rounding of either, and no more."""
+Verdict = Literal["agrees", "misprint", "differs", "not checkable", "not printed"]
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Values by the rows' keys, in the rows' units: exact ones, and what the formulas of a publication give."""
+
+    exact: Mapping[str, float]
+    formulas: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A number of a publication.
+
+    where: its place there. printed: as printed, None if it is not; where `formula`, the value of a printed formula.
+    exact: in the same unit, None if it cannot be computed. why: the reason where both do not agree.
+    """
+
+    key: str
+    what: str
+    unit: str
+    where: str
+    printed: str | None
+    formula: bool
+    exact: float | None
+    verdict: Verdict
+    why: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A publication with all its numbers. given: the mechanism, in words."""
+
+    number: int
+    title: str
+    source: str
+    given: str
+    rows: tuple[Row, ...]
+
+
+def read_case(number: int, numbers: Numbers) -> Case:
+    """Return a case from its data file and the values by key."""
+    text = files(__package__).joinpath("data", f"case_{number}.toml").read_text(encoding="utf-8")
+    data = tomllib.loads(text)
+    rows = tuple(_row(entry, numbers) for entry in (*data["row"], *_table_rows(data)))
+    return Case(number=number, title=data["title"], source=data["source"], given=data["given"], rows=rows)
+
+
+def read_table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a printed table, every cell as printed."""
+    import csv
+
+    text = files(__package__).joinpath("data", name).read_text(encoding="utf-8")
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+
+
+def _table_rows(data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the cells of a printed table as rows; the key is column and row number."""
+    if "table" not in data:
+        return []
+    table = data["table"]
+    return [
+        {
+            **column,
+            "key": f"{column['key']}_{number}",
+            "what": f"{column['what']} at {line[table['at']]} deg",
+            "where": f"{table['where']}, row {number}",
+            "printed": line[column["column"]],
+        }
+        for column in table["columns"]
+        for number, line in enumerate(read_table(table["file"]), start=1)
+    ]
+
+
+def _row(entry: Mapping[str, Any], numbers: Numbers) -> Row:
+    key, why = entry["key"], entry.get("why", "")
+    exact, formula = numbers.exact.get(key), entry.get("formula", False)
+    printed = f"{numbers.formulas[key]:.10g}" if formula else entry.get("printed")
+    verdict: Verdict
+    if printed is None:
+        verdict = "not printed"
+    elif exact is None:
+        verdict = "not checkable"
+    elif math.isclose(numbers.formulas[key], exact, rel_tol=_SAME) if formula else confirmed(entry, exact):
+        verdict, why = "agrees", ""
+    else:
+        verdict = "misprint" if why.startswith("misprint") else "differs"
+    return Row(
+        key=key,
+        what=entry["what"],
+        unit=entry.get("unit", ""),
+        where=entry.get("where", ""),
+        printed=printed,
+        formula=formula,
+        exact=exact,
+        verdict=verdict,
+        why=why.partition(": ")[2],
+    )
+
+
+def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
+    """Return whether a printed number is the exact one as far as it was printed.
+
+    within: how far off it may be; by default one unit of the last printed digit, since sources cut as well as round.
+    decimals: printed digits behind the point where the source drops zeros at the end.
+    """
+    printed = str(entry["printed"])
+    if printed.startswith("< "):
+        return exact < number(printed)
+    decimals = int(entry.get("decimals", len(printed.partition(".")[2])))
+    within = float(entry.get("within", 10.0**-decimals))
+    # Rounding of the difference itself must not decide.
+    return abs(exact - number(printed)) <= within * (1.0 + 1e-9) + 1e-9 * abs(exact)
+
+
+def number(printed: str) -> float:
+    """Return the number in a printed text such as "about 80" or "< 50"."""
+    return float(printed.removeprefix("about ").removeprefix("< ").replace("−", "-"))
