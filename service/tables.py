@@ -37,7 +37,7 @@ def show_front(
         if constant:
             screen.print(f"In every design: {', '.join(constant)}.", soft_wrap=True)
     screen.print()
-    _print_table(screen, _front_table(result, chosen, columns))
+    print_table(screen, _front_table(result, chosen, columns))
     notes = []
     if len(chosen) < len(rows):
         notes.append(f"{len(chosen)} of {len(rows)} designs shown")
@@ -64,10 +64,10 @@ def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None)
         column = find_column(key, row)
         text = value if isinstance(value, str) else f"{value:.6g}"
         table.add_row(column.title, text, column.unit)
-    _print_table(screen, table)
+    print_table(screen, table)
 
 
-def _print_table(screen: Console, table: Table) -> None:
+def print_table(screen: Console, table: Table) -> None:
     """Write a table at its own width: a narrow terminal breaks its lines, but no number is cut."""
     natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
     before = screen.width

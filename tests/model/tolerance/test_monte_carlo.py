@@ -131,13 +131,13 @@ def test_the_same_seed_gives_the_same_machines_and_more_begin_alike() -> None:
 
 
 def test_greatest_error_counts_in_the_window_only() -> None:
-    window = Window(during="outward stroke", start=0.4, end=0.6)
+    window = Window(during="outward stroke", start=0.9, end=1.0)
     windowed = dataclasses.replace(
         PUBLISHED, speed=1.0, tolerances=dataclasses.replace(PUBLISHED.tolerances, window=window)
     )
     whole = simulate(PUBLISHED, SUPPORT, samples=500).greatest
     part = simulate(windowed, SUPPORT, samples=500).greatest
-    assert np.all(part <= whole)
+    assert np.all(part <= whole * (1.0 + 1e-3))  # other sampled angles
     assert part.mean() < 0.95 * whole.mean()
 
 
