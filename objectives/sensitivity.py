@@ -15,6 +15,7 @@ from ..model.arithmetic import STEP
 from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
 from ..model.tolerance.sources import limits
+from .average_torque import MEAN_TORQUE, RMS_TORQUE
 from .quantity import DEGREE, MILLIMETRE, Array, Unit
 from .registry import QUANTITIES
 
@@ -67,12 +68,14 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     design = np.asarray(dimensions, dtype=np.float64).reshape(1, 3)
     linkage = Linkage(design[0, 0], design[0, 1], design[0, 2], mechanism.branch)
     tolerances = limits(mechanism, linkage)[:3]
-    rows = []
+    rows, rms = [], RMS_TORQUE.evaluate(mechanism, design).values[0]
     for quantity in QUANTITIES.values():
         found = quantity.evaluate(mechanism, design, gradients=True)
         assert found.gradients is not None
         entry = (quantity.name, quantity.title, quantity.unit, float(found.values[0]), found.gradients[0])
-        rows.append(_row(*entry, design[0], tolerances, relative=True))
+        rows.append(
+            _row(*entry, design[0], tolerances, relative=not _balances_out(quantity.name, found.values[0], rms))
+        )
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)
         relative = centre.unit is not DEGREE
@@ -80,6 +83,11 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
             _row(centre.name, centre.title, centre.unit, value, np.array(slopes), design[0], tolerances, relative)
         )
     return pd.DataFrame(rows)
+
+
+def _balances_out(name: str, value: float, rms: float) -> bool:
+    """Whether a mean torque is zero but for rounding: its percentages would be those of the rounding."""
+    return name == MEAN_TORQUE.name and abs(value) < 1e-9 * rms
 
 
 def _row(

@@ -35,9 +35,7 @@ def sweep(
     of: Annotated[
         list[str], typer.Option(metavar="QUANTITY", help="What to compute, such as peak_torque. Repeatable.")
     ],
-    crank: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Crank, unless JOB fixes or --over sweeps it.")
-    ] = None,
+    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help="Crank, unless fixed by JOB or swept.")] = None,
     rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod, likewise.")] = None,
     offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset, likewise.")] = None,
     figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the sweep into sweep.png there.")] = None,
@@ -119,7 +117,7 @@ def _show(table: pd.DataFrame, axes: Sequence[Axis], names: Sequence[str]) -> No
         shown.add_column(f"{item.title}, {item.unit.symbol}".rstrip(", "), justify="right")
     stuck = 0
     for row in rows_of(table.to_dict("list")):
-        at = [row[column_of(axis)] for axis in axes]
+        at = [row["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"] for axis in axes]
         values = [row[item.field] for item in quantities]
         stuck += bool(row["reason"])
         shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
@@ -127,8 +125,3 @@ def _show(table: pd.DataFrame, axes: Sequence[Axis], names: Sequence[str]) -> No
     if stuck:
         first = next(reason for reason in table["reason"] if reason)
         say(f"{stuck} of {len(table)} without a value; the first: {first}")
-
-
-def column_of(axis: Axis) -> str:
-    """Return the column of the table that an axis fills."""
-    return "speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"

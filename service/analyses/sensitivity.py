@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from ...model.mechanism import Mechanism
 
 DIMENSIONS = ("crank", "rod", "offset")
+# Not in the text: variants of others there, and what follows from the dimensions at a glance.
+_LEFT_OUT = (
+    *("peak_torque_outward", "peak_torque_inward", "mean_torque", "rod_to_offset", "rod_to_crank"),
+    *("inner_dead_centre_position", "outer_dead_centre_position"),
+)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
@@ -46,7 +51,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         table.add_column("", justify="right", no_wrap=True)
     for row in numbers["quantities"]:
         slopes = [row[f"{name}_per_mm"] for name in DIMENSIONS]
-        if row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
+        if row["quantity"] in _LEFT_OUT or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
         cells = []
         for name, slope in zip(DIMENSIONS, slopes, strict=True):
