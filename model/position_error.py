@@ -10,10 +10,11 @@ Clearances. A pin with radial clearance c lets the two centres of its joint lie 
 the crank pivot and the crank pin, u moves the end A of the rod; at the slider pin, the other end. To first order
 dx = u . n / cos(phi), n the direction of the rod: the greatest is c / cos(phi), with the contact along the rod, which
 is also where the force of a rod without mass holds it. That is exact and not only first order: by the triangle
-inequality the distance of the centres at both ends lies between l - c and l + c, and every distance between occurs. So the clearance of a pin is a tolerance of the rod, and
-that of the guide, across its line, a tolerance of the offset. In the root-sum-square each clearance stands as a
-source of its own, its c as a limit like the tolerances. A pin that the force presses to either side scatters wider,
-with a standard deviation of c instead of a third of it: what that does, the Monte Carlo simulation shows.
+inequality the distance of the centres at both ends lies between l - c and l + c, and every distance between occurs. So
+the clearance of a pin is a tolerance of the rod, and that of the guide, across its line, a tolerance of the offset.
+In the root-sum-square each clearance stands as a source of its own, its c as a limit like the tolerances. A pin that
+the force presses to either side scatters wider, with a standard deviation of c instead of a third of it: what that
+does, the Monte Carlo simulation shows.
 """
 
 from __future__ import annotations

@@ -73,9 +73,8 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
         found = quantity.evaluate(mechanism, design, gradients=True)
         assert found.gradients is not None
         entry = (quantity.name, quantity.title, quantity.unit, float(found.values[0]), found.gradients[0])
-        rows.append(
-            _row(*entry, design[0], tolerances, relative=not _balances_out(quantity.name, found.values[0], rms))
-        )
+        relative = not _balances_out(quantity.name, float(found.values[0]), float(rms))
+        rows.append(_row(*entry, design[0], tolerances, relative))
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)
         relative = centre.unit is not DEGREE

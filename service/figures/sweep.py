@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -52,11 +53,10 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
     values = np.where(np.isfinite(values), values, np.nan)
     grids = []
     for n, axis in enumerate(axes):
-        along = np.moveaxis(table[column_of(axis)].to_numpy(dtype=np.float64).reshape(shape), n, 0).reshape(
-            shape[n], -1
-        )
-        order = np.argsort(along[:, 0], kind="stable")
-        grids.append(along[order, 0])
+        along = np.moveaxis(table[column_of(axis)].to_numpy(dtype=np.float64).reshape(shape), n, 0)
+        first = along.reshape(shape[n], -1)[:, 0]
+        order = np.argsort(first, kind="stable")
+        grids.append(first[order])
         values = np.take(values, order, axis=n)
     return grids, values
 
@@ -70,7 +70,7 @@ def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[str], *
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
     columns = 2 if len(items) > 1 else 1
     rows = -(-len(items) // columns)
-    figure = new_figure(0.4 + _WIDTH * columns, 0.9 + (_SIDE + 0.85) * rows)
+    figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
     height = figure.get_size_inches()[1]
     write(figure, 0.3, height - 0.3, textwrap.shorten(title, 60, placeholder=" ..."), fontsize=TITLE, weight="bold")
     names = " and ".join(axes[n].parameter for n in drawn)
@@ -88,9 +88,8 @@ def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[str], *
         dress(panel)
         panel.set_xlabel(with_unit(*_title(axes[drawn[0]])), fontsize=TEXT)
         if np.isnan(values).all():
-            panel.text(
-                0.5, 0.5, "no value anywhere", transform=panel.transAxes, ha="center", color=MUTED, fontsize=TEXT
-            )
+            nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
+            panel.text(0.5, 0.5, "no value anywhere", **nowhere)
             panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
         elif len(drawn) == 1:
             _line(panel, grids[drawn[0]], values, item)
@@ -111,28 +110,28 @@ def _line(panel: Axes, x: Array, values: Array, item: Quantity) -> None:
     panel.set_xlim(limits(x.min(), x.max(), 0.02))
     panel.set_ylim(limits(np.nanmin(values), np.nanmax(values)))
     panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
-    missing = np.flatnonzero(np.isnan(values))
+    missing = [int(n) for n in np.flatnonzero(np.isnan(values))]
     for start in missing:
         low = 0.5 * (x[start] + x[max(start - 1, 0)])
         high = 0.5 * (x[start] + x[min(start + 1, len(x) - 1)])
         panel.axvspan(low, high, color=SHADE, linewidth=0, zorder=0)
-    if len(missing):
-        panel.text(1.0, 1.02, "shaded: no value", transform=panel.transAxes, ha="right", fontsize=SMALL, color=MUTED)
+    if missing:
+        panel.set_title("shaded: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
 def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: Quantity) -> None:
     panel.set_facecolor(SHADE)
     panel.grid(False)
-    shown = np.ma.masked_invalid(values.T)
+    shown: Any = np.ma.masked_invalid(values.T)
     if np.ptp(shown.compressed()) == 0.0:
-        filled = panel.pcolormesh(*grids, shown, cmap=colours(), shading="nearest")
+        panel.figure.colorbar(panel.pcolormesh(*grids, shown, cmap=colours(), shading="nearest"), cax=scale)
     else:
-        filled = panel.contourf(*grids, shown, levels=_LEVELS, cmap=colours())  # type: ignore[assignment]
-        lines = panel.contour(*grids, shown, levels=filled.levels[1::2], colors=INK, linewidths=0.5)  # type: ignore[attr-defined]
-        panel.clabel(lines, fontsize=SMALL - 1.0)
+        filled = panel.contourf(*grids, shown, levels=_LEVELS, cmap=colours())
+        lines = panel.contour(*grids, shown, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
+        # Instead of labels, which crowd near locking.
+        panel.figure.colorbar(filled, cax=scale).add_lines(lines)
     panel.set_xlim(grids[0].min(), grids[0].max())
     panel.set_ylim(grids[1].min(), grids[1].max())
-    panel.figure.colorbar(filled, cax=scale)
     dress(scale)
     scale.grid(False)
     scale.xaxis.set_visible(False)
@@ -140,7 +139,7 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: 
     scale.spines[:].set_visible(False)
     panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
     if np.isnan(values).any():
-        panel.text(1.0, 1.02, "grey: no value", transform=panel.transAxes, ha="right", fontsize=SMALL, color=MUTED)
+        panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
 def draw_sweep(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[str], folder: Path, *, title: str) -> Path:

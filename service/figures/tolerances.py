@@ -1,7 +1,8 @@
-"""Position error of one design over the cycle: bands of worst case, root-sum-square and Monte Carlo, and its sources."""
+"""Position error of one design over the cycle: worst case, root-sum-square and Monte Carlo bands; its sources."""
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,12 +10,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ...model.cycle import cycle
 from ...model.errors import AssemblyError
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
 from ...model.tolerance.exact import extremes
-from ...model.tolerance.first_order import first_order
-from ...model.tolerance.monte_carlo import simulate
+from ...model.tolerance.first_order import shares
+from ...model.tolerance.monte_carlo import simulate, variances
 from ...model.tolerance.sources import SOURCES, limits
 from .style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, TITLE, VERMILION, dress, new_figure, place, save, write
 
@@ -46,23 +48,22 @@ class Bands:
 def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLES, seed: int = 1) -> Bands:
     """Return the bands of one fully turning linkage over a whole turn, whatever part of it counts."""
     theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
-    # Linear parts need no box in which everything turns; the exact ones do.
-    try:
+    least = greatest = None
+    with contextlib.suppress(AssemblyError):
         exact = extremes(mechanism, linkage, theta)
-        ends = (1e3 * exact.least, 1e3 * exact.greatest)
-    except AssemblyError:
-        ends = (None, None)
-    linear = first_order(mechanism, linkage, theta)
+        least, greatest = 1e3 * exact.least, 1e3 * exact.greatest
+    linear = cycle(mechanism, linkage, theta)
     errors = simulate(mechanism, linkage, theta, samples=samples, seed=seed).errors
     there = limits(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),
-        1e3 * linear.worst_case,
-        1e3 * linear.root_sum_square,
-        *ends,
+        1e3 * linear.position_error,
+        1e3 * linear.position_error_rss,
+        least,
+        greatest,
         1e3 * np.nanpercentile(errors, PERCENTS, axis=0),
         tuple(name for name, given in zip(SOURCES, there, strict=True) if given),
-        100.0 * linear.share_of_variance[there],
+        100.0 * shares(variances(mechanism, linkage, theta))[there],
     )
 
 
@@ -110,14 +111,8 @@ def tolerances_figure(bands: Bands) -> Figure:
             handlelength=2.4,
             handleheight=1.1,
         )
-    write(
-        figure,
-        0.8,
-        6.68,
-        "Monte Carlo: normal errors, limits at three standard deviations",
-        color=MUTED,
-        fontsize=SMALL,
-    )
+    note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
+    write(figure, 0.8, 6.68, note, color=MUTED, fontsize=SMALL)
     return figure
 
 

@@ -50,13 +50,10 @@ def variation_panels(mechanism: Mechanism, linkage: Linkage, changes: Sequence[t
         [units[2] * motion.slider_velocity for motion in motions],
         [units[2] * motion.slider_acceleration for motion in motions],
     ]
-    labels = [
-        "as given",
-        *(f"{v.dimension} {shown(1e3 * own[v.dimension])} → {shown(1e3 * v.value)} mm" for v in found.varied),
-    ]
+    changed = (f"{v.dimension} {shown(1e3 * own[v.dimension])} → {shown(1e3 * v.value)} mm" for v in found.varied)
     per = "" if mechanism.speed else " per crank speed"
     titles = ("displacement, mm", f"velocity{per}, {units[0]}", f"acceleration{per}, {units[1]}")
-    return Panels(np.degrees(theta), tuple(labels), titles, np.array(curves))
+    return Panels(np.degrees(theta), ("as given", *changed), titles, np.array(curves))
 
 
 def variation_figure(panels: Panels) -> Figure:
