@@ -21,8 +21,8 @@ from slidercrank.model.tolerance.sources import counted_angles, limit_box
 from tests.model.cases import Array
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
-CASES = random_cases(12, seed=71)
-WIDE = random_cases(12, seed=72, coarse=3.0)
+CASES = random_cases(8, seed=71)
+WIDE = random_cases(8, seed=72, coarse=3.0)
 SPECIAL = np.array([0.0, 0.5, 1.0, 1.5]) * math.pi
 TURN = np.concatenate([np.linspace(0.0, 2.0 * math.pi, 17)[:-1] + 0.1, SPECIAL])
 
