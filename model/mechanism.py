@@ -48,13 +48,34 @@ class Window:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Clearances:
+    """Radial clearances of the joints, m: half the difference of the diameters of bearing and pin.
+
+    crank_pivot, crank_pin, slider_pin: of the three pins. guide: how far the slider can move to either side of its line
+    (its tilt within the guide is not considered). What they do to the slider position: `position_error`.
+    """
+
+    crank_pivot: float = 0.0
+    crank_pin: float = 0.0
+    slider_pin: float = 0.0
+    guide: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0.0:
+                raise InputError(f"a clearance must be zero or more and finite; got {name} = {value:g} m")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Tolerances:
-    """Tolerances of the dimensions and of the crank angle, and where the position error counts."""
+    """Tolerances of the dimensions and of the crank angle, clearances, and where the position error counts."""
 
     crank: Tolerance = Tolerance()
     rod: Tolerance = Tolerance()
     offset: Tolerance = Tolerance()
     crank_angle: Tolerance = Tolerance()
+    clearances: Clearances = Clearances()
     window: Window = Window()
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .arithmetic import analytic, inlined, magnitude
+from .arithmetic import analytic, inlined, magnitude, root
 from .geometry import inner_dead_centre, outer_dead_centre
 from .links import Bar, Link
 from .loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
@@ -30,7 +30,8 @@ Raw = IntEnum(
     "ROD_CENTRE_ACROSS ROD_INERTIA ROD_INERTIA_SHARE "
     "COUNTERWEIGHT_MASS COUNTERWEIGHT_ALONG COUNTERWEIGHT_ACROSS COUNTERWEIGHT_INERTIA "
     "CRANK_TOLERANCE CRANK_TOLERANCE_SHARE ROD_TOLERANCE ROD_TOLERANCE_SHARE "
-    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE END",
+    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
+    "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE END",
     start=0,
 )
 LOAD_SLOTS = 4
@@ -76,7 +77,9 @@ class Design(NamedTuple):
     Mass moments are about the crank pivot (crank) or the crank pin (rod), in the link's own axes; rod_along and
     rod_across are per rod length, kg.
     outward_force, inward_force: sums of the stroke forces. stiffness, spring_force: sums of k and of k x_rest.
-    viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle.
+    viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
+    clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
+    rod_error_rss, offset_error_rss: the same added up as squares.
     """
 
     r: Any
@@ -107,11 +110,14 @@ class Design(NamedTuple):
     stiffness: Any
     spring_force: Any
     viscous: Any
+    rod_error_rss: Any
+    offset_error_rss: Any
 
 
 DESIGN = len(Design._fields)
 """Rows of a derived block before those of the loads (two each: sign and origin of a table's own coordinate)."""
 _OUTWARD = Design._fields.index("outward_force")
+_ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
 
 def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
@@ -137,6 +143,8 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     ):
         raw[slot : slot + 2] = tolerance.absolute, tolerance.fraction
     raw[Raw.ANGLE_TOLERANCE] = tolerances.crank_angle.absolute
+    gap = tolerances.clearances
+    raw[Raw.CRANK_PIVOT_CLEARANCE : Raw.GUIDE_CLEARANCE + 1] = gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide
     for index, load in enumerate(mechanism.loads):
         raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = _load_numbers(load)
     return raw
@@ -226,6 +234,8 @@ def design_at(block: Any, j: Any) -> Design:
         block[25, j],
         block[26, j],
         block[27, j],
+        block[28, j],
+        block[29, j],
     )
 
 
@@ -309,8 +319,12 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
         out[16, j] = inertia
         t = w + 4
         out[17, j] = raw[t, j] + raw[t + 1, j] * r
-        out[18, j] = raw[t + 2, j] + raw[t + 3, j] * l
-        out[19, j] = raw[t + 4, j] + raw[t + 5, j] * magnitude(e)
+        rod, offset = raw[t + 2, j] + raw[t + 3, j] * l, raw[t + 4, j] + raw[t + 5, j] * magnitude(e)
+        pivot, pin, end, guide = raw[t + 7, j], raw[t + 8, j], raw[t + 9, j], raw[t + 10, j]
+        out[18, j] = rod + (pivot + pin + end)
+        out[19, j] = offset + guide
+        out[_ROD_RSS, j] = root(rod * rod + (pivot * pivot + pin * pin + end * end))
+        out[_OFFSET_RSS, j] = root(offset * offset + guide * guide)
         out[20, j] = raw[t + 6, j]
         out[21, j] = inner_dead_centre(r, l, e)
         out[22, j] = outer_dead_centre(r, l, e)

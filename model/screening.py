@@ -22,7 +22,7 @@ from .dynamics import smooth_load
 from .loads import AngleTable, PositionTable
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
-from .mechanism import Mechanism
+from .mechanism import Clearances, Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .peaks import watch_of
 from .segments import crowding
@@ -54,6 +54,8 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
         return False
     watch = watch_of(mechanism, kind, during=during)
     whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
+    if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
+        return False  # `locate` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
         return whole and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
     return whole

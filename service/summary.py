@@ -104,6 +104,10 @@ def _tolerances(mechanism: Mechanism) -> list[str]:
             lines.append(f"{name} {text}")
     if tolerances.crank_angle.absolute:
         lines.append(f"crank angle {math.degrees(tolerances.crank_angle.absolute):.6g} deg")
+    for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
+        clearance = getattr(tolerances.clearances, name)
+        if clearance:
+            lines.append(f"radial clearance of the {name.replace('_', ' ')} {1e3 * clearance:.6g} mm")
     window = tolerances.window
     if lines and (window.during != "cycle" or window.start > 0.0 or window.end < 1.0):
         lines.append(f"counted in the {window.during}, {window.start:.6g} to {window.end:.6g} of the stroke")

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from ...model.errors import JobError
 from ...model.links import Bar, Link
+from ...model.mechanism import Clearances
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
 from .box import require_reachable
@@ -92,6 +93,7 @@ def _require_causes(problem: Problem) -> None:
     held = [(f"constraints.{c.quantity}", c.quantity) for c in problem.constraints]
     t = problem.mechanism.tolerances
     exact = not any(x.absolute or x.fraction for x in (t.crank, t.rod, t.offset, t.crank_angle))
+    exact = exact and t.clearances == Clearances()
     for key, name in (*wanted, *held):
         if name in _ERRORS and exact:
             raise JobError(

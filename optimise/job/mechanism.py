@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag,
 
 from ...model.errors import InputError
 from ...model.links import Bar, Counterweight, Link, RigidLink
-from ...model.mechanism import Branch, Mechanism, Tolerances, Window
+from ...model.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
 from ..units import shown
 from .loads import Load
 from .values import (
@@ -18,6 +18,7 @@ from .values import (
     AngleTolerance,
     AngularAcceleration,
     AngularSpeed,
+    Clearance,
     Density,
     Fraction,
     Gravity,
@@ -228,6 +229,21 @@ def _part(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
+class ClearancesPart(Part):
+    """Radial clearances of the joints: half the difference of the diameters of bearing and pin."""
+
+    crank_pivot: Clearance = Field(0.0, description="of the bearing of the crank in the frame", examples=["0.02 mm"])
+    crank_pin: Clearance = Field(0.0, description="of the joint of crank and rod", examples=["0.02 mm"])
+    slider_pin: Clearance = Field(0.0, description="of the joint of rod and slider", examples=["0.02 mm"])
+    guide: Clearance = Field(0.0, description="of the slider, to either side of its line", examples=["0.05 mm"])
+
+    def build(self) -> Clearances:
+        """Return the clearances as the model has them."""
+        return Clearances(
+            crank_pivot=self.crank_pivot, crank_pin=self.crank_pin, slider_pin=self.slider_pin, guide=self.guide
+        )
+
+
 class TolerancesPart(Part):
     """How far dimensions and crank angle may be off, and over which part of the cycle the error counts."""
 
@@ -239,6 +255,9 @@ class TolerancesPart(Part):
         0.0, description="of the offset, as a length or a share", examples=["0.05 mm", "0.1 %"]
     )
     crank_angle: AngleTolerance = Field(0.0, description="of the crank angle", examples=["0.1 deg"])
+    clearances: ClearancesPart = Field(
+        ClearancesPart(), description="radial clearances of the joints", examples=[{"crank_pin": "0.02 mm"}]
+    )
     during: During = Field("cycle", description="the stroke in which the position error counts", examples=["cycle"])
     part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = Field(
         (0.0, 1.0),
@@ -254,5 +273,6 @@ class TolerancesPart(Part):
             rod=ToleranceOf.build(self.rod),
             offset=ToleranceOf.build(self.offset),
             crank_angle=ToleranceOf.build(self.crank_angle),
+            clearances=self.clearances.build(),
             window=Window(during=self.during, start=self.part_of_stroke[0], end=self.part_of_stroke[1]),
         )

@@ -132,6 +132,7 @@ class ToleranceOf:
 Length = Annotated[float, Physical(units.LENGTH)]
 PositiveLength = Annotated[float, Physical(units.LENGTH, "positive")]
 Radius = Annotated[float, Physical(units.LENGTH, "zero or more")]
+Clearance = Annotated[float, Physical(units.LENGTH, "zero or more")]
 Angle = Annotated[float, Physical(units.ANGLE)]
 AngleTolerance = Annotated[float, Physical(units.ANGLE, "zero or more")]
 AngularSpeed = Annotated[float, Physical(units.ANGULAR_SPEED)]

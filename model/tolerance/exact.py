@@ -1,0 +1,151 @@
+"""The exact worst case: the greatest and the least slider position that the tolerances allow.
+
+On the open branch, with the crank pin at (a, b) = r (cos theta, sin theta),
+
+    x = a + sqrt(l^2 - (e - b)^2),
+
+to be maximised and minimised over the box of crank r, rod l, offset e and crank angle theta (clearances widen the box,
+exactly: see `position_error`). The crossed branch is its mirror image, x(theta) -> -x(pi - theta).
+
+1. dx/dl = 1 / cos(phi) > 0: the greatest x has the longest rod, the least x the shortest one.
+2. x is concave in (a, b, e) together, so at a fixed crank angle concave in (r, e) together.
+   - Least x: at a corner of (r, e).
+   - Greatest x: possibly within. dx/de = 0 where the rod lies along the line, e = r sin(theta), and
+     dx/dr = 0 where the crank is normal to the rod, r = e / sin(theta) + l cos(theta) / |sin(theta)|.
+     Both together need cos(theta) = 0; x = l is then the same all along e = r sin(theta), also on an edge.
+3. dx/dtheta = 0 at the dead centres only, of a linkage that turns fully: at the outer one, theta = asin(e / (l + r)),
+   x is greatest over the turn; at the inner one, theta = pi + asin(e / (l - r)), least.
+   - At a dead centre crank and rod are in line, so dx/dr is not 0. With dx/de = 0 as well, e = 0 and theta = 0.
+
+So the greatest x is at one of 8 corners in (r, e, theta), 4 points with only e within its range, 4 with only r, 4 with
+only theta, and one with e and theta; the least x at one of 8 corners, or 4 points with only theta within. All are
+evaluated, moved into the box where they lie outside: then each is a position that does occur, and the extreme one is
+among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .sources import Array, counted_angles, limit_box, single
+
+_CELLS = 4  # highest samples around which the greatest deviation is searched further
+_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Least and greatest deviation of the slider position, m, at crank angles, rad: each (m,)."""
+
+    crank_angle: Array
+    least: Array
+    greatest: Array
+
+    @property
+    def size(self) -> Array:
+        """The greater of the two sizes, (m,), m: the exact worst case."""
+        return np.maximum(-self.least, self.greatest)
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The exact worst case over the counted part of the cycle: its size, m, and the crank angle, rad."""
+
+    size: float
+    crank_angle: float
+
+
+def extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Extremes:
+    """Return the exact extremes of the slider's deviation at crank angles (m,), rad, for one linkage.
+
+    Along +x, from the position of the linkage that is meant at the angle that is meant. Raises `AssemblyError` unless
+    every linkage within the tolerances turns fully.
+    """
+    linkage = single(mechanism, linkage)
+    angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    if angles.ndim != 1:
+        raise InputError(f"crank angles must be one number or a list of them; got an array of shape {angles.shape}")
+    ideal = linkage.at(angles).slider_position
+    (r, l, e, turn) = limit_box(mechanism, linkage)
+    if linkage.branch == "open":
+        return Extremes(angles, _least(r, l[0], e, angles, turn) - ideal, _greatest(r, l[1], e, angles, turn) - ideal)
+    mirrored = np.pi - angles
+    least, greatest = -_greatest(r, l[1], e, mirrored, turn), -_least(r, l[0], e, mirrored, turn)
+    return Extremes(angles, least - ideal, greatest - ideal)
+
+
+def worst(mechanism: Mechanism, linkage: Linkage) -> Worst:
+    """Return the exact worst case over the part of the cycle in which the position error counts.
+
+    Continuous crank angle: the highest samples are refined until the value is exact to rounding.
+    """
+    from scipy.optimize import minimize_scalar
+
+    best = Worst(0.0, 0.0)
+
+    def less(angle: float) -> float:
+        return -float(extremes(mechanism, linkage, angle).size[0])
+
+    for angles in counted_angles(mechanism, linkage):
+        sizes = extremes(mechanism, linkage, angles).size
+        around = np.concatenate([[-1.0], sizes, [-1.0]])
+        tops = np.flatnonzero((sizes >= around[:-2]) & (sizes >= around[2:]))
+        for i in tops[np.argsort(sizes[tops])[-_CELLS:]]:
+            low, high = angles[max(i - 1, 0)], angles[min(i + 1, len(angles) - 1)]
+            found = minimize_scalar(less, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
+            for size, angle in ((sizes[i], angles[i]), (-found.fun, found.x)):
+                if size > best.size:
+                    best = Worst(float(size), float(angle) % _TURN)
+    return best
+
+
+def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
+    across = e - r * np.sin(angles)
+    return r * np.cos(angles) + np.sqrt(l * l - across * across)
+
+
+def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+    """Greatest position on the open branch for ranges r, e (2,) and middle + turn (2,) of the crank angle."""
+    ends = middle + turn[:, None]
+    best = np.full(middle.shape, -np.inf)
+
+    def take(crank: Array | float, offset: Array | float, angles: Array) -> None:
+        crank, offset = np.clip(crank, *r), np.clip(offset, *e)
+        np.maximum(best, _position(crank, l, offset, angles), out=best)
+
+    for angles in ends:
+        sine, cosine = np.sin(angles), np.cos(angles)
+        for crank in r:
+            take(crank, crank * sine, angles)
+        safe = np.where(sine == 0.0, 1.0, sine)
+        for offset in e:
+            take(np.where(sine == 0.0, r[0], offset / safe + l * cosine / np.abs(safe)), offset, angles)
+        for crank, offset in product(r, e):
+            take(crank, offset, angles)
+    for crank, offset in product(r, e):
+        take(crank, offset, _within(np.arcsin(offset / (l + crank)), middle, turn))
+    take(r[1], 0.0, _within(0.0, middle, turn))
+    return best
+
+
+def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+    """Least position on the open branch; arguments as for `_greatest`."""
+    best = np.full(middle.shape, np.inf)
+    for crank, offset in product(r, e):
+        dead = _within(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
+        for angles in (*(middle + turn[:, None]), dead):
+            np.minimum(best, _position(crank, l, offset, angles), out=best)
+    return best
+
+
+def _within(angle: float, middle: Array, turn: Array) -> Array:
+    """Return a crank angle moved into middle + turn, whole turns left out."""
+    away = angle - middle
+    return middle + np.clip(away - _TURN * np.round(away / _TURN), *turn)

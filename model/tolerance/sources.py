@@ -1,0 +1,117 @@
+"""Where a position error comes from: every dimension, the crank angle and every clearance as one source each."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import AssemblyError, InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from ..segments import crank_angle_at, crowded, crowding, uncrowded
+
+Array = NDArray[np.float64]
+
+SOURCES = (
+    *("crank", "rod", "offset", "crank angle"),
+    *("crank pivot clearance", "crank pin clearance", "slider pin clearance", "guide clearance"),
+)
+"""Names of the sources, in the order of all arrays here."""
+PINS = slice(4, 7)
+GUIDE = 7
+ANGLES = 256
+"""Crank angles a turn that a search starts from."""
+_TURN = 2.0 * math.pi
+
+
+def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+    """Return one fully turning linkage on the mechanism's branch; raise `InputError` if it is an array of them."""
+    if np.ndim(linkage.rotates_fully):
+        raise InputError(f"one linkage is needed; got an array of shape {np.shape(linkage.rotates_fully)}")
+    linkage.require_full_rotation()
+    return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), mechanism.branch)
+
+
+def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return how far each source may be off, (8,), m; the crank angle in rad."""
+    linkage, t = single(mechanism, linkage), mechanism.tolerances
+    lengths = (
+        tolerance.absolute + tolerance.fraction * abs(float(length))
+        for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
+    )
+    gap = t.clearances
+    return np.array([*lengths, t.crank_angle.absolute, gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide])
+
+
+def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
+    """Return the slider displacement per unit of each source, (8, m), m/m and m/rad, at crank angles (m,), rad.
+
+    A pin's clearance acts as an error of the rod, that of the guide as an error of the offset: see `position_error`.
+    """
+    angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    i = single(mechanism, linkage).error_influences(angles)
+    return np.stack([i.crank, i.rod, i.offset, i.crank_angle, i.rod, i.rod, i.rod, i.offset])
+
+
+def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return least and greatest crank, rod, offset (m) and deviation of the crank angle (rad), (4, 2).
+
+    Clearances widen the rod (pins) and the offset (guide). Raises `AssemblyError` unless every linkage in the box turns
+    fully, `InputError` if the crank angle may be off by half a turn.
+    """
+    linkage, reach = single(mechanism, linkage), limits(mechanism, linkage)
+    half = np.add(reach[:4], [0.0, reach[PINS].sum(), reach[GUIDE], 0.0])
+    if half[3] >= math.pi:
+        raise InputError(
+            f"the tolerance of the crank angle must be below 180 deg; got {math.degrees(half[3]):g} deg; reduce it"
+        )
+    middle = np.array([linkage.crank, linkage.rod, linkage.offset, 0.0])
+    box = np.stack([middle - half, middle + half], axis=1)
+    if box[0, 0] <= 0.0 or box[1, 0] <= box[0, 1] + np.abs(box[2]).max():
+        mm = 1e3 * box
+        raise AssemblyError(
+            "every linkage within tolerances and clearances must turn fully, rod > crank + |offset|; got at worst "
+            f"rod {mm[1, 0]:g} mm, crank {mm[0, 0]:g} to {mm[0, 1]:g} mm, offset {np.abs(mm[2]).max():g} mm; "
+            "tighten the tolerances"
+        )
+    return box
+
+
+def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
+    """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
+
+    count: angles a turn, concentrated where the linkage comes close to locking. The ends of a part are among its
+    angles; the whole cycle is one part, that ends one turn after it began.
+    """
+    linkage, window = single(mechanism, linkage), mechanism.tolerances.window
+    r, l, e = linkage.crank, linkage.rod, linkage.offset
+    kappa = crowding(r, l, e)
+
+    def part(first: float, last: float) -> Array:
+        low, high = crowded(first, kappa), crowded(last, kappa)
+        points = max(5, math.ceil(count * (high - low) / _TURN) + 1)
+        inside = [uncrowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
+        return np.array([first, *inside, last])
+
+    if window.during == "cycle" and window.start == 0.0 and window.end == 1.0:
+        return [part(0.0, _TURN)]
+    inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
+    near, far = (float(x) for x in linkage.dead_centres)
+
+    def at(fraction: float, first: float, span: float) -> float:
+        """Crank angle, from `first` on, where the slider is at a fraction of the stroke within one stroke."""
+        if fraction in (0.0, 1.0):
+            return first + (span if (fraction == 1.0) == (first == inner) else 0.0)
+        both = (crank_angle_at(near + fraction * (far - near), r, l, e, second) for second in (False, True))
+        return first + min((angle - first) % _TURN for angle in both)
+
+    parts = []
+    for first, last in ((inner, outer), (outer, inner)):
+        # Counter-clockwise from the inner to the outer dead centre is the outward stroke, clockwise the inward one.
+        outward = (first == inner) == (mechanism.speed >= 0.0)
+        if window.during == "cycle" or (window.during == "outward stroke") == outward:
+            ends = sorted(at(fraction, first, (last - first) % _TURN) for fraction in (window.start, window.end))
+            parts.append(part(*ends))
+    return parts

@@ -1,0 +1,87 @@
+"""Sweeps: quantities over a grid of one, two or more of crank, rod, offset and speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Literal, get_args
+
+import numpy as np
+import pandas as pd
+
+from ..model.errors import InputError
+from ..model.linkage import Linkage
+from ..model.mechanism import Mechanism
+from .quantity import Array
+from .registry import quantity
+
+Parameter = Literal["crank", "rod", "offset", "speed"]
+MOST = 1_000_000
+_LENGTHS = ("crank", "rod", "offset")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is swept, and its values, SI: m, or rad/s."""
+
+    parameter: Parameter
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if self.parameter not in get_args(Parameter):
+            raise InputError(f"a sweep is over {', '.join(get_args(Parameter))}; got {self.parameter!r}")
+        if not self.values or not all(math.isfinite(value) for value in self.values):
+            raise InputError(f"a sweep needs at least one value of the {self.parameter}, all finite")
+
+
+def sweep(mechanism: Mechanism, dimensions: Array, over: Sequence[Axis], of: Sequence[str]) -> pd.DataFrame:
+    """Return a table with a row for every combination of the values of the axes, the first axis slowest.
+
+    dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities.
+    Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
+    the row has no values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
+    Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
+    """
+    quantities = [quantity(name) for name in of]
+    names = [axis.parameter for axis in over]
+    if not names or not quantities:
+        raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")
+    if len(set(names)) < len(names):
+        raise InputError(f"a sweep is over different parameters; got {', '.join(names)}; leave out the second")
+    count = math.prod(len(axis.values) for axis in over)
+    if count > MOST:
+        raise InputError(f"a sweep has at most {MOST:,} combinations; got {count:,}; take fewer values")
+    grid = np.array(list(product(*(axis.values for axis in over))))
+    designs = np.tile(np.asarray(dimensions, dtype=np.float64).reshape(1, 3), (count, 1))
+    speeds = np.full(count, mechanism.speed)
+    for n, name in enumerate(names):
+        if name == "speed":
+            speeds = grid[:, n]
+        else:
+            designs[:, _LENGTHS.index(name)] = grid[:, n]
+    reasons = [_reason(design, mechanism) for design in designs]
+    columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(_LENGTHS)}
+    columns["speed_rpm"] = speeds * 30.0 / math.pi
+    turns = np.array([not reason for reason in reasons])
+    for item in quantities:
+        values = np.full(count, np.nan)
+        for speed in np.unique(speeds):
+            here = turns & (speeds == speed)
+            if np.any(here):
+                machine = replace(mechanism, speed=float(speed))
+                values[here] = item.unit.factor * item.evaluate(machine, designs[here]).values
+        columns[item.field] = values
+    table = pd.DataFrame(columns)
+    table["reason"] = reasons
+    return table
+
+
+def _reason(design: Array, mechanism: Mechanism) -> str:
+    """Return why a design does not turn fully; "" if it does."""
+    try:
+        Linkage(design[0], design[1], design[2], mechanism.branch).require_full_rotation()
+    except InputError as error:
+        return str(error)
+    return ""

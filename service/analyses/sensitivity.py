@@ -1,0 +1,68 @@
+"""Sensitivity of every quantity to each dimension, as numbers and as text."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+DIMENSIONS = ("crank", "rod", "offset")
+# Not in the text: variants of others there, and what follows from the dimensions at a glance.
+_LEFT_OUT = (
+    *("peak_torque_outward", "peak_torque_inward", "mean_torque", "rod_to_offset", "rod_to_crank"),
+    *("inner_dead_centre_position", "outer_dead_centre_position"),
+)
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return the table of `objectives.sensitivity` for one linkage, ready for JSON: None for what is not defined.
+
+    quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
+    (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
+    (<dimension>_tolerance), in the unit of the entry.
+    """
+    import numpy as np
+
+    from ...objectives.sensitivity import sensitivity
+    from ..result import finite, rows_of
+
+    table = sensitivity(mechanism, np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)]))
+    return {"quantities": finite(rows_of(table.to_dict("list")))}
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people: change of each quantity for one millimetre more, and in percent per percent."""
+    from rich.table import Table
+
+    from ..tables import print_table
+
+    console.print("Change of each quantity for 1 mm more of a dimension (and in % for 1 % more)", style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("quantity", no_wrap=True)
+    table.add_column("value", justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for name in DIMENSIONS:
+        table.add_column(name, justify="right", no_wrap=True)
+        table.add_column("", justify="right", no_wrap=True)
+    for row in numbers["quantities"]:
+        slopes = [row[f"{name}_per_mm"] for name in DIMENSIONS]
+        if row["quantity"] in _LEFT_OUT or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
+            continue
+        cells = []
+        for name, slope in zip(DIMENSIONS, slopes, strict=True):
+            relative = row[f"{name}_percent"]
+            cells += [_signed(slope), "" if relative is None else f"({_signed(relative, 3)} %)"]
+        table.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
+    print_table(console, table)
+
+
+def _signed(value: float | None, digits: int = 4) -> str:
+    if value is None or not math.isfinite(value):
+        return "-"
+    # A derivative that is zero but for rounding of the complex step.
+    return "0" if abs(value) < 1e-12 else f"{value:+.{digits}g}"

@@ -1,0 +1,155 @@
+"""Tolerances of one design as numbers and as text: worst case, root-sum-square, exact, Monte Carlo, contributions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import AssemblyError, InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+SAMPLES = 20_000
+
+
+def numbers(
+    mechanism: Mechanism, linkage: Linkage, *, limit: float | None = None, samples: int = SAMPLES, seed: int = 1
+) -> dict[str, Any]:
+    """Return what the tolerances of a mechanism do to the slider position of one linkage, ready for JSON.
+
+    limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
+    case are given. Shares are those at the crank angle of the first-order worst case, of the variance as simulated.
+    The exact worst case is None where a linkage within the tolerances does not turn. Raises `InputError` if there are
+    no tolerances.
+    """
+    import numpy as np
+
+    from ...model.peaks import find_peaks
+    from ...model.signals import Signal
+    from ...model.tolerance.exact import worst
+    from ...model.tolerance.first_order import shares
+    from ...model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
+    from ...model.tolerance.sources import SOURCES, limits, source_influences
+
+    reach = limits(mechanism, linkage)
+    if not np.any(reach):
+        raise InputError(
+            'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+        )
+    design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+    first, square = (
+        find_peaks(mechanism, signal, design, kept=1) for signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+    )
+    worst_case, rss = float(first.values[0, 0]), float(square.values[0, 0])
+    try:
+        exact = worst(mechanism, linkage)
+    except AssemblyError:
+        exact = None
+    parts = (np.abs(source_influences(mechanism, linkage, first.angles[0])) * reach[:, None])[:, :1]
+    of_worst, of_variance = (
+        100.0 * shares(parts)[:, 0],
+        100.0 * shares(variances(mechanism, linkage, first.angles[0]))[:, 0],
+    )
+    simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
+    spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
+    limits_wanted = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
+    yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in limits_wanted.items()]
+    return {
+        "worst_case_mm": 1e3 * worst_case,
+        "worst_case_angle_deg": float(np.degrees(first.angles[0, 0])),
+        "exact_worst_case_mm": None if exact is None else 1e3 * exact.size,
+        "exact_worst_case_angle_deg": None if exact is None else float(np.degrees(exact.crank_angle)),
+        "root_sum_square_mm": 1e3 * rss,
+        "root_sum_square_angle_deg": float(np.degrees(square.angles[0, 0])),
+        "contributions": [
+            {
+                "source": name,
+                "limit_mm": None if name == "crank angle" else 1e3 * float(reach[n]),
+                "limit_deg": float(np.degrees(reach[n])) if name == "crank angle" else None,
+                "contribution_mm": 1e3 * float(parts[n, 0]),
+                "share_of_worst_case_percent": float(of_worst[n]),
+                "share_of_variance_percent": float(of_variance[n]),
+            }
+            for n, name in enumerate(SOURCES)
+            if reach[n] > 0.0
+        ],
+        "monte_carlo": {
+            "samples": len(simulation.greatest),
+            "seed": seed,
+            "stuck": simulation.stuck,
+            "mean_greatest_mm": None if spread is None else 1e3 * spread.mean,
+            "standard_deviation_greatest_mm": None if spread is None else 1e3 * spread.deviation,
+            "percentiles_greatest_mm": {
+                f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
+            },
+        },
+        "yields": [
+            {
+                "limit": name,
+                "limit_mm": 1e3 * value,
+                "yield_percent": 100.0 * found.share,
+                "yield_low_percent": 100.0 * found.low,
+                "yield_high_percent": 100.0 * found.high,
+                "confidence_percent": 100.0 * found.confidence,
+            }
+            for name, value, found in yields
+        ],
+    }
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    from rich.table import Table
+
+    from ..tables import print_table
+
+    exact, angle = numbers["exact_worst_case_mm"], numbers["exact_worst_case_angle_deg"]
+    console.print("Position error from tolerances, greatest over the counted part of the cycle", style="bold")
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    for _ in range(2):
+        table.add_column(no_wrap=True)
+    table.add_row("worst case, first order", _at(numbers["worst_case_mm"], numbers["worst_case_angle_deg"]))
+    table.add_row(
+        "worst case, exact",
+        "not defined: a linkage within the tolerances does not turn fully" if exact is None else _at(exact, angle),
+    )
+    table.add_row("root-sum-square", _at(numbers["root_sum_square_mm"], numbers["root_sum_square_angle_deg"]))
+    simulation = numbers["monte_carlo"]
+    spread = ", ".join(
+        f"{percent} % within {value:.4g} mm" for percent, value in simulation["percentiles_greatest_mm"].items()
+    )
+    table.add_row(f"{simulation['samples']:,} random machines", spread or "-")
+    if simulation["stuck"]:
+        table.add_row("", f"{simulation['stuck']:,} of them do not turn fully")
+    for found in numbers["yields"]:
+        low, high = found["yield_low_percent"], found["yield_high_percent"]
+        table.add_row(
+            f"yield at {found['limit_mm']:.4g} mm ({found['limit']})",
+            f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} % "
+            f"at {found['confidence_percent']:g} % confidence",
+        )
+    print_table(console, table)
+    if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
+        note = (
+            "The root-sum-square takes a clearance for three standard deviations; pins pressed to either side scatter"
+        )
+        console.print(f"{note} wider, as the random machines show.", style="dim", soft_wrap=True)
+    console.print()
+    shares = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    shares.add_column("where it comes from")
+    for title in ("limit", "adds, mm", "of worst case", "of variance"):
+        shares.add_column(title, justify="right", no_wrap=True)
+    for row in numbers["contributions"]:
+        limit = f"{row['limit_deg']:.4g} deg" if row["limit_mm"] is None else f"{row['limit_mm']:.4g} mm"
+        of_worst, of_variance = row["share_of_worst_case_percent"], row["share_of_variance_percent"]
+        shares.add_row(
+            row["source"], limit, f"{row['contribution_mm']:.4g}", f"{of_worst:.1f} %", f"{of_variance:.1f} %"
+        )
+    print_table(console, shares)
+
+
+def _at(size: float, angle: float) -> str:
+    return f"{size:.4g} mm at {angle:.4g} deg"

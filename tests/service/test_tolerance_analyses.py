@@ -1,0 +1,203 @@
+"""Tolerances and sensitivity as numbers, text and figures: what they show is what the model gives."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from rich.console import Console
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.mechanism import Clearances, Mechanism, Tolerance, Tolerances
+from slidercrank.model.peaks import find_peaks
+from slidercrank.model.signals import Signal
+from slidercrank.model.tolerance.exact import extremes, worst
+from slidercrank.model.tolerance.first_order import first_order, shares
+from slidercrank.model.tolerance.monte_carlo import simulate, variances
+from slidercrank.objectives.sensitivity import DIMENSIONS, sensitivity
+from slidercrank.service.analyses import sensitivity as sensitivity_analysis
+from slidercrank.service.analyses import tolerances as tolerance_analysis
+from slidercrank.service.figures.tolerances import PERCENTS, draw_tolerances, error_bands, tolerances_figure
+from slidercrank.service.figures.tornado import draw_sensitivity, tornado_figure, tornado_rows
+from slidercrank.service.figures.variation import draw_variation, variation_figure, variation_panels
+from tests.model.cases import SMOOTH
+from tests.model.tolerance.machines import PUBLISHED, SUPPORT
+from tests.service.test_figures import overlaps
+
+GAPPED = dataclasses.replace(
+    PUBLISHED,
+    tolerances=dataclasses.replace(
+        PUBLISHED.tolerances,
+        clearances=Clearances(crank_pivot=1e-3, crank_pin=1e-3, slider_pin=1e-3, guide=2e-3),
+    ),
+)
+SIEVE = Linkage(0.14, 0.31, 0.06)
+CLOSE = Linkage(0.04, 0.0601, 0.02)
+TIGHT = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=2e-4)))
+"""Of `CLOSE` some linkages within the tolerance do not turn."""
+
+
+def text_of(show: Callable[[Console, dict[str, Any]], None], numbers: dict[str, Any]) -> str:
+    console = Console(width=100, file=io.StringIO(), markup=False, highlight=False)
+    show(console, numbers)
+    return console.file.getvalue()  # type: ignore[attr-defined,no-any-return]
+
+
+def lines_of(figure: Figure, panel: int) -> list[np.ndarray]:
+    return [np.asarray(line.get_ydata(), dtype=float) for line in figure.axes[panel].lines]
+
+
+@pytest.mark.parametrize("mechanism", [PUBLISHED, GAPPED], ids=["case 4", "with clearances"])
+def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) -> None:
+    found = tolerance_analysis.numbers(mechanism, SUPPORT, limit=3e-3, samples=2000, seed=4)
+    json.dumps(found, allow_nan=False)
+    design = np.array([[1.4, 1.8, -0.05]])
+    for key, signal in (("worst_case", Signal.POSITION_ERROR), ("root_sum_square", Signal.POSITION_ERROR_RSS)):
+        peak = find_peaks(mechanism, signal, design, kept=1)
+        assert found[f"{key}_mm"] == 1e3 * peak.values[0, 0]
+        assert found[f"{key}_angle_deg"] == pytest.approx(np.degrees(peak.angles[0, 0]))
+    exact = worst(mechanism, SUPPORT)
+    assert found["exact_worst_case_mm"] == 1e3 * exact.size
+    at = math.radians(found["worst_case_angle_deg"])
+    linear = first_order(mechanism, SUPPORT, at)
+    rows = found["contributions"]
+    assert sum(row["contribution_mm"] for row in rows) == pytest.approx(found["worst_case_mm"], rel=1e-12)
+    there = linear.contributions[:, 0] > 0.0
+    np.testing.assert_allclose(
+        [row["share_of_worst_case_percent"] for row in rows], 100.0 * linear.share_of_worst_case[there, 0], rtol=1e-9
+    )
+    of_variance = shares(variances(mechanism, SUPPORT, at))[there, 0]
+    np.testing.assert_allclose([row["share_of_variance_percent"] for row in rows], 100.0 * of_variance, rtol=1e-9)
+    for share in ("worst_case", "variance"):
+        assert sum(row[f"share_of_{share}_percent"] for row in rows) == pytest.approx(100.0, rel=1e-12)
+    simulation = simulate(mechanism, SUPPORT, samples=2000, seed=4)
+    within = 100.0 * np.mean(simulation.greatest <= 3e-3)
+    (only,) = found["yields"]
+    assert only["yield_percent"] == pytest.approx(within, rel=1e-12)
+    assert only["yield_low_percent"] < within < only["yield_high_percent"]
+    assert found["monte_carlo"]["percentiles_greatest_mm"]["95"] == pytest.approx(
+        1e3 * np.percentile(simulation.greatest, 95.0)
+    )
+
+
+def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
+    found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
+    text = text_of(tolerance_analysis.show, found)
+    assert len(text.splitlines()) <= 20
+    for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
+        assert f"{found[key]:.4g} mm" in text
+    assert "crank pin clearance" in text
+    assert "scatter wider" in text
+    assert "scatter wider" not in text_of(tolerance_analysis.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
+
+
+def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
+    found = tolerance_analysis.numbers(TIGHT, CLOSE, samples=2000)
+    json.dumps(found, allow_nan=False)
+    assert found["exact_worst_case_mm"] is None
+    assert found["monte_carlo"]["stuck"] > 0
+    text = text_of(tolerance_analysis.show, found)
+    assert "does not turn fully" in text
+    bands = error_bands(TIGHT, CLOSE, samples=500)
+    assert bands.least is None
+    assert len(lines_of(tolerances_figure(bands), 0)) == 5  # two each of worst case and root-sum-square, and zero
+
+
+def test_without_tolerances_there_is_nothing_to_analyse() -> None:
+    with pytest.raises(InputError, match="comes from tolerances; got none; add for example"):
+        tolerance_analysis.numbers(Mechanism(speed=1.0), SUPPORT)
+
+
+def test_error_bands_are_those_of_the_model() -> None:
+    bands = error_bands(GAPPED, SUPPORT, samples=1000, seed=3)
+    theta = np.radians(bands.angles)
+    linear, exact = first_order(GAPPED, SUPPORT, theta), extremes(GAPPED, SUPPORT, theta)
+    np.testing.assert_allclose(bands.worst_case, 1e3 * linear.worst_case, rtol=1e-9)
+    np.testing.assert_allclose(bands.root_sum_square, 1e3 * linear.root_sum_square, rtol=1e-9)
+    assert bands.least is not None
+    assert bands.greatest is not None
+    np.testing.assert_allclose(bands.least, 1e3 * exact.least, rtol=1e-9)
+    np.testing.assert_allclose(bands.greatest, 1e3 * exact.greatest, rtol=1e-9)
+    errors = simulate(GAPPED, SUPPORT, theta, samples=1000, seed=3).errors
+    np.testing.assert_allclose(bands.percentiles, 1e3 * np.percentile(errors, PERCENTS, axis=0), rtol=1e-9)
+    np.testing.assert_allclose(bands.shares.sum(axis=0), 100.0, rtol=1e-12)
+    assert len(bands.sources) == 8
+    figure = tolerances_figure(bands)
+    drawn = lines_of(figure, 0)
+    np.testing.assert_array_equal(drawn[0], bands.worst_case)
+    np.testing.assert_array_equal(drawn[1], -bands.worst_case)
+    np.testing.assert_array_equal(drawn[2], bands.greatest)
+    np.testing.assert_array_equal(drawn[3], bands.least)
+    np.testing.assert_array_equal(drawn[4], bands.root_sum_square)
+    assert overlaps(figure) == []
+
+
+def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
+    found = sensitivity_analysis.numbers(SMOOTH, SIEVE)
+    json.dumps(found, allow_nan=False)
+    table = sensitivity(SMOOTH, np.array([0.14, 0.31, 0.06]))
+    assert [row["quantity"] for row in found["quantities"]] == list(table["quantity"])
+    for row, (_, expected) in zip(found["quantities"], table.iterrows(), strict=True):
+        for name in DIMENSIONS:
+            assert row[f"{name}_per_mm"] == expected[f"{name}_per_mm"]
+    in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
+    json.dumps(in_line, allow_nan=False)
+    assert all(row["offset_percent"] is None for row in in_line["quantities"])
+    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 20
+    assert "peak torque" in text_of(sensitivity_analysis.show, in_line)
+
+
+@pytest.mark.parametrize("offset", [0.06, 0.0])
+def test_tornado_draws_the_percentages_most_sensitive_first(offset: float) -> None:
+    linkage = Linkage(0.14, 0.31, offset)
+    rows = tornado_rows(SMOOTH, linkage)
+    table = sensitivity(SMOOTH, np.array([0.14, 0.31, offset])).set_index("title")
+    columns = [f"{name}_percent" for name in DIMENSIONS]
+    for _, row in rows.iterrows():
+        np.testing.assert_array_equal(
+            row[columns].to_numpy(dtype=float), table.loc[row["title"], columns].to_numpy(dtype=float)
+        )
+    assert rows[columns].abs().max(axis=1).is_monotonic_decreasing
+    figure = tornado_figure(rows)
+    for panel, column in zip(figure.axes, columns, strict=True):
+        widths = [bar.get_width() for bar in panel.patches]  # type: ignore[attr-defined]
+        np.testing.assert_allclose(widths, rows[column].dropna(), rtol=1e-12)
+    assert overlaps(figure) == []
+
+
+def test_variation_of_case_two_draws_the_motion_of_each_linkage() -> None:
+    machine = dataclasses.replace(SMOOTH, speed=10.0 * math.pi, acceleration=0.0)
+    panels = variation_panels(machine, SIEVE, [("crank", 0.15), ("rod", 0.32)])
+    assert panels.labels == ("as given", "crank 140 → 150 mm", "rod 310 → 320 mm")
+    theta = np.radians(panels.angles)
+    for n, linkage in enumerate((SIEVE, Linkage(0.15, 0.31, 0.06), Linkage(0.14, 0.32, 0.06))):
+        at = linkage.at(theta, speed=10.0 * math.pi)
+        np.testing.assert_allclose(panels.curves[0, n], 1e3 * at.slider_position, rtol=1e-12)
+        np.testing.assert_allclose(panels.curves[1, n], at.slider_velocity, atol=1e-9)
+        np.testing.assert_allclose(panels.curves[2, n], at.slider_acceleration, atol=1e-7)
+    figure = variation_figure(panels)
+    for n in range(3):
+        curves = [line for line in lines_of(figure, n) if len(line) == len(theta)]
+        np.testing.assert_array_equal(curves, panels.curves[n])
+    assert overlaps(figure) == []
+    # Without a speed, per unit of crank speed; without changes, 5 % of each dimension that is there.
+    still = variation_panels(Mechanism(), Linkage(0.1, 0.4))
+    assert still.labels == ("as given", "crank 100 → 105 mm", "rod 400 → 420 mm")
+    assert still.titles[1] == "velocity per crank speed, mm/rad"
+
+
+def test_figures_are_written_where_they_are_wanted(tmp_path: Path) -> None:
+    for draw in (draw_tolerances, draw_sensitivity, draw_variation):
+        file = draw(PUBLISHED, SUPPORT, tmp_path / "figure.png")
+        assert file == tmp_path / "figure.png"
+        assert imread(file).shape[1] > 800
