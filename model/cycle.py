@@ -13,7 +13,7 @@ from .arithmetic import kernel
 from .dynamics import forces
 from .linkage import Linkage
 from .mechanism import Mechanism
-from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
 from .position_error import influences, root_sum_square, worst_case
 from .segments import Watch, enter, load_on_slider
 from .signals import design_motion
@@ -21,6 +21,7 @@ from .signals import design_motion
 Array = NDArray[np.float64]
 
 _COLUMNS = 15
+_SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,14 @@ class Cycle:
 
 
 @kernel
-def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
+def _curves(raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any) -> Any:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
-    d = design_at(block, 0)
     for i in range(angles.shape[0]):
         theta = angles[i]
+        block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
+        d = design_at(block, 0)
         sine, cosine = math.sin(theta), math.cos(theta)
         _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
         m = design_motion(sine, cosine, d)
@@ -81,15 +83,28 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
         out[14, i] = root_sum_square(j, d)
 
 
-def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cycle:
+def cycle(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    crank_angle: ArrayLike,
+    *,
+    speed: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    The branch is the mechanism's. Where a load jumps (exactly on a dead centre) the inward stroke's value is given.
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; the mechanism's if None.
+    The branch is the mechanism's. Where a load jumps (exactly on a dead centre) the inward stroke's value is given;
+    where the speed is zero, that of counter-clockwise motion.
     """
     linkage.require_full_rotation()
     angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
+    speeds, accelerations = (
+        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
+        for given, own in ((speed, mechanism.speed), (acceleration, mechanism.acceleration))
+    )
     raw = raw_vector(mechanism)
     raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     out = np.empty((_COLUMNS, len(angles)))
-    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out)
+    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, speeds, accelerations, out)
     return Cycle(angles, *out)
