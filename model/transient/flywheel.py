@@ -5,8 +5,8 @@ needs, and the greatest change dE of the energy, the integral of mean T - T, bet
 
     J = dE / (delta w^2),    delta = (w_max - w_min) / w_mean.
 
-It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected beside J.
-The exact J is a root search on steady running, whose speed is that of the equation of motion.
+It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected beside
+J. The exact J is a root search on steady running, whose speed is that of the equation of motion.
 """
 
 from __future__ import annotations

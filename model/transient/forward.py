@@ -2,8 +2,8 @@
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J with the drive's inertia. Integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and
-Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead
+J with the drive's inertia. Integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett
+and Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead
 centre at which a load changes, a knot of a table, or a standstill. The work of motor and loads is integrated with it.
 
 At standstill the loads of both ways of turning are asked: the crank starts the way in which motor and loads leave a
@@ -94,20 +94,21 @@ def simulate(
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
     before: float | None = None
     passed = 0
-    while run.verdict is None:
-        run.advance()
+    while True:
+        verdict = run.advance()
         if progress is not None:
             progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
-        if run.verdict is None and run.at_mark and run.speed:
+        if verdict is None and run.at_mark:
             made = round((run.angle - start.angle) / TURN)
             if turns is not None and abs(made) >= turns:
-                run.verdict = "turns done"
+                verdict = "turns done"
             elif steady is not None and before is not None and made != passed:
-                run.verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
+                verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
             before, passed = run.speed, made
-        if run.verdict is None and cancelled is not None and cancelled():
-            run.verdict = "cancelled"
-    return run.result(run.verdict)
+        if verdict is None and cancelled is not None and cancelled():
+            verdict = "cancelled"
+        if verdict is not None:
+            return run.result(verdict)
 
 
 def _require(duration: float, turns: int | None, steady: float | None, tolerance: float, samples: int) -> None:
@@ -151,7 +152,6 @@ class _Run:
             self.turn, self.local = self.turn + 1, first
         self.time, self.speed, self.at_mark = 0.0, start.speed, True
         self.works = np.zeros(2)
-        self.verdict: Verdict | None = None
         self.turned_back: list[float] = []
         self.scale = self._speed_scale(mechanism.speed)
         self.recorder = Recorder(self.equation, drive, linkage, mechanism, samples)
@@ -176,12 +176,13 @@ class _Run:
         """The crank angle, rad, turns counted."""
         return self.local + TURN * self.turn
 
-    def advance(self) -> None:
-        """Go on to the end of the stretch, to standstill or to the end of the time, whichever comes first."""
-        if self.way == 0.0:
-            self._leave_rest()
-            if self.verdict is not None:
-                return
+    def advance(self) -> Verdict | None:
+        """Go on to the end of the stretch, to standstill or to the end of the time, whichever comes first.
+
+        Return why the motion ends, if it does.
+        """
+        if self.way == 0.0 and (ended := self._leave_rest()):
+            return ended
         stretch = self._stretch(self.way)
         solution, stop = self._integrate(stretch)
         self.recorder.add(stretch, self.turn, solution)
@@ -194,7 +195,8 @@ class _Run:
         elif stop == "standstill":
             self.speed, self.way, self.arrived = 0.0, 0.0, stretch.way
         else:
-            self.verdict = "beyond the torque table" if stop == "table" else "time is up"
+            return "beyond the torque table" if stop == "table" else "time is up"
+        return None
 
     def _stretch(self, way: float) -> Stretch:
         return self.equation.stretch(self.index, way)
@@ -271,11 +273,12 @@ class _Run:
                 f"got {self.tolerance:g}; check masses and loads for values of very different size"
             )
         names: tuple[Stop, ...] = ("edge", "standstill", "table")
-        ended = [name for name, times in zip(names, solution.t_events, strict=False) if len(times)]
+        found = solution.t_events or []
+        ended = [name for name, times in zip(names, found, strict=False) if len(times)]
         return solution, ended[0] if ended else "time"
 
-    def _leave_rest(self) -> None:
-        """Find out which way the crank starts from standstill, if any."""
+    def _leave_rest(self) -> Verdict | None:
+        """Find out which way the crank starts from standstill; return why it does not, if so."""
         count = len(self.equation.breakpoints)
         motor = float(self.drive.torque(0.0, self.equation.direction))
         at_edge = abs(self.local - self._stretch(1.0).low) <= NEAREST
@@ -289,12 +292,12 @@ class _Run:
         arrived = self.arrived
         self.way = next((way for way in (-arrived, arrived) if push[way] > 0.0), 0.0)
         if self.way == 0.0:
-            self.verdict = "stands still"
-        elif (self.fastest if self.way > 0.0 else -self.slowest) <= 0.0:
-            self.verdict = "beyond the torque table"
-        else:
-            if self.time > 0.0 and self.way != arrived:
-                self.turned_back.append(self.time)
-            if self.way < 0.0 and at_edge:
-                self.index = before
-                self._lift(self.index == count - 1)
+            return "stands still"
+        if (self.fastest if self.way > 0.0 else -self.slowest) <= 0.0:
+            return "beyond the torque table"
+        if self.time > 0.0 and self.way != arrived:
+            self.turned_back.append(self.time)
+        if self.way < 0.0 and at_edge:
+            self.index = before
+            self._lift(self.index == count - 1)
+        return None
