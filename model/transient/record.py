@@ -56,7 +56,7 @@ class Transient:
     @property
     def message(self) -> str:
         """What the verdict means, with the time at which it came."""
-        return f"after {self.time[-1]:.6g} s and {self.turns:.4g} turns: {_SAID[self.verdict]}"
+        return f"after {self.time[-1]:.4g} s and {self.turns:.4g} turns: {_SAID[self.verdict]}"
 
     @property
     def turns(self) -> float:

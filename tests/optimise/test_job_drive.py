@@ -71,7 +71,7 @@ GOOD = {"torque": "20 N m"}
             {"motor": {"rated_torque": "1 N m", "rated_speed": "9 rpm", "no_load_speed": "8 rpm"}},
             ["drive.motor", "a speed below the no-load speed"],
         ),
-        ({"motor": {"speeds": ["0 rpm"], "torques": ["1 N m"]}}, ["drive.motor.speeds", "at least 2 entries"]),
+        ({"motor": {"speeds": ["0 rpm"], "torques": ["1 N m", "1 N m"]}}, ["drive.motor.speeds", "at least 2 entries"]),
         (
             {"motor": {"speeds": ["0 rpm", "1 rpm"], "torques": ["1 N m", "1 N m", "1 N m"]}},
             ["drive.motor", "as many torques as speeds"],
