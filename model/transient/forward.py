@@ -51,8 +51,6 @@ class Progress:
     speed: float
 
 
-REST = State()
-
 Stop = Literal["edge", "standstill", "table", "time"]
 
 
@@ -72,7 +70,7 @@ def simulate(
     duration: float,
     turns: int | None = None,
     steady: float | None = None,
-    start: State = REST,
+    start: State = State(),
     tolerance: float = 1e-12,
     samples: int = 90,
     progress: Callable[[Progress], None] | None = None,
@@ -92,8 +90,7 @@ def simulate(
     drive = drive_of(mechanism, drive)
     _require(duration, turns, steady, tolerance, samples)
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
-    before: float | None = None
-    passed = 0
+    before, passed = math.nan, 0
     while True:
         verdict = run.advance()
         if progress is not None:
@@ -102,7 +99,7 @@ def simulate(
             made = round((run.angle - start.angle) / TURN)
             if turns is not None and abs(made) >= turns:
                 verdict = "turns done"
-            elif steady is not None and before is not None and made != passed:
+            elif steady is not None and made != passed:
                 verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
             before, passed = run.speed, made
         if verdict is None and cancelled is not None and cancelled():
