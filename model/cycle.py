@@ -14,7 +14,7 @@ from .dynamics import forces
 from .errors import InputError
 from .linkage import Linkage
 from .mechanism import Mechanism
-from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
 from .position_error import influences, root_sum_square, worst_case
 from .segments import Watch, enter, load_on_slider
 from .signals import design_motion
@@ -22,6 +22,7 @@ from .signals import design_motion
 Array = NDArray[np.float64]
 
 _COLUMNS = 15
+_SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
 @dataclass(frozen=True)
@@ -52,13 +53,14 @@ class Cycle:
 
 
 @kernel
-def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
+def _curves(raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any) -> Any:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
-    d = design_at(block, 0)
     for i in range(angles.shape[0]):
         theta = angles[i]
+        block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
+        d = design_at(block, 0)
         sine, cosine = math.sin(theta), math.cos(theta)
         _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
         m = design_motion(sine, cosine, d)
@@ -82,11 +84,20 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
         out[14, i] = root_sum_square(j, d)
 
 
-def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cycle:
+def cycle(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    crank_angle: ArrayLike,
+    *,
+    speed: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    Where a load jumps (exactly on a dead centre) the inward stroke's value is given. Raises `InputError` for arrays of
-    linkages and for a linkage on another branch than the mechanism's.
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; the mechanism's if None.
+    Where a load jumps (exactly on a dead centre) the inward stroke's value is given; where the speed is zero, that of
+    counter-clockwise motion. Raises `InputError` for arrays of linkages and for a linkage on another branch than the
+    mechanism's.
     """
     linkage.require_full_rotation()
     if np.shape(linkage.rotates_fully):
@@ -99,10 +110,14 @@ def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cyc
             "set branch in both"
         )
     angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
-    if not np.all(np.isfinite(angles)):
-        raise InputError("crank angles must be finite")
+    speeds, accelerations = (
+        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
+        for given, own in ((speed, mechanism.speed), (acceleration, mechanism.acceleration))
+    )
+    if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
+        raise InputError("crank angles, speeds and accelerations must be finite")
     raw = raw_vector(mechanism)
     raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     out = np.empty((_COLUMNS, len(angles)))
-    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out)
+    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, speeds, accelerations, out)
     return Cycle(angles, *out)

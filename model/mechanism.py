@@ -9,6 +9,7 @@ from typing import Literal
 from .errors import InputError
 from .links import Counterweight, Link, RigidLink
 from .loads import During, Load, require_word
+from .transient.drive import Drive
 
 Branch = Literal["open", "crossed"]
 
@@ -89,6 +90,7 @@ class Mechanism:
 
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
+    drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
     """
 
     speed: float = 0.0
@@ -101,6 +103,7 @@ class Mechanism:
     loads: tuple[Load, ...] = ()
     tolerances: Tolerances = field(default_factory=Tolerances)
     branch: Branch = "open"
+    drive: Drive | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed", "acceleration"):

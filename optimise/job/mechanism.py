@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.links import Bar, Counterweight, Link, RigidLink
 from ...model.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
 from ..units import shown
+from .drive import DrivePart
 from .loads import Load
 from .values import (
     Angle,
@@ -197,7 +198,7 @@ class MechanismPart(Part):
             )
         return self
 
-    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart) -> Mechanism:
+    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart, drive: DrivePart | None = None) -> Mechanism:
         """Return the machine as the model has it."""
         parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
         parts["counterweight"] = self.counterweight
@@ -209,6 +210,7 @@ class MechanismPart(Part):
             loads=tuple(load.build() for load in loads),
             tolerances=tolerances.build(),
             branch=self.branch,
+            drive=None if drive is None else drive.build(),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

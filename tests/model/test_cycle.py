@@ -101,5 +101,5 @@ def test_several_linkages_at_once_are_refused() -> None:
 
 
 def test_curves_at_no_angle_are_refused() -> None:
-    with pytest.raises(InputError, match="crank angles must be finite"):
+    with pytest.raises(InputError, match="crank angles, speeds and accelerations must be finite"):
         cycle(Mechanism(), Linkage(0.05, 0.2, 0.03), [0.0, math.nan])

@@ -1,0 +1,170 @@
+"""What drives the crank: the torque law of a motor over its speed, a gear, and the inertias that turn with it.
+
+Motor speed and motor torque are counted positive in the direction in which the motor is meant to turn; a `Drive` turns
+that into the crank's, which is the direction of the mechanism's speed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+
+
+def _finite(owner: object, *names: str, least: float = -math.inf, above: float = -math.inf) -> None:
+    """Refuse a field that is not finite, below `least`, or not above `above`."""
+    for name in names:
+        value = getattr(owner, name)
+        if not math.isfinite(value) or value < least or value <= above:
+            sign = "positive and " if above == 0.0 else "zero or more and " if least == 0.0 else ""
+            raise InputError(f"{name} of a {type(owner).__name__} must be {sign}finite; got {value:g}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConstantTorque:
+    """A motor torque that is the same at every speed, N m. It limits no speed; zero lets the machine coast."""
+
+    torque: float
+
+    def __post_init__(self) -> None:
+        _finite(self, "torque")
+
+    def at(self, speed: ArrayLike) -> Any:
+        """Return the torque, N m, at motor speeds, rad/s."""
+        return np.full(np.shape(speed), self.torque)[()]
+
+    def slope(self, speed: ArrayLike) -> Any:
+        """Return the torque's derivative by speed, N m s."""
+        return np.zeros(np.shape(speed))[()]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearMotor:
+    """A motor whose torque falls linearly with speed: torque = stall_torque (1 - speed / no_load_speed).
+
+    A direct-current motor, or an induction motor near its synchronous speed (see `through`). The line goes on beyond
+    both ends: above the no-load speed the motor brakes, and driven backwards it holds with more than the stall torque.
+
+    stall_torque: N m. no_load_speed: rad/s.
+    """
+
+    stall_torque: float
+    no_load_speed: float
+
+    def __post_init__(self) -> None:
+        _finite(self, "stall_torque", "no_load_speed", above=0.0)
+
+    @classmethod
+    def through(cls, *, torque: float, speed: float, no_load_speed: float) -> LinearMotor:
+        """Return the line through a rated point (torque, N m, at speed, rad/s) and the no-load speed, rad/s."""
+        if not (0.0 <= speed < no_load_speed < math.inf and 0.0 < torque < math.inf):
+            raise InputError(
+                "a rated point needs a positive torque, and a speed below the no-load speed; "
+                f"got {torque:g} N m at {speed:g} rad/s, no load at {no_load_speed:g} rad/s; "
+                "give the no-load (synchronous) speed and the smaller speed under the rated load"
+            )
+        return cls(stall_torque=torque * no_load_speed / (no_load_speed - speed), no_load_speed=no_load_speed)
+
+    def at(self, speed: ArrayLike) -> Any:
+        """Return the torque, N m, at motor speeds, rad/s."""
+        return self.stall_torque * (1.0 - np.asarray(speed) / self.no_load_speed)[()]
+
+    def slope(self, speed: ArrayLike) -> Any:
+        """Return the torque's derivative by speed, N m s."""
+        return np.full(np.shape(speed), -self.stall_torque / self.no_load_speed)[()]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueTable:
+    """A motor torque tabulated over speed, interpolated by a monotone cubic (Fritsch and Carlson, 1980).
+
+    The curve has no kinks and no overshoot. Beyond the table it is not defined (NaN), and a simulation that gets there
+    stops and says so. speeds: increasing, rad/s, the first zero or negative. torques: N m.
+    """
+
+    speeds: tuple[float, ...]
+    torques: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.speeds) != len(self.torques) or len(self.speeds) < 2:
+            raise InputError(
+                "a torque table needs as many torques as speeds, two at least; "
+                f"got {len(self.speeds)} speeds and {len(self.torques)} torques"
+            )
+        if not all(math.isfinite(value) for value in (*self.speeds, *self.torques)):
+            raise InputError("a torque table must be finite throughout")
+        for before, after in pairwise(self.speeds):
+            if after <= before:
+                raise InputError(
+                    f"speeds of a torque table must increase; got {after:g} after {before:g}; sort the table"
+                )
+        if self.speeds[0] > 0.0:
+            raise InputError(
+                "a torque table must start at standstill or below; "
+                f"got {self.speeds[0]:g} rad/s as its first speed; add the torque at speed 0"
+            )
+
+    @cached_property
+    def _curve(self) -> Any:
+        from scipy.interpolate import PchipInterpolator
+
+        return PchipInterpolator(self.speeds, self.torques, extrapolate=False)
+
+    def at(self, speed: ArrayLike) -> Any:
+        """Return the torque, N m, at motor speeds, rad/s; NaN beyond the table."""
+        return self._curve(speed)[()]
+
+    def slope(self, speed: ArrayLike) -> Any:
+        """Return the torque's derivative by speed, N m s; NaN beyond the table."""
+        return self._curve(speed, 1)[()]
+
+
+Motor = ConstantTorque | LinearMotor | TorqueTable
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """A motor, a lossless gear, and what turns with them.
+
+    flywheel: inertia on the crank shaft, kg m^2. motor_inertia: of rotor and whatever turns at motor speed, kg m^2.
+    gear_ratio: turns of the motor for one of the crank; the motor's torque acts on the crank times the ratio, its
+    inertia times the square of it.
+    """
+
+    motor: Motor
+    flywheel: float = 0.0
+    motor_inertia: float = 0.0
+    gear_ratio: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.motor, Motor):
+            raise InputError(f"motor must be a ConstantTorque, LinearMotor or TorqueTable; got {self.motor!r}")
+        _finite(self, "flywheel", "motor_inertia", least=0.0)
+        _finite(self, "gear_ratio", above=0.0)
+
+    @property
+    def inertia(self) -> float:
+        """What turns with the crank besides the mechanism, seen at the crank: flywheel + ratio^2 motor, kg m^2."""
+        return self.flywheel + self.gear_ratio**2 * self.motor_inertia
+
+    def torque(self, crank_speed: ArrayLike, direction: float) -> NDArray[np.float64]:
+        """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
+
+        direction: +1 or -1, the way the motor is meant to turn the crank.
+        """
+        speed = direction * self.gear_ratio * np.asarray(crank_speed)
+        return np.asarray(direction * self.gear_ratio * self.motor.at(speed))
+
+
+def speed_range(drive: Drive) -> tuple[float, float]:
+    """Return the least and the greatest crank speed, rad/s in the motor's direction, at which its torque is known."""
+    if not isinstance(drive.motor, TorqueTable):
+        return -math.inf, math.inf
+    return drive.motor.speeds[0] / drive.gear_ratio, drive.motor.speeds[-1] / drive.gear_ratio

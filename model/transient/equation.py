@@ -1,0 +1,181 @@
+"""The equation of motion of the crank, from the same forces as the inverse dynamics.
+
+The drive torque is affine in the crank's acceleration, and quadratic in its speed:
+
+    T = J(theta) a + J'(theta) w^2 / 2 + C(theta) + D(theta) w,
+
+J the moving inertia, C gravity and every load that does not depend on speed, D the viscous loads. Each term is the
+torque of `dynamics.forces` for a motion and a load that leave only this term: nothing is derived a second time, and
+no term is a difference of great numbers.
+
+C depends on which way the slider moves, hence on the direction of rotation, and is smooth between *breakpoints* only:
+dead centres and knots of load tables. A `Stretch` is the crank turning one way between two of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arithmetic import kernel
+from ..dynamics import forces, smooth_load
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from ..parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
+from ..peaks import watch_of
+from ..segments import Cuts, cut_cycle, enter, load_on_slider, within
+from ..signals import Signal, design_motion
+from .energy import height_energy, moving_inertia
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * math.pi
+NEAREST = 1e-12
+"""rad; breakpoints closer together are one."""
+_STILL, _SPIN, _PUSH, _BARE = range(4)
+
+
+@dataclass(frozen=True)
+class Terms:
+    """The terms of the equation of motion at crank angles (n,).
+
+    inertia: J, kg m^2. spin: J'/2, kg m^2. static: C, N m. drag: D, N m s.
+    load: torque that the loads without the viscous ones do on the crank, N m; it is part of -C.
+    """
+
+    inertia: Array
+    spin: Array
+    static: Array
+    drag: Array
+    load: Array
+
+    def torque(self, speed: Any, acceleration: Any) -> Any:
+        """Return the torque, N m, that the motion needs."""
+        return self.inertia * acceleration + self.spin * speed**2 + self.static + self.drag * speed
+
+
+@kernel
+def _derive(raw: Any, loads: Any, block: Any) -> Any:
+    derive(raw, loads.kind, loads.datum, block)
+
+
+@kernel
+def _cut(block: Any, loads: Any, watch: Any, cuts: Any) -> Any:
+    return cut_cycle(design_at(block, 1), block, 1, loads, watch, cuts)
+
+
+@kernel
+def _enter(block: Any, loads: Any, watch: Any, inside: Any, piece: Any, shift: Any) -> Any:
+    _, outward = enter(design_at(block, 1), block, 1, inside, loads, watch, piece, shift)
+    return outward
+
+
+@kernel
+def _terms(block: Any, loads: Any, outward: Any, piece: Any, shift: Any, angles: Any, out: Any) -> Any:
+    still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
+    for i in range(angles.shape[0]):
+        theta = angles[i]
+        sine, cosine = math.sin(theta), math.cos(theta)
+        m = design_motion(sine, cosine, still)
+        load = load_on_slider(m, still, block, 0, theta, outward, loads, piece, shift)
+        out[0, i] = forces(sine, cosine, m, push, 0.0).torque
+        out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
+        out[2, i] = forces(sine, cosine, m, still, load).torque
+        out[3, i] = forces(sine, cosine, m, bare, smooth_load(m, spin, 0.0)).torque
+        out[4, i] = still.branch * load * m.x_1
+
+
+class Stretch:
+    """The crank turning one way between two breakpoints, `low` and `high`, rad; way: +1 or -1."""
+
+    def __init__(self, equation: CrankEquation, low: float, high: float, way: float) -> None:
+        self.low, self.high, self.way = low, high, way
+        count = len(equation.loads.kind)
+        self._piece, self._shift = np.zeros(count, np.int64), np.zeros(count)
+        self._block, self._loads = equation.block, equation.loads
+        counter_clockwise = _enter(
+            self._block, self._loads, equation.watch, within(low, high), self._piece, self._shift
+        )
+        self._outward = bool(counter_clockwise == (way > 0.0))
+
+    def at(self, crank_angle: Array) -> Terms:
+        """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
+        out = np.empty((5, len(crank_angle)))
+        _terms(self._block, self._loads, self._outward, self._piece, self._shift, crank_angle, out)
+        return Terms(*out)
+
+
+class CrankEquation:
+    """The equation of motion of one fully turning linkage.
+
+    marks: further crank angles, rad, that shall be breakpoints. breakpoints: (n,), ascending in [0, 2 pi), rad.
+    direction: +1 or -1, the way the mechanism's speed says that the motor turns the crank.
+    Raises AssemblyError if the linkage does not turn fully.
+    """
+
+    def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
+        linkage.require_full_rotation()
+        self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
+        self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
+        raw = np.repeat(raw_vector(mechanism)[:, None], 4, axis=1)
+        raw[:3] = np.array([[float(linkage.crank)], [float(linkage.rod)], [float(linkage.offset)]])
+        raw[Raw.SPEED] = raw[Raw.ACCELERATION] = 0.0
+        raw[Raw.SPEED, _SPIN] = raw[Raw.ACCELERATION, _PUSH] = 1.0
+        raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y], _SPIN:] = 0.0
+        for index, kind in enumerate(self.loads.kind):
+            if kind != LoadKind.VISCOUS:
+                raw[Raw.END + LOAD_SLOTS * index :, _SPIN:][:LOAD_SLOTS] = 0.0
+        self.block = np.empty((DESIGN + 2 * len(mechanism.loads), 4))
+        _derive(raw, self.loads, self.block)
+        self.dead_centres = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch).dead_centre_angles
+        self.breakpoints = self._breakpoints(marks)
+        self._stretches: dict[tuple[int, float], Stretch] = {}
+
+    def _breakpoints(self, marks: tuple[float, ...]) -> Array:
+        room = 8 + 2 * len(self.loads.at)
+        cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+        count = _cut(self.block, self.loads, self.watch, cuts)
+        found = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))
+        apart = np.diff(found, prepend=found[-1] - TURN) > NEAREST
+        return np.asarray(found[apart] if len(found) > 1 else found)
+
+    def stretch(self, index: int, way: float) -> Stretch:
+        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond 2 pi."""
+        if (index, way) not in self._stretches:
+            low = float(self.breakpoints[index])
+            last = index + 1 == len(self.breakpoints)
+            high = float(self.breakpoints[0]) + TURN if last else float(self.breakpoints[index + 1])
+            self._stretches[index, way] = Stretch(self, low, high, way)
+        return self._stretches[index, way]
+
+    def turn(self, way: float) -> list[Stretch]:
+        """Return the stretches of one turn in the order in which the crank passes them, counter-clockwise or not."""
+        order = range(len(self.breakpoints))
+        return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
+
+    def inertia(self, crank_angle: Array) -> Array:
+        """Return the moving inertia, kg m^2, from the kinetic energy of the bodies; shape of the crank angle."""
+        d = design_at(self.block, _STILL)
+        sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
+        return np.asarray(moving_inertia(sine, cosine, design_motion(sine, cosine, d), d))
+
+    def height_energy(self, crank_angle: Array) -> Array:
+        """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""
+        d = design_at(self.block, _STILL)
+        sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
+        return np.asarray(height_energy(sine, cosine, design_motion(sine, cosine, d), d))
+
+    def require_inertia(self, added: float) -> None:
+        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive."""
+        angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
+        inertia = self.inertia(angles) + added
+        if not inertia.min() > 1e-6 * inertia.max():
+            raise InputError(
+                "forward dynamics needs an inertia at every crank angle, also at the dead centres where the slider "
+                f"stands; got {inertia.min():.3g} kg m^2 at least; give the crank a mass, or the drive a flywheel"
+            )

@@ -1,0 +1,300 @@
+"""Forward dynamics: how the crank moves under a motor and the loads, from rest or from a state.
+
+    J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
+
+J with the drive's inertia. Integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett
+and Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead
+centre at which a load changes, a knot of a table, or a standstill. The work of motor and loads is integrated with it.
+
+At standstill the loads of both ways of turning are asked: the crank starts the way in which motor and loads leave a
+torque that pushes it on, or stands still for good (motor and loads depend on nothing but angle and speed).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .drive import Drive, speed_range
+from .equation import NEAREST, TURN, Array, CrankEquation, Stretch
+from .record import Recorder, Transient, Verdict
+
+_EPS = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True)
+class State:
+    """Where the crank is, rad, and how fast it turns, rad/s, counter-clockwise."""
+
+    angle: float = 0.0
+    speed: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.angle) and math.isfinite(self.speed)):
+            raise InputError(f"a state must be finite; got angle {self.angle:g} rad, speed {self.speed:g} rad/s")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a simulation is: time, s, of at most `duration`; turns made, backward ones negative; speed, rad/s."""
+
+    time: float
+    duration: float
+    turns: float
+    speed: float
+
+
+Stop = Literal["edge", "standstill", "table", "time"]
+
+
+def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
+    """Return the drive, the mechanism's own if None. Raises `InputError` if it has none either."""
+    found = mechanism.drive if drive is None else drive
+    if found is None:
+        raise InputError("forward dynamics needs a motor; got a mechanism without a drive; add a [drive]")
+    return found
+
+
+def simulate(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    drive: Drive | None = None,
+    *,
+    duration: float,
+    turns: int | None = None,
+    steady: float | None = None,
+    start: State = State(),
+    tolerance: float = 1e-12,
+    samples: int = 90,
+    progress: Callable[[Progress], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Transient:
+    """Return the motion of one fully turning linkage under a motor.
+
+    drive: the mechanism's own if None. The motor turns the crank the way the sign of the mechanism's speed says.
+    duration: greatest time, s. turns: ends after so many turns either way, if given. steady: ends when, a turn later
+    at the same crank angle, the speed is the same but for this share. tolerance: relative, of the integration.
+    samples: points of the result for each turn, at least. progress: called after every stretch. cancelled: asked
+    as often; what was found so far is returned then.
+
+    Why it ended is the result's `verdict`. Raises `InputError` for values out of range and where nothing resists an
+    acceleration, `AssemblyError` if the linkage does not turn fully.
+    """
+    drive = drive_of(mechanism, drive)
+    _require(duration, turns, steady, tolerance, samples)
+    run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
+    before, passed = math.nan, 0
+    while True:
+        verdict = run.advance()
+        if progress is not None:
+            progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
+        if verdict is None and run.at_mark:
+            made = round((run.angle - start.angle) / TURN)
+            if turns is not None and abs(made) >= turns:
+                verdict = "turns done"
+            elif steady is not None and made != passed:
+                verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
+            before, passed = run.speed, made
+        if verdict is None and cancelled is not None and cancelled():
+            verdict = "cancelled"
+        if verdict is not None:
+            return run.result(verdict)
+
+
+def _require(duration: float, turns: int | None, steady: float | None, tolerance: float, samples: int) -> None:
+    if not 0.0 < duration < math.inf:
+        raise InputError(f"the duration must be positive and finite; got {duration:g} s")
+    if turns is not None and turns < 1:
+        raise InputError(f"turns must be a whole number of at least 1; got {turns}")
+    if steady is not None and not 0.0 < steady < 1.0:
+        raise InputError(f"steady must be a share of the speed between 0 and 1, such as 1e-6; got {steady:g}")
+    if not 1e-13 <= tolerance <= 1e-3:
+        raise InputError(f"the tolerance must lie between 1e-13 and 1e-3; got {tolerance:g}")
+    if samples < 8:
+        raise InputError(f"samples must be at least 8 for each turn; got {samples}")
+
+
+class _Run:
+    """A simulation under way. The crank angle is kept within a turn: `index` of the stretch, `local`, and `turn`."""
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        linkage: Linkage,
+        drive: Drive,
+        start: State,
+        duration: float,
+        tolerance: float,
+        samples: int,
+    ) -> None:
+        self.equation = CrankEquation(mechanism, linkage, marks=(start.angle,))
+        self.equation.require_inertia(drive.inertia)
+        self.drive, self.duration, self.tolerance = drive, duration, tolerance
+        self.slowest, self.fastest = sorted(self.equation.direction * end for end in speed_range(drive))
+        breakpoints = self.equation.breakpoints
+        first = float(breakpoints[0])
+        self.local = first + (start.angle - first) % TURN
+        self.turn = round((start.angle - self.local) / TURN)
+        gaps = np.abs((breakpoints - self.local + math.pi) % TURN - math.pi)
+        self.mark = int(np.argmin(gaps))  # the start is a breakpoint, or as good as one
+        self.index = self.mark
+        if self.local > first + TURN - 2.0 * NEAREST:
+            self.turn, self.local = self.turn + 1, first
+        self.time, self.speed, self.at_mark = 0.0, start.speed, True
+        self.works = np.zeros(2)
+        self.turned_back: list[float] = []
+        self.scale = self._speed_scale(mechanism.speed)
+        self.recorder = Recorder(self.equation, drive, linkage, mechanism, samples)
+        self.way = math.copysign(1.0, start.speed) if start.speed else 0.0
+        self.arrived = -self.equation.direction  # at rest, so that the motor's direction is tried first
+        if not self.slowest <= self.speed <= self.fastest:
+            raise InputError(
+                f"the motor's torque must be known at the start; got {start.speed:g} rad/s of the crank; "
+                "extend the torque table"
+            )
+        if self.way < 0.0:
+            self.index = (self.index - 1) % len(breakpoints)
+            self._lift(self.index == len(breakpoints) - 1)
+
+    def result(self, verdict: Verdict) -> Transient:
+        """Return what was found so far."""
+        self.recorder.stand(self._stretch(self.way or self.equation.direction), self.turn, self.time, self._y())
+        return self.recorder.result(verdict, tuple(self.turned_back))
+
+    @property
+    def angle(self) -> float:
+        """The crank angle, rad, turns counted."""
+        return self.local + TURN * self.turn
+
+    def advance(self) -> Verdict | None:
+        """Go on to the end of the stretch, to standstill or to the end of the time, whichever comes first.
+
+        Return why the motion ends, if it does.
+        """
+        if self.way == 0.0 and (ended := self._leave_rest()):
+            return ended
+        stretch = self._stretch(self.way)
+        solution, stop = self._integrate(stretch)
+        self.recorder.add(stretch, self.turn, solution)
+        self.time = float(solution.t[-1])
+        self.local, self.speed, *works = (float(value) for value in solution.y[:, -1])
+        self.works = np.array(works)
+        self.at_mark = False
+        if stop == "edge":
+            self._pass_edge(stretch)
+        elif stop == "standstill":
+            self.speed, self.way, self.arrived = 0.0, 0.0, stretch.way
+        else:
+            return "beyond the torque table" if stop == "table" else "time is up"
+        return None
+
+    def _stretch(self, way: float) -> Stretch:
+        return self.equation.stretch(self.index, way)
+
+    def _y(self) -> Array:
+        return np.array([self.local, self.speed, *self.works])
+
+    def _lift(self, wrapped: bool) -> None:
+        """Count the local angle from the turn before if the crank went back over the first breakpoint."""
+        if wrapped:
+            self.turn, self.local = self.turn - 1, self.local + TURN
+
+    def _pass_edge(self, stretch: Stretch) -> None:
+        count = len(self.equation.breakpoints)
+        if self.way > 0.0:
+            self.local, self.index = stretch.high, (self.index + 1) % count
+            self.at_mark = self.index == self.mark
+            if self.index == 0:
+                self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
+        else:
+            self.local, self.at_mark = stretch.low, self.index == self.mark
+            self.index = (self.index - 1) % count
+            self._lift(self.index == count - 1)
+
+    def _speed_scale(self, speed: float) -> float:
+        """Return a speed, rad/s, against which errors are measured while the crank is slow."""
+        pull, resist = abs(float(self.drive.torque(0.0, self.equation.direction))), 0.0
+        for stretch in self.equation.turn(self.equation.direction):
+            terms = stretch.at(np.linspace(stretch.low, stretch.high, 9))
+            pull = max(pull, float(np.abs(terms.static).max()))
+            resist = max(resist, float(terms.inertia.max()) + self.drive.inertia)
+        return max(abs(speed), abs(self.speed), math.sqrt(TURN * pull / resist))
+
+    def _integrate(self, stretch: Stretch) -> tuple[Any, Stop]:
+        from scipy.integrate import solve_ivp
+
+        motor, added, direction = self.drive.torque, self.drive.inertia, self.equation.direction
+        slowest, fastest, way = self.slowest, self.fastest, stretch.way
+        edge = stretch.high if way > 0.0 else stretch.low
+        angle = np.empty(1)
+
+        def rate(_time: float, y: Array) -> Array:
+            angle[0], speed = y[0], float(y[1])
+            terms = stretch.at(angle)
+            # Beyond its table the motor goes on as at the end, until the event below has found the end.
+            torque = float(motor(min(max(speed, slowest), fastest), direction))
+            drag = terms.drag[0] * speed
+            surplus = torque - terms.spin[0] * speed * speed - terms.static[0] - drag
+            acceleration = surplus / (terms.inertia[0] + added)
+            return np.array([speed, acceleration, torque * speed, (drag - terms.load[0]) * speed])
+
+        events: list[Any] = [
+            lambda _time, y: way * (y[0] - edge),
+            lambda _time, y: way * y[1],
+        ]
+        if math.isfinite(limit := fastest if way > 0.0 else -slowest):
+            events.append(lambda _time, y: limit - way * y[1])
+        for event, sense in zip(events, (1.0, -1.0, -1.0), strict=False):
+            event.terminal, event.direction = True, sense
+        energy = float(self.equation.inertia(np.array(self.local)) + added) * self.scale**2
+        solution = solve_ivp(
+            rate,
+            (self.time, self.duration),
+            self._y(),
+            method="DOP853",
+            rtol=self.tolerance,
+            atol=self.tolerance * np.array([1e-2, 1e-2 * self.scale, 1e-2 * energy, 1e-2 * energy]),
+            events=events,
+            dense_output=True,
+        )
+        if not solution.success:
+            raise InputError(
+                f"the motion cannot be followed beyond {solution.t[-1]:.6g} s at this tolerance; "
+                f"got {self.tolerance:g}; check masses and loads for values of very different size"
+            )
+        names: tuple[Stop, ...] = ("edge", "standstill", "table")
+        found = solution.t_events or []
+        ended = [name for name, times in zip(names, found, strict=False) if len(times)]
+        return solution, ended[0] if ended else "time"
+
+    def _leave_rest(self) -> Verdict | None:
+        """Find out which way the crank starts from standstill; return why it does not, if so."""
+        count = len(self.equation.breakpoints)
+        motor = float(self.drive.torque(0.0, self.equation.direction))
+        at_edge = abs(self.local - self._stretch(1.0).low) <= NEAREST
+        before = (self.index - 1) % count if at_edge else self.index
+        push = {}
+        for way, index in ((1.0, self.index), (-1.0, before)):
+            stretch = self.equation.stretch(index, way)
+            local = stretch.high if index != self.index else self.local
+            static = float(stretch.at(np.array([local])).static[0])
+            push[way] = way * (motor - static) - _EPS * (abs(motor) + abs(static))
+        arrived = self.arrived
+        self.way = next((way for way in (-arrived, arrived) if push[way] > 0.0), 0.0)
+        if self.way == 0.0:
+            return "stands still"
+        if (self.fastest if self.way > 0.0 else -self.slowest) <= 0.0:
+            return "beyond the torque table"
+        if self.time > 0.0 and self.way != arrived:
+            self.turned_back.append(self.time)
+        if self.way < 0.0 and at_edge:
+            self.index = before
+            self._lift(self.index == count - 1)
+        return None

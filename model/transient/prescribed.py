@@ -1,0 +1,228 @@
+"""A crank whose motion is prescribed: what its drive must do at every instant.
+
+The motion is given over crank angle, for a crank that always turns one way, or over time, for any motion. Tables are
+interpolated by cubic splines, so that the acceleration is continuous; periodic over crank angle, not-a-knot over time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..cycle import Cycle, cycle
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .equation import TURN, Array
+
+Function = Callable[[Array], ArrayLike]
+
+_CLOSE = 1e-4
+"""How far a derivative that is given may be off the slope of its function, as a share of the greatest: a check against
+mistaken ones."""
+_STEP = 1e-4
+"""Step of the differences that check it, as a share of the distance between points."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrescribedMotion:
+    """The crank's motion at n instants and what it needs, SI and radians.
+
+    time: (n,), s. power: of the drive torque, W. curves: slider motion, load, drive torque and reactions (n,) each.
+    """
+
+    time: Array
+    speed: Array
+    acceleration: Array
+    power: Array
+    curves: Cycle
+
+
+@dataclass(frozen=True)
+class SpeedOverAngle:
+    """Crank speed as a function of crank angle, periodic. speed: rad/s. slope: its derivative by angle, 1/s."""
+
+    speed: Function
+    slope: Function
+
+    @classmethod
+    def table(cls, angles: Sequence[float], speeds: Sequence[float]) -> SpeedOverAngle:
+        """Return the periodic cubic spline through a table; angles: increasing, rad, spanning less than a turn."""
+        at, values = _table("crank angles", angles, speeds)
+        if at[-1] - at[0] >= TURN:
+            raise InputError(
+                "crank angles of a periodic table must span less than 360 deg; "
+                f"got {math.degrees(at[-1] - at[0]):g} deg; leave out the last point, which repeats the first"
+            )
+        from scipy.interpolate import CubicSpline
+
+        spline = CubicSpline(np.append(at, at[0] + TURN), np.append(values, values[0]), bc_type="periodic")
+        return cls(spline, spline.derivative())
+
+
+@dataclass(frozen=True)
+class SpeedOverTime:
+    """Crank speed, rad/s, as a function of time, s. acceleration: its derivative, rad/s^2.
+
+    angle: the crank angle, rad; integrated from the speed if None, starting with 0 at the first instant.
+    """
+
+    speed: Function
+    acceleration: Function
+    angle: Function | None = None
+
+    @classmethod
+    def table(cls, times: Sequence[float], speeds: Sequence[float], *, start: float = 0.0) -> SpeedOverTime:
+        """Return the cubic spline through a table; times: increasing, s. start: crank angle at the first time, rad."""
+        at, values = _table("times", times, speeds)
+        from scipy.interpolate import CubicSpline
+
+        spline = CubicSpline(at, values)
+        turned = spline.antiderivative()
+        return cls(_inside(spline, at), _inside(spline.derivative(), at), lambda t: start + turned(t))
+
+
+def over_angle(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    motion: SpeedOverAngle,
+    *,
+    turns: float = 1.0,
+    start: float = 0.0,
+    samples: int = 720,
+) -> PrescribedMotion:
+    """Return the motion over crank angle, from `start` on, rad; time is counted from there.
+
+    dt = d(theta) / w, acceleration = w dw/d(theta). The sign of the speed, which must not change, is the direction.
+    samples: points of each turn. Raises `InputError` for a speed that is not finite, is zero or changes its sign.
+    """
+    if not (0.0 < turns < math.inf and math.isfinite(start)):
+        raise InputError(f"turns must be positive, and the start finite; got {turns:g} turns from {start:g} rad")
+    first = _values("speed", motion.speed, np.array([start]))[0]
+    way = math.copysign(1.0, first)
+    angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    step = np.diff(angle)[:, None]
+    between = _values("speed", motion.speed, (angle[:-1, None] + step * 0.5 * (1.0 + nodes)).ravel())
+    speed, slope = _values("speed", motion.speed, angle), _values("slope", motion.slope, angle)
+    every = np.concatenate([speed, between])
+    if not np.all(every * way > 0.0):
+        raise InputError(
+            "a speed over crank angle must not be zero or change its sign, because the crank would never get past; "
+            f"got {every[np.argmin(every * way)]:.6g} rad/s; give the motion over time"
+        )
+    _require_slope(motion.speed, motion.slope, angle)
+    time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / between).reshape(-1, 4) @ (0.5 * weights)))])
+    return _motion(mechanism, linkage, time, angle, speed, speed * slope)
+
+
+def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike) -> PrescribedMotion:
+    """Return the motion at increasing times (n,), s.
+
+    The loads follow the sign of the speed; where it is exactly zero, the way in which the crank moves on, by the sign
+    of the acceleration. Raises `InputError` for values that are not finite, and for an acceleration that is not the
+    slope of the speed.
+    """
+    time = np.atleast_1d(np.asarray(times, dtype=np.float64))
+    if time.ndim != 1 or not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
+        raise InputError("times must be a list of finite, increasing values, s; sort them and drop what repeats")
+    speed = _values("speed", motion.speed, time)
+    acceleration = _values("acceleration", motion.acceleration, time)
+    _require_slope(motion.speed, motion.acceleration, time)
+    if motion.angle is None:
+        angle = _turned(motion.speed, time)
+    else:
+        angle = _values("angle", motion.angle, time)
+        _require_slope(motion.angle, motion.speed, time)
+    # Zero to every formula, but with the sign that says which way the loads act.
+    moving = np.where(speed == 0.0, np.copysign(1e-300, acceleration), speed)
+    return _motion(mechanism, linkage, time, angle, moving, acceleration)
+
+
+def _motion(
+    mechanism: Mechanism, linkage: Linkage, time: Array, angle: Array, speed: Array, acceleration: Array
+) -> PrescribedMotion:
+    curves = cycle(mechanism, linkage, angle, speed=speed, acceleration=acceleration)
+    return PrescribedMotion(
+        time=time, speed=speed, acceleration=acceleration, power=curves.torque * speed, curves=curves
+    )
+
+
+def _turned(speed: Function, time: Array) -> Array:
+    from scipy.integrate import solve_ivp
+
+    if len(time) == 1:
+        return np.zeros(1)
+    found = solve_ivp(
+        lambda t, _: _values("speed", speed, np.array([t])),
+        (time[0], time[-1]),
+        [0.0],
+        method="DOP853",
+        t_eval=time,
+        rtol=1e-12,
+        atol=1e-12,
+        max_step=(time[-1] - time[0]) / 50.0,
+    )
+    return np.asarray(found.y[0])
+
+
+def _table(what: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
+    """Return a table as arrays. Raises `InputError` unless it is one."""
+    if len(at) != len(speeds) or len(at) < 4:
+        raise InputError(
+            f"a table of speeds needs as many speeds as {what}, four at least; "
+            f"got {len(at)} {what} and {len(speeds)} speeds"
+        )
+    points, values = np.array(at, dtype=np.float64), np.array(speeds, dtype=np.float64)
+    if not (np.all(np.isfinite(points)) and np.all(np.isfinite(values))):
+        raise InputError(f"a table of {what} and speeds must be finite throughout")
+    if np.any(np.diff(points) <= 0.0):
+        raise InputError(f"{what} of a table must increase; sort the table and drop what repeats")
+    return points, values
+
+
+def _inside(spline: Any, at: Array) -> Function:
+    """Return a spline that refuses what lies beyond its table."""
+
+    def inside(time: Array) -> Array:
+        # Differences that check a slope reach beyond the ends by a millionth of the span.
+        margin = 1e-5 * (at[-1] - at[0])
+        if np.any(time < at[0] - margin) or np.any(time > at[-1] + margin):
+            raise InputError(
+                f"times must lie within the table, {at[0]:g} to {at[-1]:g} s; "
+                f"got {np.min(time):g} to {np.max(time):g} s; extend the table"
+            )
+        return np.asarray(spline(time))
+
+    return inside
+
+
+def _values(name: str, function: Function, at: Array) -> Array:
+    values = np.array(np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape))
+    if not np.all(np.isfinite(values)):
+        where = at[np.flatnonzero(~np.isfinite(values))[0]]
+        raise InputError(
+            f"{name} of a prescribed motion must be finite; got {name} {values[~np.isfinite(values)][0]} at {where:g}"
+        )
+    return values
+
+
+def _require_slope(function: Function, slope: Function, at: Array) -> None:
+    """Raise `InputError` if a function's derivative is not what is given as such."""
+    step = _STEP * ((float(np.ptp(at)) or 1.0) / len(at))
+    middle, given = _values("speed", function, at), _values("slope", slope, at)
+    after = (_values("speed", function, at + step) - middle) / step
+    before = (middle - _values("speed", function, at - step)) / step
+    # On a kink either side's slope will do, and what lies between.
+    off = np.maximum(given - np.maximum(before, after), np.minimum(before, after) - given)
+    if float(off.max()) > _CLOSE * max(float(np.abs(given).max()), float(np.abs(after).max()), 1e-6):
+        worst = int(np.argmax(off))
+        raise InputError(
+            "the derivative of a prescribed motion must be the slope of its function; "
+            f"got {given[worst]:.6g} where the slope is {after[worst]:.6g}, at {at[worst]:.6g}; correct it"
+        )

@@ -1,0 +1,158 @@
+"""What a forward simulation found: the motion over time, and the energy balance that tells whether to believe it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .drive import Drive, speed_range
+from .equation import TURN, Array, CrankEquation, Stretch
+
+Verdict = Literal["time is up", "turns done", "steady", "stands still", "beyond the torque table", "cancelled"]
+
+_SAID: dict[Verdict, str] = {
+    "time is up": "the time is up",
+    "turns done": "the turns are done",
+    "steady": "it runs steadily: speed repeats from turn to turn",
+    "stands still": "it stands still: the motor cannot overcome the load here",
+    "beyond the torque table": "the motor's torque is not known beyond its table of speeds",
+    "cancelled": "cancelled",
+}
+assert set(_SAID) == set(get_args(Verdict))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transient:
+    """Motion of the crank over time, arrays (n,), SI and radians; closest where the crank turns fast.
+
+    verdict: why it ended. turned_back: times at which the crank reversed, s.
+    angle: of the crank, turns counted. motor_torque: on the crank, N m, counter-clockwise. torque: what the mechanism
+    takes of it; flywheel and rotor take the rest. power: of the motor, W.
+    kinetic, potential: energies of mechanism and drive, and of gravity, J. motor_work, load_work: done since the start
+    by the motor and on the loads, springs among them, J.
+    """
+
+    verdict: Verdict
+    turned_back: tuple[float, ...]
+    time: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    motor_torque: Array
+    torque: Array
+    power: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    kinetic: Array
+    potential: Array
+    motor_work: Array
+    load_work: Array
+
+    @property
+    def message(self) -> str:
+        """What the verdict means, with the time at which it came."""
+        return f"after {self.time[-1]:.4g} s and {self.turns:.4g} turns: {_SAID[self.verdict]}"
+
+    @property
+    def turns(self) -> float:
+        """Turns made from start to end, negative clockwise."""
+        return float(self.angle[-1] - self.angle[0]) / TURN
+
+    @property
+    def imbalance(self) -> float:
+        """Greatest error of the energy balance, as a share of the greatest of the energies and works; 0 if all are 0.
+
+        Kinetic energy gained + potential gained - (work of the motor - work on the loads).
+        """
+        stored = self.kinetic - self.kinetic[0] + self.potential - self.potential[0]
+        error = np.abs(stored - self.motor_work + self.load_work).max()
+        parts = (self.kinetic, self.potential - self.potential[0], self.motor_work, self.load_work)
+        size = max(float(np.abs(part).max()) for part in parts)
+        return float(error) / size if size > 0.0 else 0.0
+
+    def last_turn(self) -> slice | None:
+        """Return which points belong to the last whole turn; None if the crank did not make one without reversing."""
+        back = np.abs(self.angle - self.angle[-1]) >= TURN * (1.0 - 1e-12)
+        if not back.any():
+            return None
+        first = int(np.flatnonzero(back)[-1])
+        speeds = self.speed[first:]
+        return slice(first, None) if np.all(speeds > 0.0) or np.all(speeds < 0.0) else None
+
+    def fluctuation(self) -> float | None:
+        """Return (greatest - least speed) / mean speed over the last whole turn; None if there is none.
+
+        The mean is that over time, 2 pi / period. Extremes are those of the points: ask for more samples for more.
+        """
+        where = self.last_turn()
+        if where is None:
+            return None
+        speeds, times = np.abs(self.speed[where]), self.time[where]
+        mean = abs(float(self.angle[-1] - self.angle[where][0])) / float(times[-1] - times[0])
+        return float(speeds.max() - speeds.min()) / mean
+
+
+class Recorder:
+    """Collects the points of a simulation, stretch by stretch."""
+
+    def __init__(
+        self, equation: CrankEquation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int
+    ) -> None:
+        self._equation, self._drive, self._samples = equation, drive, samples
+        self._linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
+        self._parts: list[Array] = []
+
+    def add(self, stretch: Stretch, turn: int, solution: Any) -> None:
+        """Take in the solution within a stretch; its first point only if it is the first of all."""
+        count = np.ceil(np.abs(np.diff(solution.y[0])) * (self._samples / TURN)).astype(int)
+        times = [
+            np.linspace(start, end, max(1, inner), endpoint=False)
+            for start, end, inner in zip(solution.t[:-1], solution.t[1:], count, strict=True)
+        ]
+        time = np.append(np.concatenate(times), solution.t[-1])[1 if self._parts else 0 :]
+        self._take(stretch, turn, time, solution.sol(time))
+
+    def stand(self, stretch: Stretch, turn: int, time: float, y: Array) -> None:
+        """Take in a single state, if there is no other."""
+        if not self._parts:
+            self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
+
+    def _take(self, stretch: Stretch, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
+        local, speed, motor_work, load_work = y
+        terms, added = stretch.at(np.ascontiguousarray(local)), self._drive.inertia
+        direction = self._equation.direction
+        known = np.clip(direction * speed, *speed_range(self._drive))
+        motor = self._drive.torque(direction * known, direction)
+        acceleration = moving * (motor - terms.torque(speed, 0.0)) / (terms.inertia + added)
+        slider = self._linkage.at(local, speed=speed, acceleration=acceleration)
+        self._parts.append(
+            np.array(
+                [
+                    time,
+                    local + TURN * turn,
+                    speed,
+                    acceleration,
+                    motor,
+                    terms.torque(speed, acceleration),
+                    motor * speed,
+                    slider.slider_position,
+                    slider.slider_velocity,
+                    slider.slider_acceleration,
+                    0.5 * (self._equation.inertia(local) + added) * speed**2,
+                    self._equation.height_energy(local),
+                    motor_work,
+                    load_work,
+                ]
+            )
+        )
+
+    def result(self, verdict: Verdict, turned_back: tuple[float, ...]) -> Transient:
+        """Return all points."""
+        names = [name for name in Transient.__dataclass_fields__ if name not in ("verdict", "turned_back")]
+        columns = dict(zip(names, np.concatenate(self._parts, axis=1), strict=True))
+        return Transient(verdict=verdict, turned_back=turned_back, **columns)

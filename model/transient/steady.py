@@ -1,0 +1,217 @@
+"""Steady running: the speed repeats after a turn. Found as such, not by waiting for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .drive import ConstantTorque, Drive, LinearMotor, speed_range
+from .equation import TURN, Array, CrankEquation
+from .forward import drive_of
+from .turn import PeriodicTurn, Profile, Torque
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteadyRunning:
+    """One turn of steady running, arrays (n,) in the order of time, SI and radians; extremes of speed are among them.
+
+    crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: on the crank, N m,
+    counter-clockwise. torque: what the mechanism takes of it. mean_speed: 2 pi / period, with its sign. work: of the
+    motor per turn, J. inertia: of flywheel and motor at the crank, kg m^2. memory: what is left after a turn of a small
+    change of w^2 (below 1: stable; 1: any speed is kept, because nothing depends on it).
+    """
+
+    crank_angle: Array
+    time: Array
+    speed: Array
+    acceleration: Array
+    motor_torque: Array
+    torque: Array
+    mean_speed: float
+    work: float
+    inertia: float
+    memory: float
+
+    @property
+    def period(self) -> float:
+        """Time of a turn, s."""
+        return TURN / abs(self.mean_speed)
+
+    @property
+    def fluctuation(self) -> float:
+        """Coefficient of speed fluctuation: (greatest - least speed) / mean speed."""
+        return float(self.speed.max() - self.speed.min()) / abs(self.mean_speed)
+
+
+class Runner:
+    """Steady running of one linkage for any flywheel and motor."""
+
+    def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
+        self.equation = CrankEquation(mechanism, linkage)
+        dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
+        self.turn = PeriodicTurn(self.equation, dimensions)
+        self.speed = abs(mechanism.speed)
+
+    def under(self, drive: Drive) -> SteadyRunning:
+        """Return the steady running under a motor: see `steady_running`."""
+        self.equation.require_inertia(drive.inertia)
+        motor, guess = self._motor(drive), self.balanced_speed(drive)
+        profile = self.turn.solve(motor, drive.inertia, guess)
+        if profile is None or not profile.memory < 1.0:
+            raise InputError(
+                "steady running needs a crank that comes through every turn; got none that does near the "
+                f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
+            )
+        found = self._result(profile, motor, drive.inertia)
+        fastest = float(np.abs(found.speed).max())
+        if fastest > speed_range(drive)[1]:
+            raise InputError(
+                "steady running needs a motor torque at every speed of the turn; "
+                f"got {fastest:.6g} rad/s of the crank, beyond the torque table; extend the table"
+            )
+        return found
+
+    def constant(self, inertia: float) -> SteadyRunning:
+        """Return the steady running under a constant torque: see `constant_torque_running`."""
+        if not self.speed:
+            raise InputError("a constant torque needs the mean speed that it shall keep; got none; give the speed")
+        self.equation.require_inertia(inertia)
+
+        def motor(speed: Array) -> tuple[Array, Array]:
+            return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
+
+        profile = self.turn.solve(motor, inertia, self.speed, mean_speed=self.speed)
+        if profile is None:
+            raise InputError(
+                f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
+                f"{inertia:.6g} kg m^2 beside the mechanism; add a flywheel or turn faster"
+            )
+        return self._result(profile, motor, inertia)
+
+    def balanced_speed(self, drive: Drive) -> float:
+        """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.
+
+        Only where it is stable: faster, the loads are stronger than the motor. Of several the nearest to the
+        mechanism's speed, or the least if that is 0. Raises `InputError` where there is none.
+        """
+        from scipy.optimize import brentq
+
+        way, motor = self.turn.way, self._motor(drive)
+        static, drag = way * self.turn.mean(self.turn.terms.static), self.turn.mean(self.turn.terms.drag)
+
+        def surplus(speed: float) -> float:
+            return way * float(motor(np.array(way * speed))[0]) - static - drag * speed
+
+        if isinstance(drive.motor, ConstantTorque) and drag <= 0.0:
+            raise InputError(
+                "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
+                f"{drive.gear_ratio * drive.motor.torque:g} N m on the crank against {static:.6g} N m on average at "
+                "every speed; give the motor a no-load speed, or add a viscous load"
+            )
+        if isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line: beyond its zero
+            top = max(1.0, 1.01 * surplus(0.0) / (surplus(0.0) - surplus(1.0)))
+        else:
+            top = speed_range(drive)[1]
+        speeds = np.linspace(0.0, top, 401)
+        values = np.array([surplus(speed) for speed in speeds])
+        falls = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
+        if not len(falls):
+            weak = values.max() <= 0.0
+            raise InputError(
+                "steady running needs a speed at which motor and loads balance; got a motor that is "
+                + (
+                    "weaker than the mean load at every speed"
+                    if weak
+                    else "stronger than the loads where its table ends"
+                )
+                + f" ({static:.6g} N m on the crank besides viscous loads); "
+                + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
+            )
+        found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
+        return min(found, key=lambda speed: abs(speed - self.speed)) if self.speed else found[0]
+
+    def energy_change(self, speed: float) -> float:
+        """Return the range over a turn of the integral of mean T - T at a constant speed, J; speed: rad/s, its size."""
+        torque = self.turn.terms.torque(self.turn.way * speed, 0.0)
+        starts, nodes = self.turn.integral(self.turn.mean(torque) - torque)
+        return float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))
+
+    def _motor(self, drive: Drive) -> Torque:
+        """Return the drive's torque; beyond a table it goes on as at the end, so that an iteration may stray."""
+        way, (slowest, fastest) = self.turn.way, speed_range(drive)
+
+        def motor(speed: Array) -> tuple[Array, Array]:
+            known = way * np.clip(way * speed, slowest, fastest)
+            slope = drive.gear_ratio**2 * drive.motor.slope(drive.gear_ratio * way * known)
+            return drive.torque(known, way), np.where(known == speed, slope, 0.0)
+
+        return motor
+
+    def _result(self, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
+        turn = self.turn
+        pace = turn.way / np.sqrt(2.0 * profile.energy)
+        times, _ = turn.integral(pace)
+        panels = [self._points(profile, pace, float(times[p]), p) for p in range(len(times))]
+        period = float(turn.width @ (pace @ turn.weights))
+        end = panels[0][:1] + np.array([[turn.way * TURN, period, 0.0, 0.0]])
+        angle, time, energy, acceleration = np.concatenate([*panels, end]).T
+        speed = turn.way * np.sqrt(2.0 * energy)
+        torque = motor(speed)[0] + profile.added
+        at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
+        return SteadyRunning(
+            crank_angle=angle,
+            time=time,
+            speed=speed,
+            acceleration=acceleration,
+            motor_torque=torque,
+            torque=torque - inertia * acceleration,
+            mean_speed=turn.way * TURN / period,
+            work=float(turn.width @ (at_nodes @ turn.weights)),
+            inertia=inertia,
+            memory=profile.memory,
+        )
+
+    def _points(self, profile: Profile, pace: Array, time: float, p: int) -> Array:
+        """Return angle, time, E and its derivative at start, nodes and extremes of a panel, (count, 4), in order."""
+        from scipy.optimize import brentq
+
+        turn = self.turn
+
+        def rate(x: float) -> float:
+            return turn.within(profile.rate, p, x)[0]
+
+        at = np.concatenate([[-1.0], turn.nodes, [1.0]])
+        rates = np.concatenate([[rate(-1.0)], profile.rate[p], [rate(1.0)]])
+        turning = np.flatnonzero(rates[:-1] * rates[1:] < 0.0)
+        extremes = [float(brentq(rate, at[i], at[i + 1], xtol=1e-14)) for i in turning]
+        angles, times = turn.angle[p], time + turn.width[p] * (turn.sums @ pace[p])
+        rows = np.stack([angles, times, profile.energy[p], profile.rate[p]], axis=1)
+        for x in extremes:
+            angle = turn.low[p] + 0.5 * (1.0 + x) * turn.width[p]
+            gain = turn.within(profile.rate, p, x)[1]
+            row = [angle, time + turn.within(pace, p, x)[1], profile.start[p] + gain, 0.0]
+            rows = np.insert(rows, np.searchsorted(rows[:, 1], row[1]), row, axis=0)
+        return np.insert(rows, 0, [turn.low[p], time, profile.start[p], rates[0]], axis=0)
+
+
+def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None = None) -> SteadyRunning:
+    """Return the steady running under a motor; the mechanism's own drive if None.
+
+    Among several (a motor whose torque rises and falls with speed) the stable one nearest to the mechanism's speed.
+    Raises `InputError` where there is none: the motor is too weak, nothing limits the speed, or the torque table ends
+    too soon.
+    """
+    return Runner(mechanism, linkage).under(drive_of(mechanism, drive))
+
+
+def constant_torque_running(mechanism: Mechanism, linkage: Linkage, *, inertia: float = 0.0) -> SteadyRunning:
+    """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
+
+    inertia: of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result. Raises
+    `InputError` if the mechanism has no speed, or the crank does not come through the turn.
+    """
+    return Runner(mechanism, linkage).constant(inertia)

@@ -1,0 +1,157 @@
+"""One turn of steady running as a boundary-value problem, solved by collocation.
+
+With the crank angle as the variable and E = w^2 / 2 the equation of motion
+
+    dE / d(theta) = (T_motor - C - D w - J' E) / J,        E(theta + turn) = E(theta),
+
+is regular even where the crank nearly stops. The turn is cut into panels at the breakpoints and finer; on each, dE is
+a polynomial through the Gauss-Legendre nodes (a Gauss method; Hairer, Norsett and Wanner, Solving Ordinary
+Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: the linearised panels are maps of one
+number, E at the start, onto E at the end, and chained they close the turn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..segments import crowded, crowding, uncrowded
+from .equation import TURN, Array, CrankEquation, Terms
+
+_NODES = 16
+_PANELS = 40
+_STEPS = 60
+_EXACT = 1e-13
+
+Torque = Callable[[Array], tuple[Array, Array]]
+"""Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A solution: E, (panels, nodes), and at the panels' starts, (panels,); its derivative by angle at the nodes.
+
+    added: torque added to the motor's, N m. memory: what is left after a turn of a small change of E at its start.
+    """
+
+    energy: Array
+    start: Array
+    rate: Array
+    added: float
+    memory: float
+
+
+class PeriodicTurn:
+    """The terms of the equation of motion on the nodes of a turn, in the order in which the crank passes them.
+
+    angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
+    """
+
+    def __init__(self, equation: CrankEquation, dimensions: tuple[float, float, float]) -> None:
+        self.way = equation.direction
+        nodes, weights = legendre.leggauss(_NODES)
+        self.nodes, self.weights = nodes, 0.5 * weights
+        self._series = np.linalg.inv(legendre.legvander(nodes, _NODES - 1))
+        self._integral = legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5
+        self.sums = legendre.legval(nodes, self._integral).T @ self._series
+        kappa = crowding(*dimensions)
+        low, width, angle, terms = [], [], [], []
+        for stretch in equation.turn(self.way):
+            first, last = crowded(stretch.low, kappa), crowded(stretch.high, kappa)
+            count = max(2, math.ceil(_PANELS * (last - first) / TURN))
+            ends = np.array([uncrowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
+            ends[0], ends[-1] = stretch.low, stretch.high
+            ends = ends if self.way > 0.0 else ends[::-1]
+            at = ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (1.0 + nodes)
+            low.append(ends[:-1])
+            width.append(np.diff(ends))
+            angle.append(at)
+            terms.append(stretch.at(at.ravel()))
+        self.low, self.width, self.angle = np.concatenate(low), np.concatenate(width), np.concatenate(angle)
+        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load) for t in terms), strict=True)
+        self.terms = Terms(*(np.concatenate(column).reshape(self.angle.shape) for column in columns))
+
+    def mean(self, values: Array) -> float:
+        """Return the mean over crank angle of values on the nodes."""
+        return float(np.abs(self.width) @ (values @ self.weights)) / TURN
+
+    def integral(self, values: Array) -> tuple[Array, Array]:
+        """Return the integral over crank angle from the start of the turn: at the panels' starts and on the nodes."""
+        panels = self.width * (values @ self.weights)
+        starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
+        return starts, starts[:, None] + self.width[:, None] * (values @ self.sums.T)
+
+    def within(self, values: Array, panel: int, x: float) -> tuple[float, float]:
+        """Return values within a panel, at x from -1 to 1, and their integral from its start."""
+        series = self._series @ values[panel]
+        inside = self.width[panel] * float(legendre.legval(x, self._integral @ series))
+        return float(legendre.legval(x, series)), inside
+
+    def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
+        """Return dE / d(theta) and its derivative by E."""
+        t, speed = self.terms, self.way * np.sqrt(2.0 * energy)
+        torque, slope = motor(speed)
+        total = t.inertia + inertia
+        return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * t.spin) / total
+
+    def solve(self, motor: Torque, inertia: float, speed: float, *, mean_speed: float | None = None) -> Profile | None:
+        """Return the turn that repeats; None if none is found that never stops.
+
+        inertia: of the drive, kg m^2. speed: a first guess, rad/s, of its size. mean_speed: if given, a constant
+        torque is added that makes 2 pi / period this, rad/s.
+        """
+        energy, start = np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2)
+        added, last = 0.0, math.inf
+        for _ in range(_STEPS):
+            rate, by_energy = self.rate(energy, motor, inertia)
+            by_torque = 1.0 / (self.terms.inertia + inertia)
+            rate = rate + added * by_torque
+            system = np.eye(_NODES) - self.width[:, None, None] * self.sums * by_energy[:, None, :]
+            integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ self.sums.T)
+            sides = np.stack([start[:, None] + integrals[0] - energy, np.ones(energy.shape), integrals[1]], axis=-1)
+            moved = np.linalg.solve(system, sides)  # E on the nodes: residual, by E at the start, by the torque
+            passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", self.weights, by_energy, moved)
+            jump = start + self.width * (rate @ self.weights) - np.roll(start, -1) + passed[:, 0]
+            chain = _chain(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ self.weights))
+            (offset, by_start, by_added), memory = chain[-1], chain[-1][1]
+            if mean_speed is None:
+                change, more = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
+            else:
+                flow = np.abs(self.width)[:, None] * self.weights * (2.0 * energy) ** -1.5
+                maps = chain[:-1]
+                nodes = moved[..., 0] + moved[..., 1] * maps[:, 0, None], moved[..., 1] * maps[:, 1, None]
+                by_torque_too = moved[..., 2] + moved[..., 1] * maps[:, 2, None]
+                period = float(np.sum(np.abs(self.width)[:, None] * self.weights / np.sqrt(2.0 * energy)))
+                matrix = [[1.0 - by_start, -by_added], [np.sum(flow * nodes[1]), np.sum(flow * by_torque_too)]]
+                side = [offset, period - TURN / abs(mean_speed) - np.sum(flow * nodes[0])]
+                change, more = (float(value) for value in np.linalg.solve(matrix, side))
+            if not (math.isfinite(change) and math.isfinite(more)):
+                return None
+            starts = chain[:-1, 0] + chain[:-1, 1] * change + chain[:-1, 2] * more
+            step = moved[..., 0] + moved[..., 1] * starts[:, None] + moved[..., 2] * more
+            share = min(1.0, 0.9 / max(float((-step / energy).max()), float((-starts / start).max()), 1e-300))
+            energy, start, added = energy + share * step, start + share * starts, added + share * more
+            size = float(np.abs(step).max() / energy.max())
+            if share == 1.0 and size < 1e-8 and (size < _EXACT or size >= 0.5 * last):
+                rate = self.rate(energy, motor, inertia)[0] + added * by_torque
+                return Profile(energy, start, rate, added, float(memory))
+            last = size
+        return None
+
+
+def _chain(jump: Array, growth: Array, torque: Array) -> Array:
+    """Return the change of E at each panel's start and at the end, (panels + 1, 3).
+
+    Its constant part, its part by the change at the first start, and its part by the added torque.
+    """
+    chain = np.empty((len(jump) + 1, 3))
+    chain[0] = 0.0, 1.0, 0.0
+    for p in range(len(jump)):
+        chain[p + 1] = growth[p] * chain[p]
+        chain[p + 1, 0] += jump[p]
+        chain[p + 1, 2] += torque[p]
+    return chain

@@ -1,0 +1,145 @@
+"""What drives the crank in a job file, [drive], and how it becomes the drive of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+
+from ...model.errors import InputError
+from ...model.transient import drive as model
+from ..units import closest, shown
+from .values import AngularSpeed, Inertia, Part, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
+
+
+class ConstantMotor(Part):
+    """A motor with the same torque at every speed."""
+
+    torque: PositiveTorque = Field(description="at every speed", examples=["20 N m"])
+
+    def build(self) -> model.Motor:
+        """Return the motor as the model has it."""
+        return model.ConstantTorque(torque=self.torque)
+
+
+class LineMotor(Part):
+    """A motor whose torque falls linearly from standstill to its no-load speed."""
+
+    stall_torque: PositiveTorque = Field(description="at standstill", examples=["60 N m"])
+    no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["400 rpm"])
+
+    def build(self) -> model.Motor:
+        """Return the motor as the model has it."""
+        return model.LinearMotor(stall_torque=self.stall_torque, no_load_speed=self.no_load_speed)
+
+
+class RatedMotor(Part):
+    """A motor whose torque is linear in speed, by its rated point and its no-load (synchronous) speed."""
+
+    rated_torque: PositiveTorque = Field(description="at the rated speed", examples=["14.6 N m"])
+    rated_speed: PositiveAngularSpeed = Field(description="under the rated torque", examples=["1440 rpm"])
+    no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["1500 rpm"])
+
+    @model_validator(mode="after")
+    def _possible(self) -> RatedMotor:
+        self.build()
+        return self
+
+    def build(self) -> model.Motor:
+        """Return the motor as the model has it."""
+        return model.LinearMotor.through(
+            torque=self.rated_torque, speed=self.rated_speed, no_load_speed=self.no_load_speed
+        )
+
+
+class TableMotor(Part):
+    """A motor by its torque at several speeds, joined by a smooth curve without overshoot."""
+
+    speeds: tuple[AngularSpeed, ...] = Field(
+        min_length=2,
+        max_length=1000,
+        description="of the motor, increasing, the first one standstill or below",
+        examples=[["0 rpm", "750 rpm", "1500 rpm"]],
+    )
+    torques: tuple[Torque, ...] = Field(
+        min_length=2, max_length=1000, description="at each speed", examples=[["30 N m", "45 N m", "0 N m"]]
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> TableMotor:
+        self.build()
+        return self
+
+    def build(self) -> model.Motor:
+        """Return the motor as the model has it."""
+        return model.TorqueTable(speeds=self.speeds, torques=self.torques)
+
+
+# The key that tells a kind of motor, in the order in which kinds are told apart.
+_KINDS: dict[str, type[Part]] = {
+    "torque": ConstantMotor,
+    "stall_torque": LineMotor,
+    "rated_torque": RatedMotor,
+    "speeds": TableMotor,
+}
+_CHOICE = (
+    "{ torque }, { stall_torque, no_load_speed }, { rated_torque, rated_speed, no_load_speed } or { speeds, torques }"
+)
+
+
+def _one_kind(value: object) -> object:
+    """Refuse a motor that is no table, of no kind, or of several kinds."""
+    if isinstance(value, Part):
+        return value
+    if not isinstance(value, Mapping):
+        raise InputError(f"must be a table such as {_CHOICE}; got {shown(value)}")
+    kinds = [key for key in _KINDS if key in value]
+    if not kinds:
+        keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
+        near = [closest(key, _KINDS) for key in value if isinstance(key, str)]
+        meant = next((f"; did you mean {key}?" for key in near if key), "")
+        raise InputError(f"must be one of {_CHOICE}; got {keys}{meant}")
+    if len(kinds) > 1:
+        raise InputError(f"must be of one kind; got {' and '.join(kinds)}; leave out one of the two")
+    return value
+
+
+def _kind(value: object) -> str:
+    if isinstance(value, Part):
+        return next(f"({key})" for key, kind in _KINDS.items() if isinstance(value, kind))
+    known = value if isinstance(value, Mapping) else ()
+    return next((f"({key})" for key in _KINDS if key in known), "")
+
+
+AnyMotor = Annotated[
+    Annotated[ConstantMotor, Tag("(torque)")]
+    | Annotated[LineMotor, Tag("(stall_torque)")]
+    | Annotated[RatedMotor, Tag("(rated_torque)")]
+    | Annotated[TableMotor, Tag("(speeds)")],
+    Discriminator(_kind),
+    BeforeValidator(_one_kind),
+]
+
+
+class DrivePart(Part):
+    """The motor and what turns with it; it turns the crank the way the sign of mechanism.speed says."""
+
+    motor: AnyMotor = Field(
+        description="torque over the motor's own speed",
+        examples=[{"stall_torque": "60 N m", "no_load_speed": "400 rpm"}, {"torque": "20 N m"}],
+    )
+    flywheel: Inertia = Field(0.0, description="inertia on the crank shaft", examples=["0.5 kg m^2"])
+    motor_inertia: Inertia = Field(
+        0.0, description="of the rotor and all that turns at motor speed", examples=["0.004 kg m^2"]
+    )
+    gear_ratio: PositiveRatio = Field(1.0, description="turns of the motor for one turn of the crank", examples=[5.0])
+
+    def build(self) -> model.Drive:
+        """Return the drive as the model has it."""
+        return model.Drive(
+            motor=self.motor.build(),
+            flywheel=self.flywheel,
+            motor_inertia=self.motor_inertia,
+            gear_ratio=self.gear_ratio,
+        )

@@ -1,0 +1,77 @@
+"""The flywheel that a machine needs, in numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from .start_up import steady_numbers
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+FLUCTUATION = 0.02
+"""Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""
+_TRIED = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005)
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> dict[str, Any]:
+    """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
+    from ...model.transient.flywheel import design_flywheel
+    from ...model.transient.steady import Runner
+
+    found = design_flywheel(mechanism, linkage, fluctuation)
+    table = [design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
+    runner = Runner(mechanism, linkage)
+    try:
+        bare = runner.constant(0.0) if mechanism.drive is None else runner.under(_bare(mechanism))
+    except InputError:
+        bare = None
+    return {
+        "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
+        "wanted_fluctuation": fluctuation,
+        "flywheel_kgm2": found.inertia,
+        "classical_estimate_kgm2": found.estimate,
+        "fluctuation_without_flywheel": None if bare is None else bare.fluctuation,
+        "steady": steady_numbers(found.running),
+        "fluctuations": list(_TRIED),
+        "flywheels_kgm2": [design.inertia for design in table],
+        "classical_estimates_kgm2": [design.estimate for design in table],
+    }
+
+
+def _bare(mechanism: Mechanism) -> Any:
+    from dataclasses import replace
+
+    assert mechanism.drive is not None
+    return replace(mechanism.drive, flywheel=0.0)
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers as a sentence and a short table."""
+    from rich.table import Table
+
+    wanted, inertia = numbers["wanted_fluctuation"], numbers["flywheel_kgm2"]
+    bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
+    without = "it does not run through a turn" if bare is None else f"it is {bare:.4g}"
+    console.print(
+        f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
+        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}.",
+        soft_wrap=True,
+    )
+    console.print(
+        f"With it: mean speed {steady['mean_speed_rpm']:.5g} rpm, motor torque up to "
+        f"{steady['peak_motor_torque_Nm']:.4g} N m on the crank, mean power {steady['mean_power_W']:.4g} W.",
+        soft_wrap=True,
+    )
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for title in ("fluctuation", "flywheel, kg m²", "classical, kg m²"):
+        table.add_column(title, justify="right")
+    for row in zip(
+        numbers["fluctuations"], numbers["flywheels_kgm2"], numbers["classical_estimates_kgm2"], strict=True
+    ):
+        table.add_row(*(f"{value:.4g}" for value in row))
+    console.print(table)

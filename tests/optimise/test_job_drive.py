@@ -1,0 +1,91 @@
+"""[drive] in a job file: what becomes of it, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from slidercrank.model.errors import JobError
+from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.optimise.job import parse_job
+
+SMALL: dict[str, Any] = {
+    "name": "Small",
+    "mechanism": {"speed": "300 rpm", "slider": {"mass": "2 kg"}},
+    "variables": {"crank": "40 mm", "rod": ["100 mm", "200 mm"], "offset": 0},
+    "objectives": {"peak_torque": "minimise"},
+}
+TURN = 2.0 * math.pi
+
+
+def drive_of(**drive: Any) -> Drive | None:
+    return parse_job(SMALL | {"drive": drive}).mechanism.drive
+
+
+def test_without_a_drive_the_mechanism_has_none() -> None:
+    assert parse_job(SMALL).mechanism.drive is None
+
+
+@pytest.mark.parametrize(
+    ("motor", "expected"),
+    [
+        ({"torque": "20 N m"}, ConstantTorque(torque=20.0)),
+        (
+            {"stall_torque": "0.06 kN m", "no_load_speed": "600 rpm"},
+            LinearMotor(stall_torque=60.0, no_load_speed=10.0 * TURN),
+        ),
+        (
+            {"rated_torque": "10 N m", "rated_speed": "1440 rpm", "no_load_speed": "1500 rpm"},
+            LinearMotor.through(torque=10.0, speed=24.0 * TURN, no_load_speed=25.0 * TURN),
+        ),
+        (
+            {"speeds": ["0 rpm", "60 rpm", "120 rpm"], "torques": ["5 N m", "7 N m", "-1 N m"]},
+            TorqueTable(speeds=(0.0, TURN, 2.0 * TURN), torques=(5.0, 7.0, -1.0)),
+        ),
+    ],
+)
+def test_motors_are_read_in_si(motor: dict[str, Any], expected: object) -> None:
+    drive = drive_of(motor=motor, flywheel="0.5 kg m^2", motor_inertia="40 kg cm^2", gear_ratio=5)
+    assert drive == Drive(motor=expected, flywheel=0.5, motor_inertia=0.004, gear_ratio=5.0)  # type: ignore[arg-type]
+
+
+GOOD = {"torque": "20 N m"}
+
+
+@pytest.mark.parametrize(
+    ("drive", "words"),
+    [
+        ({}, ["drive.motor: is missing", "add for example motor ="]),
+        ({"motor": GOOD, "flywheal": 1}, ["drive.flywheal: unknown key", "did you mean flywheel?"]),
+        ({"motor": "20 N m"}, ["drive.motor: must be a table such as { torque }", '"20 N m"']),
+        ({"motor": {}}, ["drive.motor: must be one of", "got no keys"]),
+        ({"motor": {"stall_torqe": "1 N m"}}, ["drive.motor", "did you mean stall_torque?"]),
+        ({"motor": {"torque": "1 N m", "stall_torque": "1 N m"}}, ["of one kind", "torque and stall_torque"]),
+        ({"motor": {"stall_torque": "1 N m"}}, ["drive.motor.no_load_speed: is missing", '"400 rpm"']),
+        ({"motor": {"torque": "20 N"}}, ["drive.motor.torque", "is a force", '"25 N m"']),
+        ({"motor": {"torque": "-20 N m"}}, ["drive.motor.torque", "positive", '"-20 N m"']),
+        ({"motor": {"torque": math.nan}}, ["drive.motor.torque", "finite"]),
+        (
+            {"motor": {"rated_torque": "1 N m", "rated_speed": "9 rpm", "no_load_speed": "8 rpm"}},
+            ["drive.motor", "a speed below the no-load speed"],
+        ),
+        ({"motor": {"speeds": ["0 rpm"], "torques": ["1 N m", "1 N m"]}}, ["drive.motor.speeds", "at least 2 entries"]),
+        (
+            {"motor": {"speeds": ["0 rpm", "1 rpm"], "torques": ["1 N m", "1 N m", "1 N m"]}},
+            ["drive.motor", "as many torques as speeds"],
+        ),
+        ({"motor": {"speeds": ["5 rpm", "1 rpm"], "torques": ["1 N m", "1 N m"]}}, ["drive.motor", "sort the table"]),
+        ({"motor": {"speeds": ["5 rpm", "9 rpm"], "torques": ["1 N m", "1 N m"]}}, ["start at standstill or below"]),
+        ({"motor": GOOD, "flywheel": "-1 kg m^2"}, ["drive.flywheel", "zero or more"]),
+        ({"motor": GOOD, "flywheel": "1 kg"}, ["drive.flywheel", "is a mass"]),
+        ({"motor": GOOD, "gear_ratio": 0}, ["drive.gear_ratio", "positive"]),
+    ],
+)
+def test_a_bad_drive_is_refused_in_one_clear_message(drive: dict[str, Any], words: list[str]) -> None:
+    with pytest.raises(JobError) as caught:
+        drive_of(**drive)
+    message = str(caught.value)
+    assert all(word in message for word in words), message
+    assert len(message.splitlines()) == 1

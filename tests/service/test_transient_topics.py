@@ -1,0 +1,111 @@
+"""Start-up and flywheel: the numbers are JSON and the model's, the figures show what the model gives."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.loads import StrokeForce
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor
+from slidercrank.model.transient.flywheel import design_flywheel
+from slidercrank.model.transient.steady import steady_running
+from slidercrank.service.analyses import flywheel, start_up
+from slidercrank.service.figures.flywheel import draw_flywheel, flywheel_data
+from slidercrank.service.figures.start_up import draw_start_up, start_up_data
+from tests.model.cases import STROKES
+
+LINKAGE = Linkage(0.05, 0.2, 0.03)
+DRIVE = Drive(motor=LinearMotor(stall_torque=60.0, no_load_speed=40.0), flywheel=0.2)
+MACHINE = replace(STROKES, drive=DRIVE)
+STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
+RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
+
+
+def shown(topic: ModuleType, machine: Mechanism) -> str:
+    numbers = topic.numbers(machine, LINKAGE)
+    assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
+    stream = io.StringIO()
+    topic.show(Console(file=stream, width=100), numbers)
+    assert 2 < len(stream.getvalue().splitlines()) <= 20
+    return stream.getvalue()
+
+
+def test_the_start_is_told_with_its_steady_running() -> None:
+    numbers = start_up.numbers(MACHINE, LINKAGE)
+    running = steady_running(MACHINE, LINKAGE)
+    assert numbers["verdict"] == "steady"
+    assert numbers["steady"]["mean_speed_rpm"] == pytest.approx(running.mean_speed * 30.0 / np.pi, rel=1e-12)
+    assert numbers["steady"]["mean_power_W"] == pytest.approx(running.work / running.period, rel=1e-12)
+    assert numbers["why_not_steady"] is None
+    gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
+    assert gained == pytest.approx(numbers["motor_work_J"] - numbers["load_work_J"], rel=1e-8)
+    text = shown(start_up, MACHINE)
+    assert "runs steadily" in text
+    assert "coefficient of speed fluctuation" in text
+
+
+def test_a_motor_that_cannot_start_is_told_as_such() -> None:
+    text = shown(start_up, STUCK)
+    assert "cannot overcome the load" in text
+    assert "No steady running" in text
+
+
+def test_a_start_can_be_cancelled() -> None:
+    numbers = start_up.numbers(MACHINE, LINKAGE, cancelled=lambda: True)
+    assert numbers["verdict"] == "cancelled"
+
+
+def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> None:
+    numbers = flywheel.numbers(MACHINE, LINKAGE, fluctuation=0.05)
+    assert numbers["flywheel_kgm2"] == design_flywheel(MACHINE, LINKAGE, 0.05).inertia
+    assert numbers["steady"]["fluctuation"] == pytest.approx(0.05, rel=1e-9)
+    assert numbers["flywheels_kgm2"] == sorted(numbers["flywheels_kgm2"])
+    assert numbers["fluctuations"][2] == 0.05
+    assert numbers["flywheels_kgm2"][2] == numbers["flywheel_kgm2"]
+    assert "Flywheel on the crank shaft" in shown(flywheel, MACHINE)
+    assert "constant torque" in flywheel.numbers(STROKES, LINKAGE)["motor"]
+
+
+def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> None:
+    with pytest.raises(InputError, match=r"add a \[drive\]"):
+        start_up.numbers(STROKES, LINKAGE)
+    with pytest.raises(InputError, match="torque or a load that changes with speed"):
+        flywheel.numbers(RUNAWAY, LINKAGE)
+
+
+def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:
+    data = start_up_data(MACHINE, LINKAGE)
+    run, running, _ = start_up.start(MACHINE, LINKAGE)
+    assert running is not None
+    np.testing.assert_array_equal(data.time, run.time)
+    np.testing.assert_array_equal(data.motor, run.motor_torque)
+    np.testing.assert_allclose(data.speed * np.pi / 30.0, run.speed, rtol=1e-14)
+    assert np.all(np.diff(data.turn_angle) >= 0.0)
+    assert data.turn_speed.max() == pytest.approx(running.speed.max() * 30.0 / np.pi, rel=1e-14)
+    assert data.fluctuation == running.fluctuation
+    for machine in (MACHINE, STUCK):
+        assert draw_start_up(machine, LINKAGE, tmp_path / "start.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("machine", [MACHINE, STROKES], ids=["motor", "constant torque"])
+def test_the_figure_of_the_flywheel_shows_the_model(machine: Mechanism, tmp_path: Path) -> None:
+    data = flywheel_data(machine, LINKAGE, fluctuation=0.04)
+    inertia, reached = data.design
+    assert reached == pytest.approx(0.04, rel=1e-9)
+    middle = len(data.flywheel) // 2
+    assert np.interp(inertia, data.flywheel, data.fluctuation) == pytest.approx(0.04, rel=1e-2)
+    assert data.flywheel[middle] == pytest.approx(inertia, rel=0.5)
+    assert np.all(np.diff(data.fluctuation) < 0.0)
+    (_, _, speed), (_, _, half) = data.turns
+    assert np.ptp(half) > 1.5 * np.ptp(speed)
+    assert draw_flywheel(machine, LINKAGE, tmp_path / "flywheel.png", fluctuation=0.04).stat().st_size > 10_000
