@@ -18,8 +18,8 @@ mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
 with c and s the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
 
 State of the integration: the gap and its velocity rather than x and phi, because the penetration is a millionth of
-x. Three integrals ride along: the work of the drive, the work of the loads on the slider, and the energy that the contact
-dissipates.
+x. Three integrals ride along: the work of the drive, the work of the loads on the slider, and the energy that the
+contact dissipates.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ OBSERVED = 10
 
 
 class System(NamedTuple):
-    """The numbers of a linkage with a loose joint. SI; sums over the bodies with mass m, inertia I and k, a, b as above.
+    """Numbers of a linkage with a loose joint. SI; sums over the bodies with mass m, inertia I and k, a, b as above.
 
     start: crank angle at time zero. clearance to slip_speed: of the contact. journal_turns: whether the journal turns
     with the crank. bearing_turns: whether the bearing turns with the rod.

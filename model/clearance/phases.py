@@ -1,8 +1,8 @@
 """Integration through flight and contact: each phase is smooth, and ends at an event that is found exactly.
 
-scipy's DOP853 takes the steps. Within a phase the right-hand side never changes its form: in flight there is no contact
-force, in contact the speed of the impact that began it stays what it was. After every step the interpolant of the
-same order is looked at in between, so that no short touch is stepped over; where it crosses the clearance the phase ends.
+scipy's DOP853 takes the steps. Within a phase the right-hand side never changes its form: in flight there is no
+contact force, in contact the speed of the impact that began it stays what it was. After every step the interpolant is
+looked at in between, so that no short touch is stepped over; where it crosses the clearance the phase ends.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _ASK = 64
 
 @dataclass
 class Trace:
-    """What an integration leaves, in pieces: times, states (7, n), damping rates and strokes; impacts by time and speed.
+    """What an integration leaves, in pieces: times, states (7, n), damping rates, strokes; times and speeds of impacts.
 
     A time comes twice where a phase ends and the next one begins.
     """
@@ -96,7 +96,7 @@ class Integrator:
             self.state,
             end,
             rtol=max(self.tolerance, 3e-14),
-            atol=allowed,
+            atol=allowed,  # type: ignore[arg-type]  # scipy takes one for each state; its stubs do not know
             max_step=min(turn / _STEPS_PER_TURN, end - self.time),
         )
         steps = 0

@@ -82,8 +82,9 @@ class ClearanceRun:
 
     @property
     def energy_residual(self) -> Array:
-        """Energy stored since the start, less work done by drive and loads, plus energy dissipated, J: zero if exact."""
-        return (self.stored - self.stored[0]) - self.input_work - self.load_work + self.dissipated
+        """Energy stored since the start, less work of drive and loads, plus what was dissipated, J: zero if exact."""
+        residual: Array = (self.stored - self.stored[0]) - self.input_work - self.load_work + self.dissipated
+        return residual
 
 
 def simulate(
@@ -93,7 +94,7 @@ def simulate(
     *,
     cycles: int = 12,
     discard: int = 4,
-    tolerance: float = 1e-6,
+    tolerance: float = 1e-7,
     progress: Callable[[ClearanceProgress], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> ClearanceRun:
@@ -101,9 +102,9 @@ def simulate(
 
     It starts at crank angle zero from the motion of the ideal linkage, the journal in the middle of its bearing: in
     flight, so that the first turns, `discard` of them, show how the start dies out. A crank whose pivot is loose is
-    turned by a coupling that gives way sideways only. Loads act at the actual position and velocity of the slider; which
-    stroke it is, is told by the crank angle, so that a load opposing the motion is a force given in advance and not
-    friction. Counterweight and branch are the mechanism's.
+    turned by a coupling that gives way sideways only. Loads act at the actual position and velocity of the slider;
+    which stroke it is, is told by the crank angle, so that a load opposing the motion is a force given in advance and
+    not friction. Counterweight and branch are the mechanism's.
 
     tolerance: relative, of a step of the integration (see `Integrator`). progress: called after every turn. cancelled:
     asked every few steps; when it says so, what there is so far is returned with status "cancelled".
@@ -116,7 +117,7 @@ def simulate(
             f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"
         )
     if not 1e-13 <= tolerance <= 1e-3:
-        raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-6 is usual")
+        raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
     began = time.perf_counter()
     linkage = replace(linkage, branch=mechanism.branch)
     integrator = _start(mechanism, linkage, clearance, tolerance)
@@ -152,7 +153,10 @@ def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, toleran
 
 def _changes(linkage: Linkage, speed: float) -> list[float]:
     """Return the shares of a turn at which the dead centres are passed, ascending."""
-    return sorted(float(angle * math.copysign(1.0, speed) % (2.0 * math.pi)) / (2.0 * math.pi) for angle in linkage.dead_centre_angles)
+    return sorted(
+        float(angle * math.copysign(1.0, speed) % (2.0 * math.pi)) / (2.0 * math.pi)
+        for angle in linkage.dead_centre_angles
+    )
 
 
 def _outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:

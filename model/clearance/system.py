@@ -90,7 +90,7 @@ def build(
     # At the rod angle where both are coupled most, what is left of the rod's inertia once the slider gives way.
     if system.m_xx * system.m_rod <= (1.0 + 1e-9) * abs(system.m_x_rod) ** 2:
         raise InputError(
-            "a slider with a loose joint needs mass, and so does the rod; "
-            f"got a slider of {d.slider_mass:g} kg and a rod of {d.rod_mass:g} kg; give both a mass"
+            f"rod and slider need masses that determine how they move when the {clearance.joint} is loose; "
+            f"got a rod of {d.rod_mass:g} kg and a slider of {d.slider_mass:g} kg; give both a mass"
         )
     return system, block, loads

@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.links import Bar, Counterweight, Link, RigidLink
 from ...model.mechanism import Branch, Mechanism, Tolerances, Window
 from ..units import shown
+from .clearance import ClearancePart
 from .loads import Load
 from .values import (
     Angle,
@@ -196,7 +197,9 @@ class MechanismPart(Part):
             )
         return self
 
-    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart) -> Mechanism:
+    def build(
+        self, loads: tuple[Load, ...], tolerances: TolerancesPart, clearance: ClearancePart | None = None
+    ) -> Mechanism:
         """Return the machine as the model has it."""
         parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
         parts["counterweight"] = self.counterweight
@@ -208,6 +211,7 @@ class MechanismPart(Part):
             loads=tuple(load.build() for load in loads),
             tolerances=tolerances.build(),
             branch=self.branch,
+            clearance=None if clearance is None else clearance.build(),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 
