@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import SlidercrankError
 from .equations import STATES, System, rates
 
 Array = NDArray[np.float64]
@@ -72,8 +73,8 @@ class Integrator:
     def advance(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
         """Integrate to a time; return whether it was reached: False if cancelled on the way.
 
-        outward: the stroke, which fixes the loads. Raises `ArithmeticError` if the integrator finds no step that is
-        small enough.
+        outward: the stroke, which fixes the loads. Raises `SlidercrankError` if the integrator finds no step that is
+        small enough, or if the contact is so soft that it does not hold the journal.
         """
         while self.time < end:
             if not self._phase(end, outward, cancelled):
@@ -104,12 +105,22 @@ class Integrator:
             steps += 1
             if cancelled is not None and steps % _ASK == 0 and cancelled():
                 return False
-            if (message := solver.step()) is not None:
-                raise ArithmeticError(f"the contact could not be integrated at {solver.t:g} s: {message}")
+            if solver.step() is not None:
+                raise SlidercrankError(
+                    f"the steps of the integration must stay above rounding; got too short ones at {solver.t:g} s; "
+                    "make the tolerance coarser or the contact softer"
+                )
             between = solver.dense_output()
             times = np.linspace(solver.t_old, solver.t, BETWEEN + 1)
             states = between(times)
-            over = np.flatnonzero(sign * self._depth(states[:, 1:]) > 0.0)
+            depth = self._depth(states[:, 1:])
+            if not depth.max() < self.system.bearing_radius:
+                raise SlidercrankError(
+                    "the contact must hold the journal in its bearing; "
+                    f"got a penetration beyond the bearing's radius, {1e3 * self.system.bearing_radius:g} mm, with a "
+                    f"stiffness of {self.system.stiffness:g} N/m^1.5; make the contact stiffer"
+                )
+            over = np.flatnonzero(sign * depth > 0.0)
             if len(over):
                 self._switch(between, times[over[0]], times[over[0] + 1], sign)
                 kept = over[0] + 1
@@ -134,8 +145,8 @@ class Integrator:
 
         time = float(brentq(over, before, after, xtol=1e-300, rtol=1e-15)) if over(before) < 0.0 else before
         # Past it by rounding at least: the next phase begins on its own side.
-        step = np.spacing(time)
-        while over(time) <= 0.0:
+        step = float(np.spacing(time))
+        while time < after and over(time) <= 0.0:
             time = min(time + step, after)
             step *= 2.0
         self.time, self.state = time, between(time)

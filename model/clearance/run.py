@@ -108,7 +108,8 @@ def simulate(
 
     tolerance: relative, of a step of the integration (see `Integrator`). progress: called after every turn. cancelled:
     asked every few steps; when it says so, what there is so far is returned with status "cancelled".
-    Raises as `system.build` does, and `InputError` for a crank at rest or a number of turns that leaves none.
+    Raises as `system.build` does, `InputError` for a crank at rest or a number of turns that leaves none, and
+    `SlidercrankError` for a contact that is too soft to hold the journal.
     """
     if not mechanism.speed:
         raise InputError("a joint with clearance is simulated over turns of the crank; got speed 0; give a crank speed")

@@ -117,7 +117,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         return
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     for justify in ("left", "right", "left", "left"):
-        table.add_column(justify=justify, no_wrap=True)  # type: ignore[arg-type]
+        table.add_column(justify=justify, no_wrap=True)
     for _, key, unit, _, title, symbol in _ROWS:
         value, certain = numbers[f"{key}{unit}"], numbers[f"{key}_uncertainty{unit}"]
         if value == 0.0 and not certain:

@@ -16,11 +16,11 @@ from slidercrank.model.clearance.phases import Integrator
 from slidercrank.model.clearance.run import simulate
 from slidercrank.model.clearance.system import build
 from slidercrank.model.cycle import cycle
-from slidercrank.model.errors import AssemblyError, InputError
+from slidercrank.model.errors import AssemblyError, InputError, SlidercrankError
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.links import Bar, RigidLink
 from slidercrank.model.mechanism import Mechanism
-from tests.model.cases import Array, random_designs, random_machine
+from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.loose_joint import accelerations, state_of
 from tests.model.virtual_work import load_force, outward_motion, path, slider_load, stroke_ends
 
@@ -55,7 +55,7 @@ def test_equations_of_motion_agree_with_newton_and_euler_of_every_body(joint: Jo
     random = np.random.default_rng(41)
     for design in random_designs(40, seed=42, least_margin=0.1):
         machine = replace(random_machine(random), acceleration=0.0)
-        linkage = Linkage(*design, machine.branch)
+        linkage = linkage_of(design, machine.branch)
         room = design[1] - design[0] - abs(design[2])
         clearance = Clearance(
             joint=joint,
@@ -104,7 +104,7 @@ def test_loads_are_those_of_the_ideal_linkage_where_the_gap_is_closed() -> None:
     random = np.random.default_rng(43)
     for design in random_designs(20, seed=44, least_margin=0.1):
         machine = replace(random_machine(random), acceleration=0.0)
-        linkage = Linkage(*design, machine.branch)
+        linkage = linkage_of(design, machine.branch)
         clearance = replace(PIN, radius=1e-6, journal_radius=1e-5)
         system, block, loads = build(machine, linkage, clearance, start=1.1)
         at = path(design, np.array([1.1]), linkage.sign)
@@ -121,7 +121,7 @@ def test_the_reaction_of_the_ideal_joint_keeps_the_gap_closed(joint: Joint) -> N
     random = np.random.default_rng(45)
     for design in random_designs(20, seed=46, least_margin=0.1):
         machine = replace(random_machine(random, loads=False), acceleration=0.0)
-        linkage = Linkage(*design, machine.branch)
+        linkage = linkage_of(design, machine.branch)
         start = float(random.uniform(0.0, 2.0 * math.pi))
         ideal = cycle(machine, linkage, start)
         # What acts on the body that carries the gap: on the crank, on the rod's end, on the slider.
@@ -181,12 +181,12 @@ def test_a_bouncing_journal_rebounds_as_the_law_says(law: Any, restitution: floa
 def test_flores_rebounds_nearer_to_the_asked_restitution_than_lankarani_and_nikravesh() -> None:
     for restitution in (0.2, 0.5, 0.8):
         got = {
-            law: rebound(replace(PIN, restitution=restitution, law=law).hysteresis)  # type: ignore[arg-type]
+            law: rebound(replace(PIN, restitution=restitution, law=law).hysteresis)
             for law in ("flores", "lankarani-nikravesh")
         }
         assert abs(got["flores"] - restitution) < abs(got["lankarani-nikravesh"] - restitution)
     for law in ("flores", "lankarani-nikravesh"):
-        assert rebound(replace(PIN, restitution=0.99, law=law).hysteresis) == pytest.approx(0.99, abs=5e-3)  # type: ignore[arg-type]
+        assert rebound(replace(PIN, restitution=0.99, law=law).hysteresis) == pytest.approx(0.99, abs=5e-3)
 
 
 @pytest.mark.parametrize("joint", JOINTS)
@@ -291,6 +291,11 @@ def test_what_cannot_be_simulated_is_refused(
 def test_a_slider_without_mass_behind_a_loose_pin_is_refused() -> None:
     with pytest.raises(InputError, match="slider of 0 kg; give both a mass"):
         simulate(replace(SIEVE, slider_mass=0.0), LINKAGE, replace(PIN, joint="slider pin"))
+
+
+def test_a_contact_too_soft_to_hold_the_journal_is_an_error() -> None:
+    with pytest.raises(SlidercrankError, match=r"stiffness of 1000 N/m\^1.5; make the contact stiffer"):
+        simulate(SIEVE, LINKAGE, replace(PIN, stiffness=1e3), cycles=1, discard=0)
 
 
 def test_a_linkage_that_does_not_turn_fully_is_refused() -> None:
