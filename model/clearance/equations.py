@@ -36,8 +36,6 @@ from ..segments import find_pieces, load_on_slider
 
 STATES = 7
 """Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""
-OBSERVED = 10
-"""Columns of `observe`."""
 
 
 class System(NamedTuple):

@@ -24,9 +24,6 @@ from ..loads import require_word
 Joint = Literal["crank pivot", "crank pin", "slider pin"]
 Law = Literal["flores", "lankarani-nikravesh"]
 
-EXPONENT = 1.5
-"""Of the penetration in Hertz's law."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Clearance:

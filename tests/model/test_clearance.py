@@ -178,6 +178,28 @@ def test_a_bouncing_journal_rebounds_as_the_law_says(law: Any, restitution: floa
     assert out[3].min() >= 0.0
 
 
+def test_slow_impacts_lose_less_as_hunt_and_crossley_found() -> None:
+    """Below the slow impact, ten times faster than this one, the damping stays: h is a tenth."""
+    machine = Mechanism(crank=BAR, rod=BAR, slider_mass=1.95)
+    clearance = replace(PIN, joint="slider pin", restitution=0.5, slow_impact=0.1)
+    system, block, loads = build(machine, Linkage(0.14, 0.31, 0.0), clearance)
+    start = np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0])
+    run = Integrator(system, block, loads, clearance.hysteresis, 0.1, 1e-11, start)
+    run.advance(0.5, outward=True)
+    assert run.trace.impact_speeds[1] == pytest.approx(0.01 * rebound(0.16), rel=1e-7)
+
+
+def test_damping_is_that_of_the_two_papers() -> None:
+    """For e = 1/2, h is 8 (1/2) / (5/2) = 1.6, or 3 (3/4) / 4 = 0.5625; none for e = 1."""
+    assert replace(PIN, restitution=0.5).hysteresis == pytest.approx(1.6, rel=1e-15)
+    assert replace(PIN, restitution=0.5, law="lankarani-nikravesh").hysteresis == 0.5625
+    assert (
+        replace(PIN, restitution=1.0).hysteresis
+        == replace(PIN, restitution=1.0, law="lankarani-nikravesh").hysteresis
+        == 0.0
+    )
+
+
 def test_flores_rebounds_nearer_to_the_asked_restitution_than_lankarani_and_nikravesh() -> None:
     for restitution in (0.2, 0.5, 0.8):
         got = {

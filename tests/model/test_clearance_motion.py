@@ -41,7 +41,7 @@ def test_one_millimetre_hardly_moves_the_slider_but_shakes_it_the_more_the_faste
     """
     runs = [
         simulate(sieve(30.0), LINKAGE, PIN, cycles=1, discard=0, tolerance=1e-5),
-        simulate(sieve(300.0), LINKAGE, PIN, cycles=3, discard=1, tolerance=1e-6),
+        simulate(sieve(300.0), LINKAGE, PIN, cycles=2, discard=1, tolerance=1e-6),
         fast,
     ]
     found = [summarise(run) for run in runs]
@@ -56,16 +56,23 @@ def test_one_millimetre_hardly_moves_the_slider_but_shakes_it_the_more_the_faste
 
 
 def test_halving_the_tolerance_changes_the_statistics_by_less_than_their_uncertainty(fast: ClearanceRun) -> None:
+    """The motion is chaotic: the two runs are two samples, whose means differ as their confidence intervals allow.
+
+    Another processor rounds otherwise and draws other samples. So each difference must lie within both intervals taken
+    together, and all but one in ten within the narrower promise of one interval, see `Estimate`.
+    """
     finer = summarise(simulate(sieve(400.0), LINKAGE, PIN, cycles=8, discard=2, tolerance=5e-7))
     coarser = summarise(fast)
-    compared = 0
+    within = []
     for item in fields(coarser):
         one, other = getattr(coarser, item.name), getattr(finer, item.name)
         if isinstance(one, Estimate) and item.name != "load_work":  # there are no loads
             assert one.uncertainty is not None
-            assert abs(one.value - other.value) < one.uncertainty, item.name
-            compared += 1
-    assert compared >= 10
+            assert other.uncertainty is not None
+            assert abs(one.value - other.value) < one.uncertainty + other.uncertainty, item.name
+            within.append(abs(one.value - other.value) < one.uncertainty)
+    assert len(within) == 11
+    assert sum(within) >= 10
     # Which says something only if they are known to better than a factor of two.
     for name in ("peak_acceleration", "displacement_deviation", "velocity_deviation", "contact_share"):
         estimate = getattr(coarser, name)
@@ -78,7 +85,7 @@ def test_the_energy_balance_closes_over_every_turn(fast: ClearanceRun) -> None:
     assert np.diff(fast.dissipated).min() >= -1e-8 * fast.dissipated[-1]
     gained = summary.input_work.value + summary.load_work.value - summary.dissipated.value
     assert summary.stored.value == pytest.approx(gained, abs=summary.energy_residual)
-    finer = simulate(sieve(400.0), LINKAGE, PIN, cycles=1, discard=0, tolerance=1e-9)
+    finer = simulate(sieve(400.0), LINKAGE, SOFT, cycles=1, discard=0, tolerance=1e-9)
     assert np.abs(finer.energy_residual).max() < 1e-6 * finer.dissipated[-1]
 
 
@@ -93,9 +100,9 @@ def test_the_motion_tends_to_the_ideal_one_as_the_clearance_closes() -> None:
         position.append(np.abs(run.slider_position - run.ideal_position).max())
         velocity.append(np.abs(run.slider_velocity - run.ideal_velocity).max())
     order = np.diff(np.log(position)) / np.diff(np.log(gaps))
-    np.testing.assert_allclose(order, 1.0, atol=0.1)
+    np.testing.assert_allclose(order, 1.0, atol=0.05)
     order = np.diff(np.log(velocity)) / np.diff(np.log(gaps))
-    np.testing.assert_allclose(order, 0.5, atol=0.2)
+    np.testing.assert_allclose(order, 0.5, atol=0.05)
 
 
 @pytest.mark.parametrize("joint", ["crank pivot", "slider pin"])
