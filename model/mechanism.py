@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal
 
+from .clearance.joint import Clearance
 from .errors import InputError
 from .links import Counterweight, Link, RigidLink
 from .loads import During, Load, require_word
@@ -91,6 +92,7 @@ class Mechanism:
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
+    clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     """
 
     speed: float = 0.0
@@ -104,6 +106,7 @@ class Mechanism:
     tolerances: Tolerances = field(default_factory=Tolerances)
     branch: Branch = "open"
     drive: Drive | None = None
+    clearance: Clearance | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed", "acceleration"):

@@ -137,6 +137,24 @@ def within(a: float, b: float) -> float:
 
 
 @inlined
+def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
+    """Fix the piece of every table at a crank angle and a distance x of the slider from the crank pivot."""
+    for k in range(loads.kind.shape[0]):
+        first, last = loads.start[k], loads.start[k + 1]
+        if first == last:
+            continue
+        if loads.kind[k] == _ANGLE_TABLE:
+            shift[k] = -_TURN * math.floor((theta - loads.at[first]) / _TURN)
+            at = theta + shift[k]
+        else:
+            at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
+        i = first
+        while i < last and loads.at[i] < at:
+            i += 1
+        piece[k] = i
+
+
+@inlined
 def enter(
     d: Design, block: Any, j: int, inside: float, loads: Loads, watch: Watch, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
@@ -149,19 +167,7 @@ def enter(
     # Only at ends that are cuts: a dead centre in the middle lies a rounding error outside 0 to 1.
     if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
         counts = False
-    for k in range(loads.kind.shape[0]):
-        first, last = loads.start[k], loads.start[k + 1]
-        if first == last:
-            continue
-        if loads.kind[k] == _ANGLE_TABLE:
-            shift[k] = -_TURN * math.floor((inside - loads.at[first]) / _TURN)
-            at = inside + shift[k]
-        else:
-            at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
-        i = first
-        while i < last and loads.at[i] < at:
-            i += 1
-        piece[k] = i
+    find_pieces(d, block, j, inside, x, loads, piece, shift)
     return counts, outward
 
 

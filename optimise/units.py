@@ -55,11 +55,12 @@ FORCE = Kind(name="a force", unit="N", example="200 N", limit=1e12)
 TORQUE = Kind(name="a torque", unit="N m", example="25 N m", limit=1e15)
 STIFFNESS = Kind(name="a stiffness", unit="N/m", example="20 N/mm", limit=1e15)
 DAMPING = Kind(name="a viscous coefficient", unit="N s/m", example="50 N s/m", limit=1e15)
+PRESSURE = Kind(name="a pressure", unit="Pa", example="207 GPa", limit=1e15)
 RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9)
 
 KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, STIFFNESS, DAMPING, RATIO),
+    *(SPEED, ACCELERATION, FORCE, TORQUE, STIFFNESS, DAMPING, PRESSURE, RATIO),
 )
 _OTHERS = (
     Kind(name="a time", unit="s", example="1 s", limit=math.inf),

@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.links import Bar, Counterweight, Link, RigidLink
 from ...model.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
 from ..units import shown
+from .clearance import ClearancePart
 from .drive import DrivePart
 from .loads import Load
 from .values import (
@@ -198,7 +199,14 @@ class MechanismPart(Part):
             )
         return self
 
-    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart, drive: DrivePart | None = None) -> Mechanism:
+    def build(
+        self,
+        loads: tuple[Load, ...],
+        tolerances: TolerancesPart,
+        *,
+        clearance: ClearancePart | None = None,
+        drive: DrivePart | None = None,
+    ) -> Mechanism:
         """Return the machine as the model has it."""
         parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
         parts["counterweight"] = self.counterweight
@@ -211,6 +219,7 @@ class MechanismPart(Part):
             tolerances=tolerances.build(),
             branch=self.branch,
             drive=None if drive is None else drive.build(),
+            clearance=None if clearance is None else clearance.build(),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field
 from ...model.errors import InputError
 from ..problem import Problem, Range, Settings
 from ..units import shown
+from .clearance import ClearancePart
 from .contradictions import require_consistent
 from .drive import DrivePart
 from .loads import Load
@@ -96,6 +97,11 @@ class Job(Part):
         description="how far dimensions and crank angle may be off",
         examples=[{"crank": "0.05 mm", "crank_angle": "0.1 deg"}],
     )
+    clearance: ClearancePart | None = Field(
+        None,
+        description="a joint that is loose, for the simulation of its impacts; designs are sized with ideal joints",
+        examples=[{"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"}],
+    )
     variables: VariablesPart = Field(
         description="where the three dimensions may lie",
         examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
@@ -118,7 +124,7 @@ class Job(Part):
         variables = self.variables
         problem = Problem(
             name=self.name,
-            mechanism=self.mechanism.build(self.load, self.tolerances, self.drive),
+            mechanism=self.mechanism.build(self.load, self.tolerances, clearance=self.clearance, drive=self.drive),
             crank=Range(lower=variables.crank[0], upper=variables.crank[1]),
             rod=Range(lower=variables.rod[0], upper=variables.rod[1]),
             offset=Range(lower=variables.offset[0], upper=variables.offset[1]),

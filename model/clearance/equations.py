@@ -1,0 +1,218 @@
+r"""Equations of motion of the linkage when one of its pins is loose in its bearing and the crank turns steadily.
+
+Whichever pin is loose, the linkage keeps two degrees of freedom besides the crank angle theta: slider position x and
+rod angle phi. With complex numbers for vectors in the plane, the loop of the ideal linkage fails to close by the *gap*
+
+    C = x + i e - l exp(i phi) - r exp(i theta),        |C| <= radial clearance, but for the penetration.
+
+A crank pivot that is loose lets the crank translate while a coupling keeps turning it steadily: then the crank's
+origin is at C; the crank pin is at C + r exp(i theta). A loose crank pin is C away from the rod's end, a loose slider
+pin C away from the slider. So the contact does the same work in every case; only where the masses hang differs. The
+mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
+
+    loose joint      crank                  rod                   slider
+    crank pivot      k 1, a -l, b c - r     k 1, a s - l, b 0     k 1, a 0, b 0
+    crank pin        k 0, a 0,  b c         k 1, a s - l, b 0     k 1, a 0, b 0
+    slider pin       k 0, a 0,  b c         k 0, a s,     b r     k 1, a 0, b 0
+
+with c and s the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
+
+State of the integration: the gap and its velocity rather than x and phi, because the penetration is a millionth of
+x. Three integrals ride along: the work of the drive, the work of the loads on the slider, and the energy that the
+contact dissipates.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic import inlined, kernel
+from ..kinematics import Motion
+from ..parameters import design_at
+from ..segments import find_pieces, load_on_slider
+
+STATES = 7
+"""Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""
+
+
+class System(NamedTuple):
+    """Numbers of a linkage with a loose joint. SI; sums over the bodies with mass m, inertia I and k, a, b as above.
+
+    start: crank angle at time zero. clearance to slip_speed: of the contact. journal_turns: whether the journal turns
+    with the crank. bearing_turns: whether the bearing turns with the rod.
+    m_xx: sum k m. m_x_rod, m_x_crank: sums k m a, k m b. m_rod, m_crank: sums m |a|^2 + I, m |b|^2 + I.
+    m_rod_crank: sum m a conj(b). first_rod, first_crank: sums m a, m b.
+    """
+
+    r: float
+    l: float
+    e: float
+    branch: float
+    speed: float
+    start: float
+    gravity: complex
+    clearance: float
+    bearing_radius: float
+    stiffness: float
+    friction: float
+    slip_speed: float
+    journal_turns: float
+    bearing_turns: float
+    m_xx: float
+    m_x_rod: complex
+    m_x_crank: complex
+    m_rod: float
+    m_crank: float
+    m_rod_crank: complex
+    first_rod: complex
+    first_crank: complex
+
+
+class Place(NamedTuple):
+    """Where the linkage is: directions of crank and rod as complex numbers, and the coordinates with their speeds."""
+
+    crank: Any
+    rod: Any
+    x: Any
+    x_t: Any
+    rod_t: Any
+
+
+class Contact(NamedTuple):
+    """The contact. force: on what carries the gap C, complex. normal, tangential: N, the latter on the journal.
+
+    on_crank, on_rod: moments of the friction about the pins, N m. penetration: m, negative if apart.
+    elastic: stored energy, J. lost: dissipated power, W.
+    """
+
+    force: Any
+    normal: Any
+    tangential: Any
+    on_crank: Any
+    on_rod: Any
+    penetration: Any
+    elastic: Any
+    lost: Any
+
+
+@inlined
+def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
+    """Return where the linkage is, from the two components of the gap and of its derivative."""
+    theta = s.start + s.speed * time
+    crank = complex(math.cos(theta), math.sin(theta))
+    across = s.e - s.r * crank.imag - gap.imag
+    along = s.branch * math.sqrt(s.l * s.l - across * across)
+    rod_t = -(gap_t.imag + s.r * s.speed * crank.real) / along
+    x = gap.real + along + s.r * crank.real
+    x_t = gap_t.real - across * rod_t - s.r * s.speed * crank.imag
+    return Place(crank, complex(along, across) / s.l, x, x_t, rod_t)
+
+
+@inlined
+def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) -> Contact:
+    """Return the contact. rate: h / d'_0, s/m; negative while the journal is in free flight."""
+    distance = abs(gap)
+    depth = distance - s.clearance
+    if rate < 0.0 or depth <= 0.0:
+        return Contact(0.0j, 0.0, 0.0, 0.0, 0.0, depth, 0.0, 0.0)
+    normal = gap / distance
+    depth_t = normal.real * gap_t.real + normal.imag * gap_t.imag
+    spring = s.stiffness * depth * math.sqrt(depth)
+    press = max(0.0, spring * (1.0 + rate * depth_t))
+    # Both bodies touch at one point, at the bearing's radius, so that no moment appears out of nothing.
+    arm = s.bearing_radius - distance
+    slide = normal.real * gap_t.imag - normal.imag * gap_t.real
+    slide += arm * s.journal_turns * s.speed - s.bearing_radius * s.bearing_turns * rod_t
+    rub = -s.friction * press * slide / math.sqrt(slide * slide + s.slip_speed * s.slip_speed)
+    force = -press * normal + rub * 1j * normal
+    lost = (press - spring) * depth_t - rub * slide
+    return Contact(
+        force,
+        press,
+        rub,
+        rub * arm * s.journal_turns,
+        -rub * s.bearing_radius * s.bearing_turns,
+        depth,
+        0.4 * spring * depth,
+        lost,
+    )
+
+
+@inlined
+def accelerate(
+    p: Place, force: complex, on_crank: float, on_rod: float, load: float, s: System
+) -> tuple[complex, float, float]:
+    """Return the second derivative of the gap, the acceleration of the slider, and the drive torque.
+
+    force: generalised force of the gap. on_crank, on_rod: further moments. load: on the slider along x, N.
+    """
+    w, u = s.speed, p.rod_t
+    m_x_rod, m_x_crank = 1j * p.rod * s.m_x_rod, 1j * p.crank * s.m_x_crank
+    twist = s.m_rod_crank * p.rod * p.crank.conjugate()
+    turn_rod, turn_crank = 1j * p.rod, 1j * p.crank
+    right_x = load + force.real + s.m_xx * s.gravity.real
+    right_x += (p.rod * s.m_x_rod).real * u * u + (p.crank * s.m_x_crank).real * w * w
+    right_rod = on_rod + (turn_rod * (s.first_rod * s.gravity.conjugate() - s.l * force.conjugate())).real
+    right_rod -= twist.imag * w * w
+    determinant = s.m_xx * s.m_rod - m_x_rod.real * m_x_rod.real
+    x_tt = (s.m_rod * right_x - m_x_rod.real * right_rod) / determinant
+    rod_tt = (s.m_xx * right_rod - m_x_rod.real * right_x) / determinant
+    torque = m_x_crank.real * x_tt + twist.real * rod_tt - twist.imag * u * u - on_crank
+    torque -= (turn_crank * (s.first_crank * s.gravity.conjugate() - s.r * force.conjugate())).real
+    gap_tt = x_tt - s.l * (1j * rod_tt - u * u) * p.rod + s.r * w * w * p.crank
+    return gap_tt, x_tt, torque
+
+
+@inlined
+def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, loads: Any) -> float:
+    """Return the loads on the slider at its actual position and velocity, along x."""
+    d = design_at(block, 0)
+    theta = s.start + s.speed * time
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
+    # The block was derived for unit speed: velocity per unit of crank angle is then the velocity.
+    m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
+    return float(d.branch * load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift))
+
+
+@kernel
+def rates(time: float, y: Any, rate: float, outward: bool, s: System, block: Any, loads: Any) -> Any:
+    """Return the time derivative of the state (7,). rate: as in `touch`. outward: whether it is the outward stroke."""
+    gap, gap_t = complex(y[0], y[1]), complex(y[2], y[3])
+    p = locate(time, gap, gap_t, s)
+    load = load_along_x(time, p, outward, s, block, loads)
+    c = touch(gap, gap_t, p.rod_t, rate, s)
+    gap_tt, _, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
+    out = np.empty(7)
+    out[0], out[1] = gap_t.real, gap_t.imag
+    out[2], out[3] = gap_tt.real, gap_tt.imag
+    out[4], out[5], out[6] = torque * s.speed, load * p.x_t, c.lost
+    return out
+
+
+@kernel
+def observe(times: Any, y: Any, rate: Any, outward: Any, s: System, block: Any, loads: Any) -> Any:
+    """Return what is reported of states (7, n), as (10, n).
+
+    Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,
+    potential and elastic energy.
+    """
+    out = np.empty((10, times.shape[0]))
+    for i in range(times.shape[0]):
+        gap, gap_t = complex(y[0, i], y[1, i]), complex(y[2, i], y[3, i])
+        p = locate(times[i], gap, gap_t, s)
+        load = load_along_x(times[i], p, outward[i], s, block, loads)
+        c = touch(gap, gap_t, p.rod_t, rate[i], s)
+        _, x_tt, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
+        out[0, i], out[1, i], out[2, i] = p.x, p.x_t, x_tt
+        out[3, i], out[4, i], out[5, i], out[6, i] = c.normal, c.tangential, c.penetration, torque
+        w, u = s.speed, p.rod_t
+        kinetic = 0.5 * (s.m_xx * p.x_t * p.x_t + s.m_rod * u * u + s.m_crank * w * w)
+        kinetic += (1j * p.rod * s.m_x_rod).real * p.x_t * u + (1j * p.crank * s.m_x_crank).real * p.x_t * w
+        kinetic += (s.m_rod_crank * p.rod * p.crank.conjugate()).real * u * w
+        moment = s.m_xx * complex(p.x, s.e) + s.first_rod * p.rod + s.first_crank * p.crank
+        out[7, i], out[8, i], out[9, i] = kinetic, -(s.gravity.conjugate() * moment).real, c.elastic
+    return out

@@ -1,0 +1,160 @@
+"""Integration through flight and contact: each phase is smooth, and ends at an event that is found exactly.
+
+scipy's DOP853 takes the steps. Within a phase the right-hand side never changes its form: in flight there is no
+contact force, in contact the speed of the impact that began it stays what it was. After every step the interpolant is
+looked at in between, so that no short touch is stepped over; where it crosses the clearance the phase ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import SlidercrankError
+from .equations import STATES, System, rates
+
+Array = NDArray[np.float64]
+
+BETWEEN = 4
+"""Samples per step of the integrator; a vibration of the contact takes six steps or more."""
+FLIGHT = -1.0
+"""Marks flight in place of the damping rate of a contact."""
+_STEPS_PER_TURN = 180
+_ASK = 64
+
+
+@dataclass
+class Trace:
+    """What an integration leaves, in pieces: times, states (7, n), damping rates, strokes; times and speeds of impacts.
+
+    A time comes twice where a phase ends and the next one begins.
+    """
+
+    times: list[Array] = field(default_factory=list)
+    states: list[Array] = field(default_factory=list)
+    rates: list[Array] = field(default_factory=list)
+    outward: list[NDArray[np.bool_]] = field(default_factory=list)
+    impact_times: list[float] = field(default_factory=list)
+    impact_speeds: list[float] = field(default_factory=list)
+
+    def add(self, times: Array, states: Array, rate: float, outward: bool) -> None:
+        """Append samples of one phase."""
+        self.times.append(times)
+        self.states.append(states)
+        self.rates.append(np.full(len(times), rate))
+        self.outward.append(np.full(len(times), outward))
+
+
+@dataclass
+class Integrator:
+    """One linkage on its way through time.
+
+    system, block, loads: from `system.build`. hysteresis, slow_impact: of the clearance. tolerance: relative error of a
+    step in gap and gap velocity; smallness counts against the clearance and the speed of a slow impact.
+    time, state (7,), rate: where it is. trace: where it was.
+    """
+
+    system: System
+    block: Array
+    loads: Any
+    hysteresis: float
+    slow_impact: float
+    tolerance: float
+    state: Array
+    time: float = 0.0
+    rate: float = FLIGHT
+    trace: Trace = field(default_factory=Trace)
+
+    def advance(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
+        """Integrate to a time; return whether it was reached: False if cancelled on the way.
+
+        outward: the stroke, which fixes the loads. Raises `SlidercrankError` if the integrator finds no step that is
+        small enough, or if the contact is so soft that it does not hold the journal.
+        """
+        while self.time < end:
+            if not self._phase(end, outward, cancelled):
+                return False
+        return True
+
+    def _phase(self, end: float, outward: bool, cancelled: Callable[[], bool] | None) -> bool:
+        from scipy.integrate import DOP853
+
+        fixed = (self.system, self.block, self.loads)
+        rate, sign = self.rate, 1.0 if self.rate == FLIGHT else -1.0
+        turn = 2.0 * math.pi / abs(self.system.speed) if self.system.speed else math.inf
+        # The integrals follow the motion, they do not steer the steps.
+        allowed = np.full(STATES, math.inf)
+        allowed[:2] = self.tolerance * self.system.clearance
+        allowed[2:4] = self.tolerance * self.slow_impact
+        solver = DOP853(
+            lambda t, y: rates(t, y, rate, outward, *fixed),
+            self.time,
+            self.state,
+            end,
+            rtol=max(self.tolerance, 3e-14),
+            atol=allowed,  # type: ignore[arg-type]  # scipy takes one for each state; its stubs do not know
+            max_step=min(turn / _STEPS_PER_TURN, end - self.time),
+        )
+        steps = 0
+        while solver.status == "running":
+            steps += 1
+            if cancelled is not None and steps % _ASK == 0 and cancelled():
+                return False
+            if solver.step() is not None:
+                raise SlidercrankError(
+                    f"the steps of the integration must stay above rounding; got too short ones at {solver.t:g} s; "
+                    "make the tolerance coarser or the contact softer"
+                )
+            between = solver.dense_output()
+            times = np.linspace(solver.t_old, solver.t, BETWEEN + 1)
+            states = between(times)
+            depth = self._depth(states[:, 1:])
+            if not depth.max() < self.system.bearing_radius:
+                raise SlidercrankError(
+                    "the contact must hold the journal in its bearing; "
+                    f"got a penetration beyond the bearing's radius, {1e3 * self.system.bearing_radius:g} mm, with a "
+                    f"stiffness of {self.system.stiffness:g} N/m^1.5; make the contact stiffer"
+                )
+            over = np.flatnonzero(sign * depth > 0.0)
+            if len(over):
+                self._switch(between, times[over[0]], times[over[0] + 1], sign)
+                kept = over[0] + 1
+                times = np.append(times[:kept], self.time)
+                states = np.column_stack([states[:, :kept], self.state])
+                self.trace.add(times, states, rate, outward)
+                return True
+            self.time, self.state = float(solver.t), states[:, -1]
+            self.trace.add(times, states, rate, outward)
+        return True
+
+    def _depth(self, states: Array) -> Array:
+        depth: Array = np.hypot(states[0], states[1]) - self.system.clearance
+        return depth
+
+    def _switch(self, between: Callable[[float], Array], before: float, after: float, sign: float) -> None:
+        """Go to where the journal crosses the clearance between two times, and on to the other phase."""
+        from scipy.optimize import brentq
+
+        def over(time: float) -> float:
+            return sign * float(self._depth(between(time)))
+
+        time = float(brentq(over, before, after, xtol=1e-300, rtol=1e-15)) if over(before) < 0.0 else before
+        # Past it by rounding at least: the next phase begins on its own side.
+        step = float(np.spacing(time))
+        while time < after and over(time) <= 0.0:
+            time = min(time + step, after)
+            step *= 2.0
+        self.time, self.state = time, between(time)
+        if self.rate != FLIGHT:
+            self.rate = FLIGHT
+            return
+        x, y, x_t, y_t = self.state[:4]
+        speed = (x * x_t + y * y_t) / math.hypot(x, y)
+        self.rate = self.hysteresis / max(speed, self.slow_impact)
+        self.trace.impact_times.append(time)
+        self.trace.impact_speeds.append(speed)

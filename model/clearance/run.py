@@ -1,0 +1,222 @@
+"""The linkage with a loose joint over many turns of the crank: its motion in time."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from .equations import observe
+from .joint import Clearance
+from .phases import FLIGHT, Integrator, Trace
+from .system import build
+
+Array = NDArray[np.float64]
+Status = Literal["done", "cancelled"]
+
+
+@dataclass(frozen=True)
+class ClearanceProgress:
+    """A turn of the crank is done. cycle, cycles: this one, and all. impacts: so far. seconds: since the start."""
+
+    cycle: int
+    cycles: int
+    impacts: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class ClearanceRun:
+    """Motion of a linkage with a loose joint, at the samples of the integration, (n,) each, SI and radians.
+
+    times: from zero, not equidistant; twice the same where contact begins or ends. crank_angle: from the start, not
+    wrapped. ideal_*: the same linkage without clearance. contact_force: normal force in the joint, N.
+    friction_force: tangential one, on the journal, counter-clockwise positive. penetration: m, negative in flight.
+    journal_x, journal_y: centre of the journal relative to that of the bearing, m. in_contact: whether they touch.
+    torque: on the crank, N m. input_work, load_work, dissipated: from the start, J, by the drive, by the loads on
+    the slider, in the contact. stored: kinetic, potential and elastic energy, J.
+    impact_times, impact_speeds: of every beginning of a contact, (k,). cycles: turns that are complete; status says
+    whether these are all. discard: turns at the beginning that the statistics leave out.
+    """
+
+    mechanism: Mechanism
+    linkage: Linkage
+    clearance: Clearance
+    status: Status
+    cycles: int
+    discard: int
+    times: Array
+    crank_angle: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    ideal_position: Array
+    ideal_velocity: Array
+    ideal_acceleration: Array
+    contact_force: Array
+    friction_force: Array
+    penetration: Array
+    journal_x: Array
+    journal_y: Array
+    in_contact: NDArray[np.bool_]
+    torque: Array
+    input_work: Array
+    load_work: Array
+    dissipated: Array
+    stored: Array
+    impact_times: Array
+    impact_speeds: Array
+
+    @property
+    def period(self) -> float:
+        """Time of one turn of the crank, s."""
+        return 2.0 * math.pi / abs(self.mechanism.speed)
+
+    @property
+    def energy_residual(self) -> Array:
+        """Energy stored since the start, less work of drive and loads, plus what was dissipated, J: zero if exact."""
+        residual: Array = (self.stored - self.stored[0]) - self.input_work - self.load_work + self.dissipated
+        return residual
+
+
+def simulate(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    clearance: Clearance,
+    *,
+    cycles: int = 12,
+    discard: int = 4,
+    tolerance: float = 1e-7,
+    progress: Callable[[ClearanceProgress], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> ClearanceRun:
+    """Return the motion over some turns of the crank, which turns steadily at the mechanism's speed.
+
+    It starts at crank angle zero from the motion of the ideal linkage, the journal in the middle of its bearing: in
+    flight, so that the first turns, `discard` of them, show how the start dies out. A crank whose pivot is loose is
+    turned by a coupling that gives way sideways only. Loads act at the actual position and velocity of the slider;
+    which stroke it is, is told by the crank angle, so that a load opposing the motion is a force given in advance and
+    not friction. Counterweight and branch are the mechanism's.
+
+    tolerance: relative, of a step of the integration (see `Integrator`). progress: called after every turn. cancelled:
+    asked every few steps; when it says so, what there is so far is returned with status "cancelled".
+    Raises as `system.build` does, `InputError` for a crank at rest or a number of turns that leaves none, and
+    `SlidercrankError` for a contact that is too soft to hold the journal.
+    """
+    if not mechanism.speed:
+        raise InputError("a joint with clearance is simulated over turns of the crank; got speed 0; give a crank speed")
+    if not 0 <= discard < cycles:
+        raise InputError(
+            f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"
+        )
+    if not 1e-13 <= tolerance <= 1e-3:
+        raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
+    began = time.perf_counter()
+    linkage = replace(linkage, branch=mechanism.branch)
+    integrator = _start(mechanism, linkage, clearance, tolerance)
+    period = 2.0 * math.pi / abs(mechanism.speed)
+    done = 0
+    while done < cycles:
+        ends = [(done + share) * period for share in (*_changes(linkage, mechanism.speed), 1.0)]
+        reached = all(
+            integrator.advance(end, outward=_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
+            for before, end in zip([done * period, *ends], ends, strict=False)
+        )
+        if not reached:
+            break
+        done += 1
+        if progress is not None:
+            impacts = len(integrator.trace.impact_times)
+            progress(ClearanceProgress(done, cycles, impacts, time.perf_counter() - began))
+        if done < cycles and cancelled is not None and cancelled():
+            break
+    return _collect(mechanism, linkage, clearance, integrator, done, cycles, discard)
+
+
+def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, tolerance: float) -> Integrator:
+    """Return the integrator at the motion of the ideal linkage: no gap, and none that opens."""
+    return Integrator(
+        *build(mechanism, linkage, clearance),
+        hysteresis=clearance.hysteresis,
+        slow_impact=clearance.slow_impact,
+        tolerance=tolerance,
+        state=np.zeros(7),
+    )
+
+
+def _changes(linkage: Linkage, speed: float) -> list[float]:
+    """Return the shares of a turn at which the dead centres are passed, ascending."""
+    return sorted(
+        float(angle * math.copysign(1.0, speed) % (2.0 * math.pi)) / (2.0 * math.pi)
+        for angle in linkage.dead_centre_angles
+    )
+
+
+def _outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:
+    """Whether the ideal slider moves outward in between."""
+    middle = linkage.at(0.5 * (before + after) * speed, speed=speed)
+    return bool(linkage.sign * middle.slider_velocity > 0.0)
+
+
+def _collect(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    clearance: Clearance,
+    integrator: Integrator,
+    done: int,
+    cycles: int,
+    discard: int,
+) -> ClearanceRun:
+    trace = integrator.trace if integrator.trace.times else _still(integrator)
+    times = np.concatenate(trace.times)
+    states = np.ascontiguousarray(np.concatenate(trace.states, axis=1))
+    rate, outward = np.concatenate(trace.rates), np.concatenate(trace.outward)
+    seen = observe(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
+    angle = mechanism.speed * times
+    ideal = linkage.at(angle, speed=mechanism.speed)
+    # The gap is that of the bearing (on the rod) from the journal when the crank pin is loose, else the reverse.
+    side = -1.0 if clearance.joint == "crank pin" else 1.0
+    return ClearanceRun(
+        mechanism=mechanism,
+        linkage=linkage,
+        clearance=clearance,
+        status="done" if done == cycles else "cancelled",
+        cycles=done,
+        discard=discard,
+        times=times,
+        crank_angle=angle,
+        slider_position=seen[0],
+        slider_velocity=seen[1],
+        slider_acceleration=seen[2],
+        ideal_position=ideal.slider_position,
+        ideal_velocity=ideal.slider_velocity,
+        ideal_acceleration=ideal.slider_acceleration,
+        contact_force=seen[3],
+        friction_force=seen[4],
+        penetration=seen[5],
+        journal_x=side * states[0],
+        journal_y=side * states[1],
+        in_contact=rate != FLIGHT,
+        torque=seen[6],
+        input_work=states[4],
+        load_work=states[5],
+        dissipated=states[6],
+        stored=seen[7] + seen[8] + seen[9],
+        impact_times=np.array(trace.impact_times),
+        impact_speeds=np.array(trace.impact_speeds),
+    )
+
+
+def _still(integrator: Integrator) -> Trace:
+    """Return the start alone: of a run that was cancelled at once."""
+    trace = Trace()
+    trace.add(np.zeros(1), integrator.state.reshape(-1, 1), FLIGHT, False)
+    return trace

@@ -1,0 +1,96 @@
+"""The numbers of one linkage with a loose joint, from its mechanism; what cannot be simulated is refused here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arithmetic import kernel
+from ..errors import InputError
+from ..linkage import Linkage
+from ..mechanism import Mechanism
+from ..parameters import DESIGN, Loads, Raw, derive, design_at, load_structure, raw_vector
+from .equations import System
+from .joint import Clearance
+
+
+@kernel
+def _derived(raw: Any, loads: Any) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    return block
+
+
+def build(
+    mechanism: Mechanism, linkage: Linkage, clearance: Clearance, *, start: float = 0.0
+) -> tuple[System, NDArray[np.float64], Loads]:
+    """Return the system, its derived block and the structure of its loads. start: crank angle at time zero, rad.
+
+    Raises `InputError` for a crank that accelerates, for masses that leave the motion undetermined, and for a clearance
+    that would let the linkage fold over to its other branch; `AssemblyError` unless the linkage turns fully.
+    """
+    linkage.require_full_rotation()
+    if mechanism.acceleration:
+        raise InputError(
+            "a joint with clearance needs a crank that turns steadily; "
+            f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
+        )
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    room = l - r - abs(e)
+    if clearance.radius >= 0.5 * room:
+        raise InputError(
+            "a clearance must be less than half of rod - crank - |offset|, or the rod could fold over; "
+            f"got {1e3 * clearance.radius:g} mm and {1e3 * room:g} mm; lengthen the rod or reduce the clearance"
+        )
+    raw = raw_vector(mechanism)
+    raw[:3] = r, l, e
+    # Loads take the slider's velocity as velocity per radian times speed; unit speed lets them have it directly.
+    raw[Raw.SPEED] = 1.0
+    loads = load_structure(mechanism)
+    block = _derived(raw, loads)
+    d = design_at(block, 0)
+    crank_first = complex(d.crank_along, d.crank_across)
+    rod_first = l * complex(d.rod_along, d.rod_across)
+    # Mass centres, and zero for a link without mass, which has none and needs none.
+    c = crank_first / d.crank_mass if d.crank_mass else 0.0j
+    s = rod_first / d.rod_mass if d.rod_mass else 0.0j
+    spin_crank = d.crank_inertia - d.crank_mass * abs(c) ** 2
+    spin_rod = d.rod_inertia - d.rod_mass * abs(s) ** 2
+    pivot, slider = clearance.joint == "crank pivot", clearance.joint == "slider pin"
+    k = np.array([1.0 if pivot else 0.0, 0.0 if slider else 1.0, 1.0])
+    a = np.array([-l if pivot else 0.0, s if slider else s - l, 0.0], dtype=complex)
+    b = np.array([c - r if pivot else c, r if slider else 0.0, 0.0], dtype=complex)
+    m = np.array([d.crank_mass, d.rod_mass, d.slider_mass])
+    system = System(
+        r=r,
+        l=l,
+        e=e,
+        branch=float(d.branch),
+        speed=float(mechanism.speed),
+        start=start,
+        gravity=complex(*mechanism.gravity),
+        clearance=clearance.radius,
+        bearing_radius=clearance.bearing_radius,
+        stiffness=clearance.contact_stiffness,
+        friction=clearance.friction,
+        slip_speed=clearance.slip_speed,
+        journal_turns=0.0 if slider else 1.0,
+        bearing_turns=0.0 if pivot else 1.0,
+        m_xx=float(k @ m),
+        m_x_rod=complex((k * m) @ a),
+        m_x_crank=complex((k * m) @ b),
+        m_rod=float(m @ np.abs(a) ** 2 + spin_rod),
+        m_crank=float(m @ np.abs(b) ** 2 + spin_crank),
+        m_rod_crank=complex((m * a) @ b.conj()),
+        first_rod=complex(m @ a),
+        first_crank=complex(m @ b),
+    )
+    # At the rod angle where both are coupled most, what is left of the rod's inertia once the slider gives way.
+    if system.m_xx * system.m_rod <= (1.0 + 1e-9) * abs(system.m_x_rod) ** 2:
+        raise InputError(
+            f"rod and slider need masses that determine how they move when the {clearance.joint} is loose; "
+            f"got a rod of {d.rod_mass:g} kg and a slider of {d.slider_mass:g} kg; give both a mass"
+        )
+    return system, block, loads
