@@ -9,18 +9,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..model.errors import InputError
+from .interruption import Interruption
+from .options import length_option, speed_option, value_option
 from .result import Row, json_text, rows_of
 from .run_folder import disk
-from .screen import console, give, say
+from .screen import console, give, say, waiting
 from .tables import show_design
+from .topics import ALL, TOPICS, Topic, chosen_topics
 
 if TYPE_CHECKING:
+    from ..model.linkage import Linkage
     from ..model.mechanism import Mechanism
     from ..optimise.problem import Problem
 
+INTERRUPTED = 130
 _NEEDS_MASSES = ("torque", "_force_N")
 _NEEDS_TOLERANCES = ("position_error",)
 _NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
+_TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
 
 def analyse(
@@ -37,7 +43,20 @@ def analyse(
         str | None,
         typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
     ] = None,
-    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there.")] = None,
+    show: Annotated[list[str] | None, typer.Option(metavar="TOPIC", help=_TOPIC_HELP)] = None,
+    at: Annotated[
+        str | None, typer.Option(metavar="ANGLE", help='Crank angle of the polygons.  [default: "30 deg"]')
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Position error that a machine may have: gives the yield.")
+    ] = None,
+    fluctuation: Annotated[
+        float | None,
+        typer.Option(metavar="SHARE", help="Speed fluctuation that the flywheel is for.  [default: 0.02]"),
+    ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there, and each topic.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
     """Analyse one design.
@@ -52,26 +71,89 @@ def analyse(
     from ..model.mechanism import Mechanism
     from ..objectives.analysis import analyse as all_numbers
 
+    topics = chosen_topics(show or (), job=job is not None)
+    options = _topic_options(at, limit, fluctuation, topics)
     problem = _load(job)
     mechanism = Mechanism() if problem is None else problem.mechanism
     if speed is not None:
-        mechanism = replace(mechanism, speed=_speed(speed))
-    lengths = [_length(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))]
+        mechanism = replace(mechanism, speed=speed_option(speed))
+    lengths = [
+        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
+    ]
     row = rows_of(all_numbers(mechanism, np.array([lengths])).to_dict("list"))[0]
     notes = _leave_out(row, mechanism, alone=problem is None)
+    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
+    design = [Topic(name, mechanism, linkage, options.get(name, {})) for name in topics]
+    with Interruption() as interruption:
+        found = _numbers(design, notes, interruption, lenient=ALL in (show or ()))
     if json:
-        give(json_text(row))
+        give(json_text(row | found))
     else:
-        show_design(console(), row)
+        screen = console()
+        show_design(screen, row)
+        for topic in design:
+            if topic.name in found:
+                screen.print()
+                topic.show(screen, found[topic.name])
     for note in notes:
         say(note)
-    if figures is not None:
-        from .figures import draw_design
+    if figures is not None and not interruption.asked():
+        _draw(problem, mechanism, linkage, row, [topic for topic in design if topic.name in found], figures)
+    if interruption.asked():
+        raise typer.Exit(INTERRUPTED)
 
-        title = "Design" if problem is None else problem.name
-        with disk(figures):
-            linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
-            file = draw_design(mechanism, linkage, row, figures, title=title, torque=problem is not None)
+
+def _topic_options(
+    at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
+    from ..optimise.units import ANGLE, LENGTH
+
+    options: dict[str, dict[str, Any]] = {}
+    for option, topic, given in (
+        ("--at", "polygons", at),
+        ("--limit", "tolerances", limit),
+        ("--fluctuation", "flywheel", fluctuation),
+    ):
+        if given is not None and topic not in topics:
+            raise InputError(f"{option} is for --show {topic}, which is not asked for; add it or leave {option} out")
+    if at is not None:
+        options["polygons"] = {"crank_angle": value_option("--at", at, ANGLE)}
+    if limit is not None:
+        options["tolerances"] = {"limit": value_option("--limit", limit, LENGTH, sign="positive")}
+    if fluctuation is not None:
+        options["flywheel"] = {"fluctuation": fluctuation}
+    return options
+
+
+def _numbers(
+    topics: list[Topic], notes: list[str], interruption: Interruption, *, lenient: bool
+) -> dict[str, dict[str, Any]]:
+    """Return the numbers of each topic; lenient: a topic that this design has not is said in a note."""
+    found: dict[str, dict[str, Any]] = {}
+    for topic in topics:
+        if interruption.asked():
+            notes.append(f"interrupted; left out: {', '.join(t.name for t in topics if t.name not in found)}")
+            break
+        try:
+            found[topic.name] = topic.numbers(interruption.asked)
+        except InputError as error:
+            if not lenient:
+                raise
+            notes.append(f"{topic.name}: {error}")
+    return found
+
+
+def _draw(
+    problem: Problem | None, mechanism: Mechanism, linkage: Linkage, row: Row, topics: list[Topic], folder: Path
+) -> None:
+    from .figures import draw_design
+
+    title = "Design" if problem is None else problem.name
+    with disk(folder), waiting("drawing the figures"):
+        files = [draw_design(mechanism, linkage, row, folder, title=title, torque=problem is not None)]
+        files += [topic.draw(folder) for topic in topics]
+    for file in files:
         say(f"figure: {file}")
 
 
@@ -99,40 +181,3 @@ def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
             drop(_NEEDS_SPEED)
             notes.append("slider speed and acceleration need a crank speed: give --speed")
     return notes
-
-
-def _length(name: str, text: str | None, problem: Problem | None) -> float:
-    from ..optimise.units import LENGTH
-
-    if text is not None:
-        return _value(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
-    bounds = getattr(problem, name, None)
-    if bounds is not None and bounds.fixed:
-        return float(bounds.lower)
-    if name == "offset" and problem is None:
-        return 0.0
-    raise InputError(f'--{name} is needed; write it like --{name} "40 mm"')
-
-
-def _speed(text: str) -> float:
-    from ..optimise.units import ANGULAR_SPEED
-
-    return _value("--speed", text, ANGULAR_SPEED)
-
-
-def _value(option: str, text: str, kind: Any, *, sign: Any = "any") -> float:
-    """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
-    from ..optimise.units import shown, to_si
-
-    try:
-        float(text)
-    except ValueError:
-        pass
-    else:
-        raise InputError(
-            f'{option} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"'
-        )
-    try:
-        return to_si(text, kind, sign=sign)
-    except InputError as error:
-        raise InputError(f"{option} {error}") from None

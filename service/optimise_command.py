@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from types import FrameType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from .interruption import Interruption
 from .result import Result, json_text, result_of
 from .run_folder import RunFolder, disk, runs_place
 from .screen import console, give, progress_bar, say, waiting
@@ -135,30 +132,3 @@ def _versions(front: ParetoFront) -> dict[str, str]:
     from importlib.metadata import version
 
     return {**front.versions, "matplotlib": version("matplotlib")}
-
-
-class Interruption:
-    """While entered, a first Ctrl-C asks to stop after the round or figure under way; a second one stops at once."""
-
-    def __init__(self) -> None:
-        self._asked = False
-        self._before: Callable[[int, FrameType | None], Any] | int | None = None
-
-    def asked(self) -> bool:
-        """Whether the search is to stop."""
-        return self._asked
-
-    def __enter__(self) -> Interruption:
-        if threading.current_thread() is threading.main_thread():
-            self._before = signal.signal(signal.SIGINT, self._heard)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _heard(self, _signal: int, _frame: FrameType | None) -> None:
-        if self._asked:
-            raise KeyboardInterrupt
-        self._asked = True
-        say("stopping after this step; Ctrl-C again stops at once")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..model.errors import InputError
-from .analyse_command import _length, _value
+from .options import length_option, value_option
 from .result import json_text, rows_of
 from .run_folder import disk
 from .screen import console, give, say
@@ -59,7 +59,7 @@ def sweep(
     for name, text in given.items():
         if name in swept and text is not None:
             raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
-    lengths = [1.0 if name in swept else _length(name, text, problem) for name, text in given.items()]
+    lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in given.items()]
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
     table = all_rows(problem.mechanism, np.array(lengths), axes, names)
     if json:
@@ -92,9 +92,9 @@ def parse_axis(text: str) -> Axis:
     option = f"--over {name}"
     if match is None:
         assert several is not None
-        values = [_value(option, part, kind, sign=sign) for part in several[2].split(",")]
+        values = [value_option(option, part, kind, sign=sign) for part in several[2].split(",")]
         return Axis(name, tuple(values))  # type: ignore[arg-type]
-    first, last = (_value(option, part, kind, sign=sign) for part in match.group(2, 3))
+    first, last = (value_option(option, part, kind, sign=sign) for part in match.group(2, 3))
     count = int(match[4])
     if not 2 <= count <= MOST_VALUES or first == last:
         raise InputError(

@@ -17,7 +17,7 @@ from slidercrank.model.loads import Spring, StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.model.peaks import find_peaks
 from slidercrank.model.signals import Signal
-from tests.model.cases import Array, random_designs, random_machine
+from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
 from tests.model.virtual_work import body, drive_torque, path, slider_load
 
@@ -34,7 +34,7 @@ def machines(*, loads: bool = True) -> list[Mechanism]:
 
 
 def curves(machine: Mechanism, design: Array, theta: Any = THETA) -> Cycle:
-    return cycle(machine, Linkage(*design, machine.branch), theta)
+    return cycle(machine, linkage_of(design, machine.branch), theta)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -68,7 +68,7 @@ def test_peak_is_that_of_the_curve_over_the_cycle(name: str, signal: Signal) -> 
     designs = DESIGNS[:60]
 
     def curve(design: Array, theta: Array) -> Array:
-        of_cycle = cycle(machine, Linkage(*design.reshape(3), machine.branch), theta.ravel())
+        of_cycle = cycle(machine, linkage_of(design.reshape(3), machine.branch), theta.ravel())
         parts = [getattr(of_cycle, field) for field in FIELDS[signal]]
         size: Array = np.sqrt(sum(part**2 for part in parts)).reshape(theta.shape)
         return size
