@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import kernel
-from .dynamics import forces
+from .contact import rubs, sides_of
 from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .position_error import influences, root_sum_square, worst_case
+from .rubbing import joint_forces
 from .segments import Watch, enter, load_on_slider
 from .signals import design_motion
 
@@ -51,7 +52,7 @@ class Cycle:
 
 
 @kernel
-def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
+def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any, rubbing: Any) -> Any:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
@@ -62,7 +63,8 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
         _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
         m = design_motion(sine, cosine, d)
         load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-        f = forces(sine, cosine, m, d, load)
+        sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+        f = joint_forces(sine, cosine, m, d, load, sides)
         j = influences(sine, cosine, m, d.l)
         out[0, i] = m.x
         out[1, i] = m.x_1 * d.speed
@@ -84,12 +86,14 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, out: Any) -> Any:
 def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    The branch is the mechanism's. Where a load jumps (exactly on a dead centre) the inward stroke's value is given.
+    The branch is the mechanism's. Where a load or friction jumps (exactly on a dead centre, or where the rod turns
+    back) the value on one side is given: at a dead centre that of the inward stroke. Torque and forces are NaN where
+    friction locks the linkage (`rubbing`: where they are not determined).
     """
     linkage.require_full_rotation()
     angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
     raw = raw_vector(mechanism)
     raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     out = np.empty((_COLUMNS, len(angles)))
-    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out)
+    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out, rubs(mechanism))
     return Cycle(angles, *out)

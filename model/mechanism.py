@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from .errors import InputError
+from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads import During, Load, require_word
 
@@ -79,6 +80,7 @@ class Mechanism:
     gravity: tuple[float, float] = (0.0, 0.0)
     loads: tuple[Load, ...] = ()
     tolerances: Tolerances = field(default_factory=Tolerances)
+    friction: Friction = Friction()
     branch: Branch = "open"
 
     def __post_init__(self) -> None:

@@ -30,7 +30,9 @@ Raw = IntEnum(
     "ROD_CENTRE_ACROSS ROD_INERTIA ROD_INERTIA_SHARE "
     "COUNTERWEIGHT_MASS COUNTERWEIGHT_ALONG COUNTERWEIGHT_ACROSS COUNTERWEIGHT_INERTIA "
     "CRANK_TOLERANCE CRANK_TOLERANCE_SHARE ROD_TOLERANCE ROD_TOLERANCE_SHARE "
-    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE END",
+    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
+    "GUIDE_FRICTION CRANK_PIVOT_RADIUS CRANK_PIVOT_FRICTION CRANK_PIN_RADIUS CRANK_PIN_FRICTION "
+    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
     start=0,
 )
 LOAD_SLOTS = 4
@@ -77,6 +79,7 @@ class Design(NamedTuple):
     rod_across are per rod length, kg.
     outward_force, inward_force: sums of the stroke forces. stiffness, spring_force: sums of k and of k x_rest.
     viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle.
+    guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
     """
 
     r: Any
@@ -107,6 +110,10 @@ class Design(NamedTuple):
     stiffness: Any
     spring_force: Any
     viscous: Any
+    guide_friction: Any
+    crank_pivot_circle: Any
+    crank_pin_circle: Any
+    slider_pin_circle: Any
 
 
 DESIGN = len(Design._fields)
@@ -137,6 +144,10 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     ):
         raw[slot : slot + 2] = tolerance.absolute, tolerance.fraction
     raw[Raw.ANGLE_TOLERANCE] = tolerances.crank_angle.absolute
+    friction = mechanism.friction
+    raw[Raw.GUIDE_FRICTION] = friction.guide
+    for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
+        raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
     for index, load in enumerate(mechanism.loads):
         raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = _load_numbers(load)
     return raw
@@ -226,6 +237,10 @@ def design_at(block: Any, j: Any) -> Design:
         block[25, j],
         block[26, j],
         block[27, j],
+        block[28, j],
+        block[29, j],
+        block[30, j],
+        block[31, j],
     )
 
 
@@ -314,6 +329,10 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
         out[20, j] = raw[t + 6, j]
         out[21, j] = inner_dead_centre(r, l, e)
         out[22, j] = outer_dead_centre(r, l, e)
+        t = t + 7
+        out[28, j] = raw[t, j]
+        for i in range(3):
+            out[29 + i, j] = raw[t + 1 + 2 * i, j] * raw[t + 2 + 2 * i, j]
     for i in range(_OUTWARD, _OUTWARD + 5):
         for j in range(raw.shape[1]):
             out[i, j] = 0.0

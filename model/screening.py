@@ -55,7 +55,11 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     watch = watch_of(mechanism, kind, during=during)
     whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.TORQUE:
-        return whole and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
+        return (
+            whole
+            and not mechanism.friction.acts
+            and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
+        )
     return whole
 
 
