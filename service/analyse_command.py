@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
     from ..optimise.problem import Problem
 
-_NEEDS_MASSES = ("torque", "_force_N")
+_NEEDS_MASSES = ("torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
 _NEEDS_TOLERANCES = ("position_error",)
 _NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
 

@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.links import Bar, Counterweight, Link, RigidLink
 from ...model.mechanism import Branch, Mechanism, Tolerances, Window
 from ..units import shown
+from .friction import FrictionPart
 from .loads import Load
 from .values import (
     Angle,
@@ -196,7 +197,7 @@ class MechanismPart(Part):
             )
         return self
 
-    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart) -> Mechanism:
+    def build(self, loads: tuple[Load, ...], tolerances: TolerancesPart, friction: FrictionPart) -> Mechanism:
         """Return the machine as the model has it."""
         parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
         parts["counterweight"] = self.counterweight
@@ -207,6 +208,7 @@ class MechanismPart(Part):
             gravity=self._gravity(),
             loads=tuple(load.build() for load in loads),
             tolerances=tolerances.build(),
+            friction=friction.build(),
             branch=self.branch,
             **{name: part.build() for name, part in parts.items() if part is not None},
         )

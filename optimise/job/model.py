@@ -10,6 +10,7 @@ from ...model.errors import InputError
 from ..problem import Problem, Range, Settings
 from ..units import shown
 from .contradictions import require_consistent
+from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of
@@ -85,6 +86,11 @@ class Job(Part):
         description="loads on the slider along its line; several add up",
         examples=[[{"force": "200 N", "opposes": "outward stroke"}]],
     )
+    friction: FrictionPart = Field(
+        FrictionPart(),
+        description="Coulomb friction in the guide and in the three pins; none where left out",
+        examples=[{"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}],
+    )
     tolerances: TolerancesPart = Field(
         TolerancesPart(),
         description="how far dimensions and crank angle may be off",
@@ -112,7 +118,7 @@ class Job(Part):
         variables = self.variables
         problem = Problem(
             name=self.name,
-            mechanism=self.mechanism.build(self.load, self.tolerances),
+            mechanism=self.mechanism.build(self.load, self.tolerances, self.friction),
             crank=Range(lower=variables.crank[0], upper=variables.crank[1]),
             rod=Range(lower=variables.rod[0], upper=variables.rod[1]),
             offset=Range(lower=variables.offset[0], upper=variables.offset[1]),
