@@ -10,14 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import kernel
-from .contact import rubs, sides_of
+from .contact import cut_contacts, rubs, sides_of
+from .errors import InputError
 from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .peaks import watch_of
 from .position_error import influences, root_sum_square, worst_case
 from .rubbing import joint_forces
-from .segments import Watch, enter, load_on_slider
-from .signals import design_motion
+from .segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
+from .self_locking import locking_margin
+from .signals import Signal, design_motion
 
 Array = NDArray[np.float64]
 
@@ -97,3 +100,36 @@ def cycle(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Cyc
     out = np.empty((_COLUMNS, len(angles)))
     _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, out, rubs(mechanism))
     return Cycle(angles, *out)
+
+
+@kernel
+def _breakpoints(raw: Any, loads: Any, watch: Any, out: Any, rubbing: Any) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    d = design_at(block, 0)
+    cuts = work_space(loads.at.shape[0])
+    count = cut_cycle(d, block, 0, loads, watch, cuts)
+    if rubbing is not None:
+        count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
+    out[:count] = cuts.angle[:count]
+    return count
+
+
+def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the crank angles (k,) in [0, 2 pi), rad, at which torque and forces of one linkage may jump or kink.
+
+    At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
+    """
+    linkage.require_full_rotation()
+    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])
+    if not margin > 0.0:
+        raise InputError(
+            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
+            "lengthen the rod, or reduce the offset or the friction"
+        )
+    out = np.empty(ROOM + 2 * len(loads.at))
+    count = _breakpoints(raw, loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
+    return out[:count]
