@@ -1,14 +1,19 @@
-"""Mean and root-mean-square torque over the cycle, with exact gradients.
+"""Means and root mean squares over the cycle, above all of the torque, with exact gradients.
 
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
-analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The torque is continuous (loads that
-jump at a dead centre do so where the slider stands still), so moving breakpoints add nothing to the derivatives.
+analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. Without friction the torque is
+continuous (loads that jump at a dead centre do so where the slider stands still), so moving breakpoints add nothing to
+the derivatives.
+
+With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
+to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,12 +21,13 @@ from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
 from .batches import in_chunks, turning
-from .dynamics import forces
+from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
-from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
-from .peaks import watch_of
-from .segments import Cuts, crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within
-from .signals import Signal, design_motion
+from .parameters import DESIGN, derive, design_at
+from .peaks import inputs_of, watch_of
+from .rubbing import always_drives, joint_forces
+from .segments import crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
+from .signals import Signal, design_motion, signal
 
 Array = NDArray[np.float64]
 
@@ -29,12 +35,19 @@ Array = NDArray[np.float64]
 # RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11.
 _NODES = 192
 _PANELS = 24
+_DEEPEST = 24  # halvings of a panel
+_TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
+_RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
+_TORQUE = int(Signal.TORQUE)
 _TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
 class Averages:
-    """Mean and RMS drive torque of n designs over crank angle, N m: (n,), with gradients (n, 3) or None."""
+    """Mean and RMS value of a curve over crank angle, of n designs: (n,), with gradients (n, 3) or None.
+
+    Where friction locks a design the mean is NaN and the RMS value infinite.
+    """
 
     mean: Array
     rms: Array
@@ -43,35 +56,56 @@ class Averages:
 
 
 @inlined
-def _torque(theta: Any, d: Any, block: Any, outward: Any, loads: Any, piece: Any, shift: Any) -> Any:
+def _curve(
+    kind: Any, theta: Any, d: Any, block: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
+) -> Any:
+    """Return the drive torque with its sign, or the size of another signal."""
     sine, cosine = math.sin(theta), math.cos(theta)
     m = design_motion(sine, cosine, d)
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-    return forces(sine, cosine, m, d, load).torque
+    if kind == _TORQUE:
+        return joint_forces(sine, cosine, m, d, load, sides).torque
+    return signal(kind, sine, cosine, m, d, load, sides)
+
+
+@inlined
+def _rough(values: Any, tail: Any, allowed: Any) -> bool:
+    """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
+    for k in range(tail.shape[0]):
+        found = 0.0
+        for i in range(tail.shape[1]):
+            found += tail[k, i] * values[i]
+        if abs(found) > allowed:
+            return True
+    return False
 
 
 @kernel
 def _average(
+    kind: Any,
     raw: Any,
     designs: Any,
     loads: Any,
     watch: Any,
-    nodes: Any,
-    weights: Any,
+    rule: Any,
     wanted: Any,
     mean: Any,
     rms: Any,
     mean_slope: Any,
     rms_slope: Any,
+    rubbing: Any,
 ) -> Any:
+    nodes, weights, tail = rule
     rows = DESIGN + 2 * loads.kind.shape[0]
-    room = 8 + 2 * loads.at.shape[0]
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+    cuts = work_space(loads.at.shape[0])
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     real, block = np.empty((raw.shape[0], 1)), np.empty((rows, 1))
     nv = 3 if wanted else 0
     imaginary = np.empty((raw.shape[0], 1), np.complex128)
     stepped = np.empty((nv, rows, 1), np.complex128)
+    value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
+    greatest = np.zeros(nv + 1)
+    stack = np.empty((_DEEPEST + 2, 3))
     for n in range(designs.shape[0]):
         real[:, 0] = raw
         for v in range(3):
@@ -82,67 +116,124 @@ def _average(
                 imaginary[i, 0] = real[i, 0]
             imaginary[v, 0] += complex(0.0, STEP)
             derive(imaginary, loads.kind, loads.datum, stepped[v])
+            mean_slope[n, v] = rms_slope[n, v] = 0.0
         d = design_at(block, 0)
+        if rubbing is not None and not always_drives(d) > 0.0:
+            mean[n], rms[n] = np.nan, np.inf
+            continue
         kappa = crowding(d.r, d.l, d.e)
         count = cut_cycle(d, block, 0, loads, watch, cuts)
+        if rubbing is not None:
+            count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         first = second = 0.0
-        for v in range(nv):
-            mean_slope[n, v] = rms_slope[n, v] = 0.0
+        greatest[:] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            _, outward = enter(d, block, 0, within(a, b), loads, watch, piece, shift)
+            inside = within(a, b)
+            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
+            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
-            smooth = count == 1
+            smooth = count == 1 and rubbing is None
             panels = 1 if smooth else int(_PANELS * (high - low) / _TURN) + 1
             points = _NODES if smooth else nodes.shape[0]
-            width = (high - low) / panels
             for p in range(panels):
-                for i in range(points):
-                    share = i / points if smooth else nodes[i]
-                    tau = low + width * (p + share)
-                    theta = uncrowded(tau, kappa)
-                    c, y = math.cos(tau), math.sin(tau)
-                    weight = 1.0 / points if smooth else weights[i]
-                    weight *= width / _TURN * kappa / (c * c + kappa * kappa * y * y)
-                    t = _torque(theta, d, block, outward, loads, piece, shift)
-                    first += weight * t
-                    second += weight * t * t
+                width = (high - low) / panels
+                stack[0, 0], stack[0, 1], stack[0, 2] = low + width * p, width, 0.0
+                top = 1
+                while top > 0:
+                    top -= 1
+                    begin, width, depth = stack[top, 0], stack[top, 1], stack[top, 2]
+                    for i in range(points):
+                        tau = begin + width * (i / points if smooth else nodes[i])
+                        theta = uncrowded(tau, kappa)
+                        c, y = math.cos(tau), math.sin(tau)
+                        share = 1.0 / points if smooth else weights[i]
+                        weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
+                        value[i] = _curve(kind, theta, d, block, outward, loads, piece, shift, sides)
+                        for v in range(nv):
+                            z = design_at(stepped[v], 0)
+                            z = _curve(kind, theta, z, stepped[v], outward, loads, piece, shift, sides)
+                            slope[v, i] = z.imag / STEP
+                    if rubbing is not None:
+                        greatest[nv] = max(greatest[nv], np.abs(value[:points]).max())
+                        halve = _rough(value, tail, _RESOLVED[0] * greatest[nv])
+                        for v in range(nv):
+                            greatest[v] = max(greatest[v], np.abs(slope[v, :points]).max())
+                            halve = halve or _rough(slope[v], tail, _RESOLVED[1] * greatest[v])
+                        if halve and depth < _DEEPEST:
+                            for half in range(2):  # the left one on top: panels are added up in order
+                                stack[top, 0] = begin + 0.5 * width * (1 - half)
+                                stack[top, 1], stack[top, 2] = 0.5 * width, depth + 1.0
+                                top += 1
+                            continue
+                    for i in range(points):
+                        first += weight[i] * value[i]
+                        second += weight[i] * value[i] * value[i]
+                        for v in range(nv):
+                            mean_slope[n, v] += weight[i] * slope[v, i]
+                            rms_slope[n, v] += weight[i] * value[i] * slope[v, i]
+            if rubbing is not None:
+                # With friction the torque may jump at a cut, which then adds the jump times the cut's own motion.
+                for end in range(2):
+                    i, theta = (s + 1) % count if end else s, b if end else a
+                    t = _curve(kind, theta, d, block, outward, loads, piece, shift, sides)
+                    sign = (1.0 if end else -1.0) / (STEP * _TURN)
                     for v in range(nv):
-                        z = _torque(theta, design_at(stepped[v], 0), stepped[v], outward, loads, piece, shift)
-                        mean_slope[n, v] += weight * z.imag / STEP
-                        rms_slope[n, v] += weight * t * z.imag / STEP
+                        z = design_at(stepped[v], 0)
+                        slip = shift_of(z, stepped[v], d, block, theta, cuts, i, outward, loads, piece, shift, sides)
+                        mean_slope[n, v] += sign * t * slip
+                        rms_slope[n, v] += 0.5 * sign * t * t * slip
         mean[n] = first
         rms[n] = math.sqrt(second)
         for v in range(nv):
             rms_slope[n, v] = rms_slope[n, v] / rms[n] if rms[n] > 0.0 else 0.0
 
 
+@lru_cache(maxsize=1)
+def _rule() -> tuple[Array, Array, Array]:
+    """Return nodes and weights on [0, 1] of a panel, and what gives the last Legendre coefficients from its values."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    orders = np.arange(16 - _TAIL, 16)
+    basis = np.polynomial.legendre.legvander(nodes, 15)[:, orders]
+    tail = (orders + 0.5)[:, None] * (weights[:, None] * basis).T
+    return 0.5 * (nodes + 1.0), 0.5 * weights, np.ascontiguousarray(tail)
+
+
 def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS drive torque for designs (n, 3): crank, rod, offset, m, each turning fully."""
+    """Return mean and RMS drive torque, N m, for designs (n, 3): crank, rod, offset, m, each turning fully."""
+    return average(mechanism, Signal.TORQUE, designs, gradients=gradients)
+
+
+def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
+    """Return mean and RMS value of a signal for designs (n, 3): crank, rod, offset, m, each turning fully.
+
+    The torque counts with its sign, any other signal by its size.
+    """
     designs = turning(designs)
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
     slopes = np.empty((2, n if gradients else 0, 3))
-    raw, loads = raw_vector(mechanism), load_structure(mechanism)
-    watch = watch_of(mechanism, Signal.TORQUE)
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    raw, loads = inputs_of(mechanism, kind)
+    watch = watch_of(mechanism, kind)
+    rubbing = rubs(mechanism) if kind.needs_forces else None
+    rule = _rule()
 
     def work(begin: int, end: int) -> None:
         part = slice(begin, end) if gradients else slice(0, 0)
         _average(
+            int(kind),
             raw,
             designs[begin:end],
             loads,
             watch,
-            nodes,
-            weights,
+            rule,
             gradients,
             mean[begin:end],
             rms[begin:end],
             slopes[0, part],
             slopes[1, part],
+            rubbing,
         )
 
     in_chunks(n, work)

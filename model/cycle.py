@@ -10,14 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import kernel
-from .dynamics import forces
+from .contact import cut_contacts, rubs, sides_of
 from .errors import InputError
 from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
+from .peaks import watch_of
 from .position_error import influences, root_sum_square, worst_case
-from .segments import Watch, enter, load_on_slider
-from .signals import design_motion
+from .rubbing import joint_forces
+from .segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
+from .self_locking import locking_margin
+from .signals import Signal, design_motion
 
 Array = NDArray[np.float64]
 
@@ -53,7 +56,9 @@ class Cycle:
 
 
 @kernel
-def _curves(raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any) -> Any:
+def _curves(
+    raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any, rubbing: Any
+) -> Any:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
@@ -65,7 +70,8 @@ def _curves(raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelera
         _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
         m = design_motion(sine, cosine, d)
         load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-        f = forces(sine, cosine, m, d, load)
+        sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+        f = joint_forces(sine, cosine, m, d, load, sides)
         j = influences(sine, cosine, m, d.l)
         out[0, i] = m.x
         out[1, i] = m.x_1 * d.speed
@@ -95,9 +101,10 @@ def cycle(
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
     speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; the mechanism's if None.
-    Where a load jumps (exactly on a dead centre) the inward stroke's value is given; where the speed is zero, that of
-    counter-clockwise motion. Raises `InputError` for arrays of linkages and for a linkage on another branch than the
-    mechanism's.
+    Where a load or friction jumps (exactly on a dead centre, or where the rod turns back) the value on one side is
+    given: at a dead centre that of the inward stroke; where the speed is zero, that of counter-clockwise motion. Torque
+    and forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
+    for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage.require_full_rotation()
     if np.shape(linkage.rotates_fully):
@@ -119,5 +126,39 @@ def cycle(
     raw = raw_vector(mechanism)
     raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     out = np.empty((_COLUMNS, len(angles)))
-    _curves(raw, load_structure(mechanism), Watch(0, 0.0, 1.0, False), angles, speeds, accelerations, out)
+    watch = Watch(0, 0.0, 1.0, False)
+    _curves(raw, load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
     return Cycle(angles, *out)
+
+
+@kernel
+def _breakpoints(raw: Any, loads: Any, watch: Any, out: Any, rubbing: Any) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    d = design_at(block, 0)
+    cuts = work_space(loads.at.shape[0])
+    count = cut_cycle(d, block, 0, loads, watch, cuts)
+    if rubbing is not None:
+        count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
+    out[:count] = cuts.angle[:count]
+    return count
+
+
+def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the crank angles (k,) in [0, 2 pi), rad, at which torque and forces of one linkage may jump or kink.
+
+    At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
+    """
+    linkage.require_full_rotation()
+    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])
+    if not margin > 0.0:
+        raise InputError(
+            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
+            "lengthen the rod, or reduce the offset or the friction"
+        )
+    out = np.empty(ROOM + 2 * len(loads.at))
+    count = _breakpoints(raw, loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
+    return out[:count]

@@ -1,4 +1,4 @@
-"""Inverse dynamics: drive torque and joint reactions of the rigid, frictionless linkage at prescribed crank motion.
+"""Inverse dynamics: drive torque and joint reactions of the rigid linkage at prescribed crank motion.
 
 Newton-Euler, body by body, slider to crank. With G gravity, S and C the first moments of rod and crank (mass times
 vector from the link's origin to its mass centre), A the crank pin, B the slider pin:
@@ -7,6 +7,8 @@ vector from the link's origin to its mass centre), A the crank pin, B the slider
 - rod, moments about the crank pin: along B_y - across B_x = -(I_A phi_tt + S x (a_A - G));
 - rod, forces: A = B + m_rod (a_A - G) + S_tt;
 - crank, moments about the pivot: T = I_O alpha - C x G + r_OA x A; forces: P = A + C_tt - m_crank G.
+
+Friction adds to these equations: `rubbing`.
 """
 
 from __future__ import annotations
@@ -41,9 +43,25 @@ def smooth_load(m: Motion, d: Design, stroke_force: Any) -> Any:
     return stroke_force + d.spring_force - d.stiffness * d.branch * m.x - d.viscous * d.branch * m.x_1 * d.speed
 
 
+class Balance(NamedTuple):
+    """What the equations of motion leave before the slider pin's force is known, N and N m.
+
+    pull: B_x without friction in the guide. moment: I_A phi_tt + S x (a_A - G) of the rod. rod_x, rod_y: A - B.
+    crank_x, crank_y: P - A. couple: the torque without the crank pin's share.
+    """
+
+    pull: Any
+    moment: Any
+    rod_x: Any
+    rod_y: Any
+    crank_x: Any
+    crank_y: Any
+    couple: Any
+
+
 @analytic
-def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
-    """Return drive torque and reactions for a load on the slider (N, outward)."""
+def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
+    """Return the `Balance` for a load on the slider (N, outward)."""
     w2 = d.speed * d.speed
     gx, gy = d.gravity_x, d.gravity_y
     rod_w2 = m.rod_1 * m.rod_1 * w2
@@ -54,12 +72,29 @@ def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
     sy = d.rod_along * m.across + d.rod_across * m.along
     cx = d.crank_along * cosine - d.crank_across * sine
     cy = d.crank_along * sine + d.crank_across * cosine
-    bx = d.slider_mass * (m.x_2 * w2 + m.x_1 * d.acceleration - gx) - d.branch * load
-    moment = d.rod_inertia * rod_a + sx * pin_y - sy * pin_x
-    by = m.tangent * bx - moment * m.per_along
-    ax = bx + d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a
-    ay = by + d.rod_mass * pin_y - sy * rod_w2 + sx * rod_a
-    torque = d.crank_inertia * d.acceleration - (cx * gy - cy * gx) + d.r * (cosine * ay - sine * ax)
-    px = ax - cx * w2 - cy * d.acceleration - d.crank_mass * gx
-    py = ay - cy * w2 + cx * d.acceleration - d.crank_mass * gy
-    return Forces(torque, px, py, ax, ay, bx, by, -by - d.slider_mass * gy)
+    return Balance(
+        d.slider_mass * (m.x_2 * w2 + m.x_1 * d.acceleration - gx) - d.branch * load,
+        d.rod_inertia * rod_a + sx * pin_y - sy * pin_x,
+        d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a,
+        d.rod_mass * pin_y - sy * rod_w2 + sx * rod_a,
+        -cx * w2 - cy * d.acceleration - d.crank_mass * gx,
+        -cy * w2 + cx * d.acceleration - d.crank_mass * gy,
+        d.crank_inertia * d.acceleration - (cx * gy - cy * gx),
+    )
+
+
+@analytic
+def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
+    """Return drive torque and reactions for the slider pin's force; the torque without friction in the pins."""
+    ax = bx + b.rod_x
+    ay = by + b.rod_y
+    torque = b.couple + d.r * (cosine * ay - sine * ax)
+    return Forces(torque, ax + b.crank_x, ay + b.crank_y, ax, ay, bx, by, -by - d.slider_mass * d.gravity_y)
+
+
+@analytic
+def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
+    """Return drive torque and reactions without friction for a load on the slider (N, outward)."""
+    b = balance(sine, cosine, m, d, load)
+    by = m.tangent * b.pull - b.moment * m.per_along
+    return joined(sine, cosine, d, b, b.pull, by)

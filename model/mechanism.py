@@ -8,6 +8,7 @@ from typing import Literal
 
 from .clearance.joint import Clearance
 from .errors import InputError
+from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads import During, Load, require_word
 from .transient.drive import Drive
@@ -104,6 +105,7 @@ class Mechanism:
     gravity: tuple[float, float] = (0.0, 0.0)
     loads: tuple[Load, ...] = ()
     tolerances: Tolerances = field(default_factory=Tolerances)
+    friction: Friction = Friction()
     branch: Branch = "open"
     drive: Drive | None = None
     clearance: Clearance | None = None

@@ -31,7 +31,9 @@ Raw = IntEnum(
     "COUNTERWEIGHT_MASS COUNTERWEIGHT_ALONG COUNTERWEIGHT_ACROSS COUNTERWEIGHT_INERTIA "
     "CRANK_TOLERANCE CRANK_TOLERANCE_SHARE ROD_TOLERANCE ROD_TOLERANCE_SHARE "
     "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
-    "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE END",
+    "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE "
+    "GUIDE_FRICTION CRANK_PIVOT_RADIUS CRANK_PIVOT_FRICTION CRANK_PIN_RADIUS CRANK_PIN_FRICTION "
+    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
     start=0,
 )
 LOAD_SLOTS = 4
@@ -80,6 +82,7 @@ class Design(NamedTuple):
     viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
     clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
     rod_error_rss, offset_error_rss: the same added up as squares.
+    guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
     """
 
     r: Any
@@ -112,11 +115,16 @@ class Design(NamedTuple):
     viscous: Any
     rod_error_rss: Any
     offset_error_rss: Any
+    guide_friction: Any
+    crank_pivot_circle: Any
+    crank_pin_circle: Any
+    slider_pin_circle: Any
 
 
 DESIGN = len(Design._fields)
 """Rows of a derived block before those of the loads (two each: sign and origin of a table's own coordinate)."""
 _OUTWARD = Design._fields.index("outward_force")
+_RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
 
@@ -145,6 +153,10 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     raw[Raw.ANGLE_TOLERANCE] = tolerances.crank_angle.absolute
     gap = tolerances.clearances
     raw[Raw.CRANK_PIVOT_CLEARANCE : Raw.GUIDE_CLEARANCE + 1] = gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide
+    friction = mechanism.friction
+    raw[Raw.GUIDE_FRICTION] = friction.guide
+    for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
+        raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
     for index, load in enumerate(mechanism.loads):
         raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = _load_numbers(load)
     return raw
@@ -236,6 +248,10 @@ def design_at(block: Any, j: Any) -> Design:
         block[27, j],
         block[28, j],
         block[29, j],
+        block[30, j],
+        block[31, j],
+        block[32, j],
+        block[33, j],
     )
 
 
@@ -328,6 +344,10 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
         out[20, j] = raw[t + 6, j]
         out[21, j] = inner_dead_centre(r, l, e)
         out[22, j] = outer_dead_centre(r, l, e)
+        f = t + 11
+        out[_RUBBING, j] = raw[f, j]
+        for i in range(3):
+            out[_RUBBING + 1 + i, j] = raw[f + 1 + 2 * i, j] * raw[f + 2 + 2 * i, j]
     for i in range(_OUTWARD, _OUTWARD + 5):
         for j in range(raw.shape[1]):
             out[i, j] = 0.0

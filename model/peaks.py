@@ -17,19 +17,20 @@ from numpy.typing import NDArray
 
 from .arithmetic import STEP, inlined, kernel
 from .batches import in_chunks, turning
+from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
-from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .parameters import DESIGN, LOAD_SLOTS, Loads, derive, design_at, load_structure, raw_vector
+from .rubbing import always_drives
 from .segments import (
-    Cuts,
     Watch,
     crowded,
     crowding,
     cut_cycle,
-    cut_shift,
     enter,
     load_on_slider,
     uncrowded,
     within,
+    work_space,
 )
 from .signals import Signal, design_motion, signal
 
@@ -53,7 +54,8 @@ _THIN = 1e-13  # rad: breakpoints closer than this are one
 class Peaks:
     """Local peaks of n designs, highest first.
 
-    values: (n, k), SI, -inf beyond the last peak. angles: (n, k), crank angles in [0, 2 pi), rad.
+    values: (n, k), SI, -inf beyond the last peak; where friction locks the design one peak of +inf, at no angle (NaN).
+    angles: (n, k), crank angles in [0, 2 pi), rad.
     gradients: (n, k, v), by the design variables; None unless asked for.
     """
 
@@ -63,31 +65,46 @@ class Peaks:
 
 
 @inlined
-def _value(kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any) -> Any:
+def _value(
+    kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
+) -> Any:
     sine, cosine = math.sin(theta), math.cos(theta)
     m = design_motion(sine, cosine, d)
     load = load_on_slider(m, d, block, j, theta, outward, loads, piece, shift)
-    return signal(kind, sine, cosine, m, d, load)
+    return signal(kind, sine, cosine, m, d, load, sides)
 
 
 @inlined
-def _slope(kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any) -> Any:
+def _slope(
+    kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
+) -> Any:
     """Value and slope over crank angle."""
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = design_motion(s, c, d)
     load = load_on_slider(m, d, block, j, complex(theta, STEP), outward, loads, piece, shift)
-    z = signal(kind, s, c, m, d, load)
+    z = signal(kind, s, c, m, d, load, sides)
     return z.real, z.imag / STEP
 
 
 @inlined
 def _refine(
-    kind: Any, a: Any, b: Any, start: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any
+    kind: Any,
+    a: Any,
+    b: Any,
+    start: Any,
+    d: Any,
+    block: Any,
+    j: Any,
+    outward: Any,
+    loads: Any,
+    piece: Any,
+    shift: Any,
+    sides: Any,
 ) -> Any:
     """Highest point found in (a, b): a root of the slope by secants, bisecting whenever a secant leaves the bracket."""
     theta = start
-    value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift)
+    value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift, sides)
     best, at = value, theta
     old_theta, old_slope = theta, slope
     for i in range(_ITERATIONS):
@@ -106,7 +123,7 @@ def _refine(
         if abs(trial - theta) < 4e-16 * _TURN or b - a < 1e-15:
             break
         theta = trial
-        value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift)
+        value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift, sides)
         # On the flat top values differ by rounding only: there the later angle is the better one.
         if value >= best - _FLAT * best:
             best, at = value, theta
@@ -115,13 +132,23 @@ def _refine(
 
 @inlined
 def _divide(
-    kind: Any, a: Any, b: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any
+    kind: Any,
+    a: Any,
+    b: Any,
+    d: Any,
+    block: Any,
+    j: Any,
+    outward: Any,
+    loads: Any,
+    piece: Any,
+    shift: Any,
+    sides: Any,
 ) -> Any:
     """Sample a finer row between a and b: value and angle of its highest sample, and the spacing."""
     step = (b - a) / _FINER
     best, at = -1.0, a
     for i in range(1, _FINER):
-        value = _value(kind, a + i * step, d, block, j, outward, loads, piece, shift)
+        value = _value(kind, a + i * step, d, block, j, outward, loads, piece, shift, sides)
         if value > best:
             best, at = value, a + i * step
     return best, at, step
@@ -162,11 +189,12 @@ def _find(
     values: Any,
     where: Any,
     gradients: Any,
+    rubbing: Any,
 ) -> Any:
     rows = DESIGN + 2 * loads.kind.shape[0]
     knots = loads.at.shape[0]
-    room = 8 + 2 * knots
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+    cuts = work_space(knots)
+    room = cuts.angle.shape[0]
     piece = np.zeros(loads.kind.shape[0], np.int64)
     shift = np.zeros(loads.kind.shape[0])
     real = np.empty((raw.shape[0], 1))
@@ -188,16 +216,25 @@ def _find(
         derive(real, loads.kind, loads.datum, block)
         d = design_at(block, 0)
         kappa = crowding(d.r, d.l, d.e)
+        if rubbing is not None and not always_drives(d) > 0.0:
+            values[n, :], values[n, 0], where[n, :] = -np.inf, np.inf, np.nan
+            if nv:
+                gradients[n] = 0.0
+            continue
         count = cut_cycle(d, block, 0, loads, watch, cuts)
+        if rubbing is not None:
+            count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         found = 0
         best, best_at, best_segment = -1.0, 0.0, -1
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             thin[s] = b - a < _THIN
-            live[s], outward = enter(d, block, 0, within(a, b), loads, watch, piece, shift)
+            inside = within(a, b)
+            live[s], outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             if thin[s] or not live[s]:
                 continue
+            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low = crowded(a, kappa)
             high = crowded(b, kappa)
             points = min(angles + 8, max(5, int(angles * (high - low) / _TURN) + 2))
@@ -205,11 +242,11 @@ def _find(
                 theta[i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
             theta[0], theta[points - 1] = a, b
             for i in range(points):
-                f[i] = _value(kind, theta[i], d, block, 0, outward, loads, piece, shift)
+                f[i] = _value(kind, theta[i], d, block, 0, outward, loads, piece, shift, sides)
                 if f[i] > best:
                     best, best_at, best_segment = f[i], theta[i], s
-            edge[s, 0], edge[s, 1] = _slope(kind, a, d, block, 0, outward, loads, piece, shift)
-            edge[s, 2], edge[s, 3] = _slope(kind, b, d, block, 0, outward, loads, piece, shift)
+            edge[s, 0], edge[s, 1] = _slope(kind, a, d, block, 0, outward, loads, piece, shift, sides)
+            edge[s, 2], edge[s, 3] = _slope(kind, b, d, block, 0, outward, loads, piece, shift, sides)
             for i in range(points):
                 if i == 0:
                     top = edge[s, 1] > 0.0 and f[0] >= f[1]
@@ -219,15 +256,19 @@ def _find(
                     top = f[i] >= f[i - 1] and f[i] > f[i + 1]
                 if top:
                     left, right = theta[max(i - 1, 0)], theta[min(i + 1, points - 1)]
-                    value, angle = _refine(kind, left, right, theta[i], d, block, 0, outward, loads, piece, shift)
+                    value, angle = _refine(
+                        kind, left, right, theta[i], d, block, 0, outward, loads, piece, shift, sides
+                    )
                     if not _known(at, found, angle):
                         found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
                     if f[i] > _NEAR * best:
                         left, right = theta[max(i - 2, 0)], theta[min(i + 2, points - 1)]
-                        high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift)
+                        high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift, sides)
                         if high > value + _FLAT * value:
                             left, right = max(left, angle - step), min(right, angle + step)
-                            high, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift)
+                            high, angle = _refine(
+                                kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides
+                            )
                             if not _known(at, found, angle):
                                 found = _keep(peak, at, segment, pin, found, high, angle, s, -1)
         for s in range(count):
@@ -263,27 +304,41 @@ def _find(
             turned = at[i] - _TURN * math.floor(at[i] / _TURN)
             where[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
             s = segment[i]
-            _, outward = enter(d, block, 0, within(cuts.angle[s], cuts.angle[s + 1]), loads, watch, piece, shift)
+            inside = within(cuts.angle[s], cuts.angle[s + 1])
+            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
+            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
             angle = at[i] if pin[i] < 0 or pin[i] == s else cuts.angle[s + 1]
             sine, cosine = math.sin(angle), math.cos(angle)
             for v in range(nv):
                 z = design_at(stepped[v], 0)
-                slip = 0.0 if pin[i] < 0 else cut_shift(z, stepped[v], 0, angle, cuts, pin[i])
+                slip = 0.0
+                if pin[i] >= 0:
+                    slip = shift_of(z, stepped[v], d, block, angle, cuts, pin[i], outward, loads, piece, shift, sides)
                 zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
                 m = design_motion(zs, zc, z)
                 load = load_on_slider(m, z, stepped[v], 0, complex(angle, slip), outward, loads, piece, shift)
-                gradients[n, i, v] = signal(kind, zs, zc, m, z, load).imag / STEP
+                gradients[n, i, v] = signal(kind, zs, zc, m, z, load, sides).imag / STEP
 
 
 def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:
     """Return which part of the cycle counts for a signal of a mechanism."""
     strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
-    split = kind <= Signal.GUIDE_FORCE and stroke_dependent(mechanism)
+    friction = mechanism.friction
+    split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
+    swing = kind.needs_forces and friction.slider_pin.circle > 0.0
     if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         window = mechanism.tolerances.window
         return Watch(strokes[window.during], float(window.start), float(window.end), False)
-    return Watch(strokes[during], 0.0, 1.0, split)
+    return Watch(strokes[during], 0.0, 1.0, split, swing)
+
+
+def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
+    """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
+    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    if kind.needs_forces:
+        return raw, loads
+    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], load_structure(Mechanism())
 
 
 def stroke_dependent(mechanism: Mechanism) -> bool:
@@ -311,11 +366,9 @@ def find_peaks(
     n = len(designs)
     values, where = np.empty((n, kept)), np.empty((n, kept))
     slopes = np.empty((n if gradients else 0, kept, 3))
-    raw, loads = raw_vector(mechanism), load_structure(mechanism)
-    if kind > Signal.GUIDE_FORCE:  # kinematic: loads, and the breakpoints they make, do not matter
-        loads = load_structure(Mechanism())
-        raw = raw[: len(raw) - 4 * len(mechanism.loads)]
+    raw, loads = inputs_of(mechanism, kind)
     watch = watch_of(mechanism, kind, during=during)
+    rubbing = rubs(mechanism) if kind.needs_forces else None
     variables = np.arange(3)
 
     def work(begin: int, end: int) -> None:
@@ -330,6 +383,7 @@ def find_peaks(
             values[begin:end],
             where[begin:end],
             slopes[begin:end] if gradients else slopes,
+            rubbing,
         )
 
     in_chunks(n, work)

@@ -57,7 +57,11 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `locate` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
-        return whole and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
+        return (
+            whole
+            and not mechanism.friction.acts
+            and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
+        )
     return whole
 
 

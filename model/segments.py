@@ -22,19 +22,23 @@ from .parameters import DESIGN, Design, LoadKind, Loads
 _POSITION_TABLE, _ANGLE_TABLE = int(LoadKind.POSITION_TABLE), int(LoadKind.ANGLE_TABLE)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
 _TURN = 2.0 * math.pi
+ROOM = 40
+"""Breakpoints there is room for, beside two for each knot: 8 at most, and those that friction makes."""
 
 
 class Watch(NamedTuple):
-    """Which part of the cycle counts, and whether the dead centres are breakpoints.
+    """Which part of the cycle counts, and what is a breakpoint.
 
     strokes: 0 the cycle, 1 the outward stroke, 2 the inward stroke. start, end: fractions of the stroke from the inner
-    dead centre. split: whether a load changes at the dead centres.
+    dead centre. split: whether a load or friction changes at the dead centres. swing: whether friction changes where
+    the rod turns back, the crank normal to the slider line.
     """
 
     strokes: int
     start: float
     end: float
     split: bool
+    swing: bool = False
 
 
 class Cuts(NamedTuple):
@@ -59,7 +63,15 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 
 
 @inlined
-def _add(cuts: Cuts, n: int, angle: float, code: int, number: float, load: int) -> int:
+def work_space(knots: int) -> Cuts:
+    """Return room for the breakpoints of a design whose tables have so many knots in all."""
+    room = ROOM + 2 * knots
+    return Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+
+
+@inlined
+def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: int) -> int:
+    """Insert a breakpoint into the first `n`, in ascending order; return how many there are then."""
     wrapped = angle - _TURN * math.floor(angle / _TURN)
     i = n
     while i > 0 and cuts.angle[i - 1] > wrapped:
@@ -79,13 +91,16 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
     if watch.split or watch.strokes != 0:
         a, b = outer_crank_angle(d.r, d.l, d.e), inner_crank_angle(d.r, d.l, d.e)
         # The crossed branch is the mirror image about the y axis: theta -> pi - theta.
-        n = _add(cuts, n, a if d.branch > 0.0 else math.pi - a, _OUTER, 0.0, -1)
-        n = _add(cuts, n, b if d.branch > 0.0 else math.pi - b, _INNER, 0.0, -1)
+        n = add_cut(cuts, n, a if d.branch > 0.0 else math.pi - a, _OUTER, 0.0, -1)
+        n = add_cut(cuts, n, b if d.branch > 0.0 else math.pi - b, _INNER, 0.0, -1)
+    if watch.swing:
+        n = add_cut(cuts, n, 0.5 * math.pi, _FIXED, 0.0, -1)
+        n = add_cut(cuts, n, 1.5 * math.pi, _FIXED, 0.0, -1)
     for fraction in (watch.start, watch.end):
         if 0.0 < fraction < 1.0:
             x = d.branch * (d.inner + fraction * (d.outer - d.inner))
             for second in (False, True):
-                n = _add(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
+                n = add_cut(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
     # A knot on a dead centre is no breakpoint. There the slider stands still, so that a force continuous over position
     # has no kink over crank angle, while the crank angle of the knot has no derivative.
     margin = 1e-12 * (d.outer - d.inner)
@@ -94,14 +109,14 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
             at = loads.at[i]
             if loads.kind[k] == _ANGLE_TABLE:
                 if i + 1 < loads.start[k + 1]:
-                    n = _add(cuts, n, at, _FIXED, at, k)
+                    n = add_cut(cuts, n, at, _FIXED, at, k)
             else:
                 x = block[DESIGN + 2 * k + 1, j] + block[DESIGN + 2 * k, j] * at
                 if d.inner + margin < x < d.outer - margin:
                     for second in (False, True):
-                        n = _add(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
+                        n = add_cut(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
     if n == 0:
-        n = _add(cuts, n, 0.0, _FIXED, 0.0, -1)
+        n = add_cut(cuts, n, 0.0, _FIXED, 0.0, -1)
     return n
 
 

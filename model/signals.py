@@ -6,14 +6,19 @@ from enum import IntEnum
 from typing import Any
 
 from .arithmetic import analytic, magnitude, root
-from .dynamics import forces
+from .inertia import reflected_inertia, shaking
 from .kinematics import motion
 from .parameters import Design
 from .position_error import influences, root_sum_square, worst_case
+from .rubbing import joint_forces
 
 
 class Signal(IntEnum):
-    """What is watched over the cycle: sizes of torque (N m), forces (N), speed, acceleration, position error (m)."""
+    """What is watched over the cycle, each by its size.
+
+    Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
+    shaking force (N) and shaking moment (N m).
+    """
 
     TORQUE = 0
     PIVOT_FORCE = 1
@@ -24,18 +29,33 @@ class Signal(IntEnum):
     SLIDER_ACCELERATION = 6
     POSITION_ERROR = 7
     POSITION_ERROR_RSS = 8
+    POWER = 9
+    REFLECTED_INERTIA = 10
+    SHAKING_FORCE = 11
+    SHAKING_MOMENT = 12
+
+    @property
+    def needs_forces(self) -> bool:
+        """Whether it follows from the joint forces, and with them from loads and friction."""
+        return self <= Signal.GUIDE_FORCE or self == Signal.POWER
 
 
-_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST = range(8)
+_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST, _RSS = range(9)
+_POWER, _INERTIA, _SHAKING_FORCE = range(9, 12)
 
 
 @analytic
-def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> Any:
-    """Return the signal at one crank angle for the load on the slider (N, outward)."""
-    if kind <= _GUIDE:
-        f = forces(sine, cosine, m, d, load)
+def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+    """Return the signal at one crank angle for the load on the slider (N, outward).
+
+    sides: signs of the sliding where there is friction (`rubbing.Sides`).
+    """
+    if kind <= _GUIDE or kind == _POWER:
+        f = joint_forces(sine, cosine, m, d, load, sides)
         if kind == _TORQUE:
             return magnitude(f.torque)
+        if kind == _POWER:
+            return magnitude(f.torque * d.speed)
         if kind == _PIVOT:
             return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
         if kind == _CRANK_PIN:
@@ -47,6 +67,11 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> A
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:
         return magnitude(m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration)
+    if kind == _INERTIA:
+        return reflected_inertia(sine, cosine, m, d)
+    if kind > _INERTIA:
+        x, y, moment = shaking(sine, cosine, m, d)
+        return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
     i = influences(sine, cosine, m, d.l)
     if kind == _WORST:
         return worst_case(i, d)

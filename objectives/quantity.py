@@ -27,6 +27,8 @@ SQUARE_METRE = Unit("m^2", 1.0)
 DEGREE = Unit("deg", 180.0 / np.pi)
 NEWTON_METRE = Unit("N m", 1.0)
 NEWTON = Unit("N", 1.0)
+WATT = Unit("W", 1.0)
+KILOGRAM_SQUARE_METRE = Unit("kg m^2", 1.0)
 METRE_PER_SECOND = Unit("m/s", 1.0)
 METRE_PER_SECOND_SQUARED = Unit("m/s^2", 1.0)
 

@@ -6,11 +6,14 @@ import difflib
 
 from ..model.errors import InputError
 from .average_torque import MEAN_TORQUE, RMS_TORQUE
+from .balance import PEAK_SHAKING_FORCE, PEAK_SHAKING_MOMENT, RMS_SHAKING_FORCE, RMS_SHAKING_MOMENT
 from .joint_forces import PEAK_CRANK_PIN_FORCE, PEAK_GUIDE_FORCE, PEAK_PIVOT_FORCE, PEAK_SLIDER_PIN_FORCE
+from .motor import MEAN_POWER, PEAK_POWER, PEAK_REFLECTED_INERTIA
 from .peak_torque import PEAK_TORQUE, PEAK_TORQUE_INWARD, PEAK_TORQUE_OUTWARD
 from .position_error import POSITION_ERROR, POSITION_ERROR_RSS
 from .proportions import FOOTPRINT, ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from .quantity import Quantity
+from .self_locking import SELF_LOCKING_MARGIN
 from .slider_motion import PEAK_SLIDER_ACCELERATION, PEAK_SLIDER_SPEED
 from .time_ratio import TIME_RATIO
 from .transmission_angle import TRANSMISSION_ANGLE
@@ -35,6 +38,14 @@ _ALL: tuple[Quantity, ...] = (
     PEAK_GUIDE_FORCE,
     PEAK_SLIDER_SPEED,
     PEAK_SLIDER_ACCELERATION,
+    SELF_LOCKING_MARGIN,
+    PEAK_POWER,
+    MEAN_POWER,
+    PEAK_REFLECTED_INERTIA,
+    PEAK_SHAKING_FORCE,
+    RMS_SHAKING_FORCE,
+    PEAK_SHAKING_MOMENT,
+    RMS_SHAKING_MOMENT,
 )
 QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
 

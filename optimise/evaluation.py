@@ -18,6 +18,8 @@ FEASIBLE = 1e-9
 _HUGE = 1e100
 LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
 """Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
+LEAST_SELF_LOCKING_MARGIN = np.radians(5.0)
+"""Least self-locking margin of a machine with friction where the problem sets none: forces grow as 1 / sin(margin)."""
 
 
 @dataclass(frozen=True)
@@ -41,14 +43,24 @@ class Rows:
 
 
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
-    """Return the constraints of a problem with the transmission angle's default floor where none is set."""
-    for constraint in problem.constraints:
-        if constraint.quantity == "transmission_angle" and constraint.lower is not None:
-            return problem.constraints
-    kept = [c for c in problem.constraints if c.quantity != "transmission_angle"]
-    upper = next((c.upper for c in problem.constraints if c.quantity == "transmission_angle"), None)
-    floor = LEAST_TRANSMISSION_ANGLE if upper is None else min(LEAST_TRANSMISSION_ANGLE, 0.5 * upper)
-    return (*kept, Constraint(quantity="transmission_angle", lower=float(floor), upper=upper))
+    """Return the constraints of a problem with the default floors where none is set.
+
+    They are on the transmission angle and, where there is friction, on the self-locking margin.
+    """
+    found = _with_floor(problem.constraints, "transmission_angle", LEAST_TRANSMISSION_ANGLE)
+    if problem.mechanism.friction.acts:
+        found = _with_floor(found, "self_locking_margin", LEAST_SELF_LOCKING_MARGIN)
+    return found
+
+
+def _with_floor(constraints: tuple[Constraint, ...], name: str, floor: float) -> tuple[Constraint, ...]:
+    own = [c for c in constraints if c.quantity == name]
+    if any(c.lower is not None for c in own):
+        return constraints
+    upper = next((c.upper for c in own), None)
+    lower = floor if upper is None else min(floor, 0.5 * upper)
+    kept = [c for c in constraints if c.quantity != name]
+    return (*kept, Constraint(quantity=name, lower=float(lower), upper=upper))
 
 
 def minimised(objective: Objective, values: Array) -> Array:

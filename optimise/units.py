@@ -53,6 +53,7 @@ SPEED = Kind(name="a speed", unit="m/s", example="2.5 m/s", limit=1e6)
 ACCELERATION = Kind(name="an acceleration", unit="m/s^2", example="9.81 m/s^2", limit=1e9)
 FORCE = Kind(name="a force", unit="N", example="200 N", limit=1e12)
 TORQUE = Kind(name="a torque", unit="N m", example="25 N m", limit=1e15)
+POWER = Kind(name="a power", unit="W", example="250 W", limit=1e15)
 STIFFNESS = Kind(name="a stiffness", unit="N/m", example="20 N/mm", limit=1e15)
 DAMPING = Kind(name="a viscous coefficient", unit="N s/m", example="50 N s/m", limit=1e15)
 PRESSURE = Kind(name="a pressure", unit="Pa", example="207 GPa", limit=1e15)
@@ -60,7 +61,7 @@ RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9)
 
 KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, STIFFNESS, DAMPING, PRESSURE, RATIO),
+    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO),
 )
 _OTHERS = (
     Kind(name="a time", unit="s", example="1 s", limit=math.inf),
@@ -100,6 +101,7 @@ rps = turn / second
 newton = kilogram * metre / second ** 2 = N
 newton_metre = newton * metre = Nm
 newton_second = newton * second = Ns
+watt = newton * metre / second = W
 pascal = newton / metre ** 2 = Pa
 pound_force = 4.4482216152605 * newton = lbf
 kilogram_force = 9.80665 * newton = kgf
@@ -123,7 +125,7 @@ _COMMON = (
         "g",
         "t",
     ),
-    *("pound", "s", "min", "N", "kN", "lbf", "kgf", "Nm", "Pa", "MPa"),
+    *("pound", "s", "min", "N", "kN", "lbf", "kgf", "Nm", "W", "kW", "Pa", "MPa"),
 )
 _HINTS = {
     "Hz": "a rotation is given in rpm, rev/s or rad/s",

@@ -12,11 +12,13 @@ from ..model.errors import InputError
 _SUFFIXES = (
     ("_m_s2", "m/s^2", 1.0),
     ("_m_s", "m/s", 1.0),
+    ("_kg_m2", "kg m^2", 1.0),
     ("_m2", "m^2", 1.0),
     ("_Nm", "N m", 1.0),
     ("_mm", "mm", 1e3),
     ("_deg", "deg", 57.29577951308232),
     ("_N", "N", 1.0),
+    ("_W", "W", 1.0),
 )
 DIMENSIONS = ("crank", "rod", "offset")
 

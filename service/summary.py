@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..model.friction import Friction
 from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
@@ -64,6 +65,7 @@ def _given(mechanism: Mechanism) -> list[str]:
         x, y = mechanism.gravity
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")
     lines += [f"load: {_load(load)}" for load in mechanism.loads]
+    lines += _friction(mechanism.friction)
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
     return lines
@@ -93,6 +95,18 @@ def _load(load: Load) -> str:
         return f"table of {len(load.positions)} positions from the {load.datum}, {load.during}"
     assert isinstance(load, AngleTable)
     return f"table of {len(load.angles)} crank angles, {load.during}"
+
+
+def _friction(friction: Friction) -> list[str]:
+    lines = [f"friction in the guide: coefficient {friction.guide:.6g}"] if friction.guide else []
+    for name in ("crank_pivot", "crank_pin", "slider_pin"):
+        pin = getattr(friction, name)
+        if pin.circle:
+            lines.append(
+                f"friction in the {name.replace('_', ' ')}: radius {1e3 * pin.radius:.6g} mm, "
+                f"coefficient {pin.coefficient:.6g}"
+            )
+    return lines
 
 
 def _tolerances(mechanism: Mechanism) -> list[str]:

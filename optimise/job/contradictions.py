@@ -17,7 +17,15 @@ from ..problem import Problem
 from .box import require_reachable
 
 _ERRORS = ("position_error", "position_error_rss")
-_TORQUES = ("peak_torque", "peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque")
+_TORQUES = (
+    *("peak_torque", "peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque"),
+    *("peak_power", "mean_power"),
+)
+_INERTIAS = (
+    *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "rms_shaking_moment"),
+    "peak_reflected_inertia",
+)
+_SIGNED = ("mean_torque", "mean_power")
 _FORCES = (
     "peak_pivot_force",
     "peak_crank_pin_force",
@@ -63,11 +71,16 @@ def _require_possible(key: str, name: str, word: str, value: float) -> None:
             f"{key}: the least transmission angle lies between 0 and 90 deg, ends excluded; {got}; "
             "30 to 50 deg are usual (a plain number is in rad)"
         )
+    if name == "self_locking_margin" and not 0.0 < value < 0.5 * math.pi:
+        raise JobError(
+            f"{key}: the self-locking margin lies between 0, where friction locks, and 90 deg, ends excluded; {got}; "
+            "10 deg and more are usual (a plain number is in rad)"
+        )
     if name in ("rod_to_offset", "rod_to_crank") and word != "min" and value <= 1.0:
         raise JobError(
             f"{key}: the rod exceeds crank + |offset| for full rotation, so this is above 1; {got}; raise it"
         )
-    if name != "mean_torque" and value < 0.0:
+    if name not in _SIGNED and value < 0.0:
         raise JobError(f"{key}: {name} is never negative; {got}; give its size")
 
 
@@ -100,12 +113,21 @@ def _require_causes(problem: Problem) -> None:
                 f"{key}: a position error comes from tolerances; got none; "
                 'add for example [tolerances] crank = "0.05 mm"'
             )
+        if name == "self_locking_margin" and not problem.mechanism.friction.acts:
+            raise JobError(
+                f"{key}: a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, "
+                "or use transmission_angle"
+            )
     m = problem.mechanism
     moving = m.slider_mass > 0.0 or _weighs(m.rod)
     turning = _weighs(m.crank) or m.counterweight.mass > 0.0 or m.counterweight.inertia > 0.0
     # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
     torque = bool(m.loads) or moving or (turning and (any(m.gravity) or m.acceleration != 0.0))
     for key, name in wanted:
+        if name in _INERTIAS and not (moving or turning):
+            raise JobError(
+                f'{key}: it comes from masses; got none; add for example [mechanism] slider = {{ mass = "0.8 kg" }}'
+            )
         if (name in _TORQUES and not torque) or (name in _FORCES and not (torque or turning)):
             raise JobError(
                 f"{key}: it comes from masses and loads; got none that matter; add for example "

@@ -14,6 +14,7 @@ from ...model.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
 from ..units import shown
 from .clearance import ClearancePart
 from .drive import DrivePart
+from .friction import FrictionPart
 from .loads import Load
 from .values import (
     Angle,
@@ -204,6 +205,7 @@ class MechanismPart(Part):
         loads: tuple[Load, ...],
         tolerances: TolerancesPart,
         *,
+        friction: FrictionPart,
         clearance: ClearancePart | None = None,
         drive: DrivePart | None = None,
     ) -> Mechanism:
@@ -217,6 +219,7 @@ class MechanismPart(Part):
             gravity=self._gravity(),
             loads=tuple(load.build() for load in loads),
             tolerances=tolerances.build(),
+            friction=friction.build(),
             branch=self.branch,
             drive=None if drive is None else drive.build(),
             clearance=None if clearance is None else clearance.build(),

@@ -12,6 +12,7 @@ from ..units import shown
 from .clearance import ClearancePart
 from .contradictions import require_consistent
 from .drive import DrivePart
+from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of
@@ -92,6 +93,11 @@ class Job(Part):
         description="motor, gear and flywheel: for analyses in which the speed is not given but found",
         examples=[{"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"}],
     )
+    friction: FrictionPart = Field(
+        FrictionPart(),
+        description="Coulomb friction in the guide and in the three pins; none where left out",
+        examples=[{"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}],
+    )
     tolerances: TolerancesPart = Field(
         TolerancesPart(),
         description="how far dimensions and crank angle may be off",
@@ -124,7 +130,9 @@ class Job(Part):
         variables = self.variables
         problem = Problem(
             name=self.name,
-            mechanism=self.mechanism.build(self.load, self.tolerances, clearance=self.clearance, drive=self.drive),
+            mechanism=self.mechanism.build(
+                self.load, self.tolerances, friction=self.friction, clearance=self.clearance, drive=self.drive
+            ),
             crank=Range(lower=variables.crank[0], upper=variables.crank[1]),
             rod=Range(lower=variables.rod[0], upper=variables.rod[1]),
             offset=Range(lower=variables.offset[0], upper=variables.offset[1]),

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from slidercrank.model.friction import Friction, Pin
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.links import Bar, Counterweight, RigidLink
 from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
@@ -173,3 +174,12 @@ def random_loads(
         ),
         AngleTable(angles=tuple(angles), forces=tuple(size[8:12]), during="outward stroke"),
     )
+
+
+def random_friction(random: np.random.Generator) -> Friction:
+    """Return friction in all joints: a coefficient of up to 0.3 in the guide, friction circles of up to 2 mm."""
+
+    def pin() -> Pin:
+        return Pin(radius=random.uniform(0.002, 0.01), coefficient=random.uniform(0.0, 0.2))
+
+    return Friction(guide=random.uniform(0.0, 0.3), crank_pivot=pin(), crank_pin=pin(), slider_pin=pin())

@@ -17,9 +17,10 @@ from slidercrank.model.loads import Spring, StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.model.peaks import find_peaks
 from slidercrank.model.signals import Signal
+from tests.model.bodies import bodies
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
-from tests.model.virtual_work import body, drive_torque, path, slider_load
+from tests.model.virtual_work import drive_torque, path, slider_load
 
 MACHINES = 60
 # The balances below differentiate positions by a contour or a Fourier series, which lose 1e-16 / reach^2.
@@ -35,50 +36,6 @@ def machines(*, loads: bool = True) -> list[Mechanism]:
 
 def curves(machine: Mechanism, design: Array, theta: Any = THETA) -> Cycle:
     return cycle(machine, linkage_of(design, machine.branch), theta)
-
-
-@dataclasses.dataclass(frozen=True)
-class MassPoint:
-    """A body: mass, inertia, position of the mass centre as complex x and y of a complex angle, and its own angle."""
-
-    mass: float
-    inertia: float
-    x: Any
-    y: Any
-    turn: Any
-
-
-def bodies(machine: Mechanism, design: Array) -> dict[str, MassPoint]:
-    """Return crank, counterweight, rod and slider; positions run on complex crank angles."""
-    r, l, e = design
-    sign = 1.0 if machine.branch == "open" else -1.0
-    crank, rod, weight = body(machine.crank, r), body(machine.rod, l), machine.counterweight
-
-    def phi(theta: Any) -> Any:
-        angle = np.arcsin((e - r * np.sin(theta)) / l)
-        return angle if sign > 0.0 else math.pi - angle
-
-    def on(start: float, along: float, across: float, angle: Any) -> tuple[Any, Any]:
-        return (
-            lambda t: start * np.cos(t) + along * np.cos(angle(t)) - across * np.sin(angle(t)),
-            lambda t: start * np.sin(t) + along * np.sin(angle(t)) + across * np.cos(angle(t)),
-        )
-
-    def theta_itself(theta: Any) -> Any:
-        return theta
-
-    arm, lead = weight.radius, weight.angle
-    return {
-        "crank": MassPoint(crank.mass, crank.inertia, *on(0.0, crank.along, crank.across, theta_itself), theta_itself),
-        "weight": MassPoint(
-            weight.mass,
-            weight.inertia,
-            *on(0.0, arm * math.cos(lead), arm * math.sin(lead), theta_itself),
-            theta_itself,
-        ),
-        "rod": MassPoint(rod.mass, rod.inertia, *on(r, rod.along, rod.across, phi), phi),
-        "slider": MassPoint(machine.slider_mass, 0.0, *on(r, l, 0.0, phi), theta_itself),
-    }
 
 
 def test_torque_balances_power_over_the_cycle() -> None:

@@ -24,6 +24,8 @@ PROMISED = [
     *("position_error_mm", "position_error_rss_mm"),
     *("peak_pivot_force_N", "peak_crank_pin_force_N", "peak_slider_pin_force_N", "peak_guide_force_N"),
     *("peak_slider_speed_m_s", "peak_slider_acceleration_m_s2"),
+    *("self_locking_margin_deg", "peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
+    *("peak_shaking_force_N", "rms_shaking_force_N", "peak_shaking_moment_Nm", "rms_shaking_moment_Nm"),
 ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.model.mechanism import Mechanism
-from slidercrank.objectives.average_torque import AverageTorque
 from slidercrank.objectives.closed_form import ClosedFormQuantity
+from slidercrank.objectives.cycle_average import CycleAverage
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
-from tests.model.cases import MACHINES, SMOOTH, Array, random_designs, random_machine
+from tests.model.cases import MACHINES, SMOOTH, Array, random_designs, random_friction, random_machine
 from tests.objectives.richardson import Function, derivatives, steps_to_the_nearest_edge
 
 DESIGNS = random_designs(1000, seed=1)
@@ -70,7 +71,7 @@ def away(gradients: Array, expected: Array) -> Array:
 @pytest.mark.parametrize(("quantity", "machine"), CASES)
 def test_gradient_is_that_of_extrapolated_differences(quantity: Quantity, machine: Mechanism) -> None:
     # An integral over many pieces takes ten times as long as a peak: fewer designs for the second and third machine.
-    designs = DESIGNS[:200] if isinstance(quantity, AverageTorque) and machine is not SMOOTH else DESIGNS
+    designs = DESIGNS[:200] if isinstance(quantity, CycleAverage) and machine is not SMOOTH else DESIGNS
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
     expected, _ = derivatives(function, designs, first)
@@ -134,3 +135,24 @@ def test_gradient_without_offset_is_that_towards_positive_offsets(quantity: Quan
     assert np.max(np.abs(gradients - lengths)[:, :2] / size) < CLOSE
     # Forward differences gain a power of the step per extrapolation, not two.
     assert np.max(np.abs(gradients - offset)[:, 2:] / size) < 1e-6
+
+
+# All that follows from joint forces, and the margin itself.
+RUBBED = ("peak_torque", "rms_torque", "mean_torque", "peak_power", "mean_power", "self_locking_margin")
+
+
+@pytest.mark.parametrize("name", [*RUBBED, "peak_pivot_force", "peak_crank_pin_force", "peak_guide_force"])
+def test_gradient_with_friction_is_that_of_extrapolated_differences(name: str) -> None:
+    """Torque jumps at breakpoints that move, and kinks where the guide's force changes sides."""
+    random = np.random.default_rng(9)
+    quantity = QUANTITIES[name]
+    # Rods 30 % and more longer than crank + offset: none locks, nor do the displaced ones.
+    designs = random_designs(12, seed=10, least_margin=0.3)
+    first = 0.3 * steps_to_the_nearest_edge(designs, kink_without_offset=True)
+    for _ in range(5):
+        machine = dataclasses.replace(random_machine(random), friction=random_friction(random))
+        function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
+        expected, _ = derivatives(function, designs, first)
+        gradients = quantity.evaluate(machine, designs, gradients=True).gradients
+        assert gradients is not None
+        assert away(gradients, expected).max() < CLOSE

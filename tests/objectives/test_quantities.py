@@ -28,6 +28,8 @@ UNITS = {
     "deg": ("deg", 180.0 / math.pi),
     "Nm": ("N m", 1.0),
     "N": ("N", 1.0),
+    "W": ("W", 1.0),
+    "kg_m2": ("kg m^2", 1.0),
     "m_s": ("m/s", 1.0),
     "m_s2": ("m/s^2", 1.0),
 }
@@ -106,8 +108,8 @@ def test_no_designs_have_no_values(quantity: Quantity) -> None:
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
-def test_only_the_mean_torque_may_be_negative(quantity: Quantity) -> None:
-    if quantity.name != "mean_torque":
+def test_only_means_may_be_negative(quantity: Quantity) -> None:
+    if quantity.name not in ("mean_torque", "mean_power"):
         for machine in MACHINES.values():
             assert np.all(quantity.evaluate(machine, DESIGNS).values >= 0.0)
 
@@ -162,6 +164,13 @@ def test_position_error_is_at_least_the_rod_tolerance() -> None:
         ("footprint", 2),
         ("peak_torque", 2),
         ("rms_torque", 2),
+        ("peak_power", 2),
+        ("self_locking_margin", 0),
+        ("peak_reflected_inertia", 2),
+        ("peak_shaking_force", 1),
+        ("rms_shaking_force", 1),
+        ("peak_shaking_moment", 2),
+        ("rms_shaking_moment", 2),
     ],
 )
 def test_quantity_scales_with_a_power_of_the_size(name: str, power: int) -> None:
@@ -186,5 +195,7 @@ def test_mirrored_machine_is_judged_alike(name: str) -> None:
     original, image = values(name, DESIGNS), values(name, DESIGNS * [1.0, 1.0, -1.0], mirrored)
     # The mirrored torque is the negative one.
     sign = -1.0 if name == "mean_torque" else 1.0
-    scale = values("peak_torque", DESIGNS) if name == "mean_torque" else original
+    scale = {"mean_torque": values("peak_torque", DESIGNS), "mean_power": values("peak_power", DESIGNS)}.get(
+        name, original
+    )
     np.testing.assert_allclose(sign * image / scale, original / scale, rtol=0, atol=1e-11)

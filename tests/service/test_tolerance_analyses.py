@@ -27,8 +27,8 @@ from slidercrank.model.tolerance.monte_carlo import simulate, variances
 from slidercrank.objectives.sensitivity import DIMENSIONS, sensitivity
 from slidercrank.service.analyses import sensitivity as sensitivity_analysis
 from slidercrank.service.analyses import tolerances as tolerance_analysis
-from slidercrank.service.figures.tolerances import PERCENTS, draw_tolerances, error_bands, tolerances_figure
 from slidercrank.service.figures.sensitivity import draw_sensitivity, tornado_figure, tornado_rows
+from slidercrank.service.figures.tolerances import PERCENTS, draw_tolerances, error_bands, tolerances_figure
 from slidercrank.service.figures.variation import draw_variation, variation_figure, variation_panels
 from tests.model.cases import SMOOTH
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT

@@ -1,0 +1,45 @@
+"""Quantities that are a mean or a root mean square over the cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..model.averages import average
+from ..model.mechanism import Mechanism
+from ..model.signals import Signal
+from .quantity import Array, Pieces, Unit, Values
+
+
+@dataclass(frozen=True)
+class CycleAverage:
+    """The mean or the root mean square of a signal over crank angle.
+
+    The torque counts with its sign. times_speed: the average times the crank speed, a power from a torque.
+    """
+
+    name: str
+    field: str
+    title: str
+    unit: Unit
+    signal: Signal
+    which: Literal["mean", "rms"]
+    times_speed: bool = False
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3); see `Quantity`."""
+        found = average(mechanism, self.signal, dimensions, gradients=gradients)
+        values, slopes = (
+            (found.mean, found.mean_gradients) if self.which == "mean" else (found.rms, found.rms_gradients)
+        )
+        if self.times_speed:
+            values, slopes = mechanism.speed * values, None if slopes is None else mechanism.speed * slopes
+        return Values(values, slopes)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as its only piece; see `Quantity`."""
+        found = self.evaluate(mechanism, dimensions, gradients=True)
+        assert found.gradients is not None
+        return Pieces(found.values[:, None], found.gradients[:, None], np.zeros((len(dimensions), 1)))

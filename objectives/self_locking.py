@@ -1,0 +1,35 @@
+"""Self-locking margin: by how much the transmission angle stays above the angles of friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.mechanism import Mechanism
+from ..model.self_locking import locking_margin
+from .quantity import DEGREE, Array, Pieces, Unit, Values
+
+
+@dataclass(frozen=True)
+class ClosedFormMargin:
+    """The least transmission angle minus the angles of friction; -inf where the pins alone lock (no such angle)."""
+
+    name: str = "self_locking_margin"
+    field: str = "self_locking_margin_deg"
+    title: str = "self-locking margin"
+    unit: Unit = DEGREE
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3); see `Quantity`."""
+        values, slopes = locking_margin(mechanism.friction, dimensions, gradients=gradients)
+        return Values(values, slopes)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as its only piece; see `Quantity`."""
+        values, slopes = locking_margin(mechanism.friction, dimensions, gradients=True)
+        assert slopes is not None
+        return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
+
+
+SELF_LOCKING_MARGIN = ClosedFormMargin()

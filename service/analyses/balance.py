@@ -1,0 +1,66 @@
+"""Balance of one design: shaking force and moment on the frame, and what the counterweight does to them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from .lines import Line, show_lines
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+_CURVES = (("shaking_force", "N", "SHAKING_FORCE"), ("shaking_moment", "Nm", "SHAKING_MOMENT"))
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
+
+    Inertia forces only: gravity and load are left out (`model.inertia`). The values without counterweight are None if
+    the machine has none.
+    """
+    import numpy as np
+
+    from ...model.averages import average
+    from ...model.links import Counterweight
+    from ...model.peaks import find_peaks
+    from ...model.signals import Signal
+
+    design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+    weight = mechanism.counterweight
+    has_weight = weight.mass > 0.0
+    bare = replace(mechanism, counterweight=Counterweight(mass=0.0, radius=0.0))
+    values: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
+    for name, unit, signal in _CURVES:
+        kind = Signal[signal]
+        peak = find_peaks(mechanism, kind, design, kept=1)
+        values[f"peak_{name}_{unit}"] = float(peak.values[0, 0])
+        values[f"peak_{name}_angle_deg"] = float(np.degrees(peak.angles[0, 0]))
+        values[f"rms_{name}_{unit}"] = float(average(mechanism, kind, design).rms[0])
+        without = find_peaks(bare, kind, design, kept=1).values[0, 0] if has_weight else None
+        values[f"peak_{name}_without_counterweight_{unit}"] = None if without is None else float(without)
+        without = average(bare, kind, design).rms[0] if has_weight else None
+        values[f"rms_{name}_without_counterweight_{unit}"] = None if without is None else float(without)
+    return values
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    lines: list[Line] = []
+    for name, unit, _ in _CURVES:
+        for which, word in (("peak", "peak"), ("rms", "RMS")):
+            remarks = []
+            if which == "peak":
+                remarks.append(f"at {numbers[f'peak_{name}_angle_deg']:.2f} deg")
+            without = numbers[f"{which}_{name}_without_counterweight_{unit}"]
+            if without is not None:
+                remarks.append(f"{without:.6g} without counterweight")
+            value = numbers[f"{which}_{name}_{unit}"]
+            title = f"{word} {name.replace('_', ' ')}"
+            lines.append((title, value, "N m" if unit == "Nm" else unit, ", ".join(remarks)))
+    show_lines(
+        console, "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)", lines
+    )

@@ -1,0 +1,120 @@
+"""Friction in job files, and designs that lock in the search."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import JobError
+from slidercrank.model.friction import Friction, Pin
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
+from slidercrank.optimise.job import Job, parse_job
+from slidercrank.optimise.problem import Constraint, Objective, Problem
+from slidercrank.service.summary import summarise
+
+FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
+TABLE = {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}
+
+
+def job(friction: Any = TABLE, **changes: Any) -> Problem:
+    return parse_job({**FEEDER, **({"friction": friction} if friction is not None else {}), **changes})
+
+
+def test_friction_is_read_in_si() -> None:
+    assert job().mechanism.friction == Friction(guide=0.1, crank_pin=Pin(radius=0.01, coefficient=0.08))
+    assert job(None).mechanism.friction == Friction()
+    assert not job({"guide": 0.0}).mechanism.friction.acts
+
+
+def test_a_job_with_friction_that_was_read_is_a_job_again() -> None:
+    read = Job.model_validate({**FEEDER, "friction": TABLE})
+    assert Job.model_validate(read.model_dump(exclude_none=True)).problem() == read.problem()
+
+
+@pytest.mark.parametrize(
+    ("friction", "words"),
+    [
+        ({"guide": -0.1}, ["friction.guide", "zero or more", "-0.1"]),
+        ({"guide": math.nan}, ["friction.guide", "finite"]),
+        ({"guide": "0.1 mm"}, ["friction.guide", "a ratio", "0.1 mm"]),
+        ({"guide": 8}, ["friction.guide", "at most 2", "got 8", "about 0.1"]),
+        ({"guides": 0.1}, ["friction.guides", "unknown key", "did you mean guide?"]),
+        ({"crank_pin": 0.1}, ["friction.crank_pin", "must be a table"]),
+        ({"crank_pin": {"radius": "10 mm"}}, ["friction.crank_pin.coefficient: is missing"]),
+        ({"slider_pin": {"radius": "0 mm", "coefficient": 0.1}}, ["friction.slider_pin.radius", "positive"]),
+        ({"crank_pivot": {"radius": 0.1, "coefficient": -1}}, ["friction.crank_pivot.coefficient", "zero or more"]),
+    ],
+)
+def test_bad_friction_is_refused_with_the_reason(friction: Any, words: list[str]) -> None:
+    with pytest.raises(JobError) as refused:
+        job(friction)
+    for word in words:
+        assert word in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("part", "friction", "words"),
+    [
+        ({"objectives": {"self_locking_margin": "maximise"}}, None, ["comes from friction", "guide = 0.1"]),
+        ({"constraints": {"self_locking_margin": {"min": "-5 deg"}}}, TABLE, ["between 0", "where friction locks"]),
+        ({"constraints": {"self_locking_margin": {"min": "90 deg"}}}, TABLE, ["between 0", "90 deg"]),
+    ],
+)
+def test_impossible_margins_are_refused(part: dict[str, Any], friction: Any, words: list[str]) -> None:
+    with pytest.raises(JobError) as refused:
+        job(friction, **part)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_shaking_without_masses_is_refused() -> None:
+    with pytest.raises(JobError, match="it comes from masses; got none"):
+        job(mechanism={"speed": "60 rpm"}, objectives={"peak_shaking_force": "minimise"})
+
+
+def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one() -> None:
+    def floors(problem: Problem) -> list[Constraint]:
+        return [c for c in constraints_of(problem) if c.quantity == "self_locking_margin"]
+
+    assert floors(job(None)) == []
+    assert floors(job()) == [Constraint(quantity="self_locking_margin", lower=float(LEAST_SELF_LOCKING_MARGIN))]
+    own = job(constraints={"self_locking_margin": {"min": "12 deg"}})
+    assert floors(own) == [Constraint(quantity="self_locking_margin", lower=math.radians(12.0))]
+    low = job(constraints={"self_locking_margin": {"max": "4 deg"}})
+    assert floors(low)[0].lower == pytest.approx(math.radians(2.0))
+    rules = summarise(job())["rules"]
+    assert any("self-locking margin at least 5 deg (not in the job" in rule for rule in rules)
+    assert any(
+        "friction in the crank pin: radius 10 mm, coefficient 0.08" in line for line in summarise(job())["given"]
+    )
+
+
+def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
+    """A margin's bound as low as can be: what locks has no finite torque, and the search takes it as out of reach."""
+    problem = job({"guide": 0.9}, constraints={"self_locking_margin": {"min": "1e-9 deg"}})
+    wanted = tuple(Objective(quantity=name, sense="minimise") for name in ("peak_torque", "rms_torque", "mean_torque"))
+    evaluator = Evaluator(replace(problem, objectives=wanted, constraints=()), sheets(problem)[0])
+    evaluator.constraints = ()
+    u = np.random.default_rng(3).random((400, evaluator.dimension))
+    dimensions, objectives, violation = evaluator.screen(u)
+    turns = np.isfinite(evaluator._geometry_violation(dimensions))
+    margin = np.full(len(u), np.nan)
+    margin[turns] = QUANTITIES["self_locking_margin"].evaluate(problem.mechanism, dimensions[turns]).values
+    locks = turns & (margin <= 0.0)
+    assert locks.sum() > 20
+    assert np.all(violation[locks] == np.inf)
+    assert np.all(np.isnan(objectives[locks]))
+    drives = turns & (margin > 0.0)
+    assert drives.sum() > 20
+    assert np.all(np.isfinite(objectives[drives & (violation <= 0.0)]))
+    goals, _ = evaluator.exact(u[locks])
+    assert np.all(goals.values.max(axis=1) == np.inf)
+    assert np.all(goals.gradients == 0.0)
