@@ -58,3 +58,11 @@ class Friction:
     def acts(self) -> bool:
         """Whether anything rubs."""
         return self.guide > 0.0 or any(pin.circle > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin))
+
+
+def require_frictionless(friction: Friction, what: str) -> None:
+    """Refuse friction where an analysis has none. what: the analysis, as the subject of a sentence."""
+    if friction.acts:
+        raise InputError(
+            f"{what} takes joints and guide without friction; got friction that acts; leave [friction] out"
+        )

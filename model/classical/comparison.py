@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..cycle import cycle
 from ..errors import InputError
+from ..friction import Friction
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from .lumped import lumped, rotating_and_reciprocating
@@ -110,4 +111,4 @@ def relative_error(approximate: Array, exact: Array) -> float:
 def _inertia_alone(mechanism: Mechanism) -> Mechanism:
     if mechanism.speed == 0.0:
         raise InputError("the approximate models need a crank speed; got 0 rad/s; give one")
-    return replace(mechanism, loads=(), gravity=(0.0, 0.0), acceleration=0.0)
+    return replace(mechanism, loads=(), gravity=(0.0, 0.0), acceleration=0.0, friction=Friction())

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..friction import require_frictionless
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from .equations import observe
@@ -113,6 +114,7 @@ def simulate(
     """
     if not mechanism.speed:
         raise InputError("a joint with clearance is simulated over turns of the crank; got speed 0; give a crank speed")
+    require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
     if not 0 <= discard < cycles:
         raise InputError(
             f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"

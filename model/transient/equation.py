@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from ..arithmetic import kernel
 from ..dynamics import forces, smooth_load
 from ..errors import InputError
+from ..friction import require_frictionless
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from ..parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
@@ -115,11 +116,12 @@ class CrankEquation:
 
     marks: further crank angles, rad, that shall be breakpoints. breakpoints: (n,), ascending in [0, 2 pi), rad.
     direction: +1 or -1, the way the mechanism's speed says that the motor turns the crank.
-    Raises AssemblyError if the linkage does not turn fully.
+    Raises AssemblyError if the linkage does not turn fully, InputError for a mechanism with friction.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
         linkage.require_full_rotation()
+        require_frictionless(mechanism.friction, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
         raw = np.repeat(raw_vector(mechanism)[:, None], 4, axis=1)

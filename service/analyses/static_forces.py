@@ -16,10 +16,11 @@ _STEP = 30
 
 
 def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
-    """Return the mechanism without masses and gravity; with a constant load on the slider, N outward, if given.
+    """Return the mechanism without masses, gravity and friction; with a constant load, N outward, if given.
 
     Without loads of its own and without one given, the load is 1 N towards the crank pivot.
     """
+    from ...model.friction import Friction
     from ...model.links import Counterweight, RigidLink
     from ...model.loads import StrokeForce
 
@@ -32,6 +33,7 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
         counterweight=Counterweight(mass=0.0, radius=0.0),
         slider_mass=0.0,
         gravity=(0.0, 0.0),
+        friction=Friction(),
         loads=mechanism.loads if constant is None else (StrokeForce(outward=constant, inward=constant),),
     )
 
