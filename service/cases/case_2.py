@@ -7,8 +7,10 @@ import math
 import numpy as np
 
 from ...model.classical.loop_equations import solve_loop
+from ...model.clearance.joint import Clearance
 from ...model.linkage import Linkage
 from ...model.links import Bar
+from ...model.mechanism import Mechanism
 from .published import Numbers
 
 STEEL = Bar(width=0.03, depth=0.02, density=7800.0)
@@ -17,6 +19,15 @@ SPEED = 300.0 * 2.0 * math.pi / 60.0
 SIEVE = Linkage(0.140, 0.310, -0.060)
 LONGER_CRANK = Linkage(0.150, 0.310, -0.060)
 LONGER_ROD = Linkage(0.140, 0.320, -0.060)
+LOOSE = Mechanism(
+    speed=SPEED,
+    crank=STEEL,
+    rod=STEEL,
+    slider_mass=STEEL.density * math.prod(SLIDER),
+    gravity=(0.0, -9.81),
+    clearance=Clearance(joint="crank pin", radius=1e-3, journal_radius=0.01),
+)
+"""With the 1 mm of clearance that the report simulates, taken as radial; it gives neither pin nor restitution."""
 _KG_MM2 = 1e6
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
 from ...model.linkage import Linkage
+from ..figures.clearance import draw_clearance_speeds
 from ..figures.panels import Line, Panel, Sheet, draw_sheet
 from ..figures.polygons import both_branches, polygon_sheet
 from ..figures.style import save
@@ -28,6 +29,8 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
             path = folder / f"case_{number}_{name}.png"
             save(draw_sheet(make(), width=size[0], height=size[1]), path)
             yield path
+        if number == 2:  # simulated, which takes some 20 s
+            yield draw_clearance_speeds(case_2.LOOSE, case_2.SIEVE, folder / "case_2_clearance.png")
 
 
 def polygon_figure() -> Sheet:
