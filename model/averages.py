@@ -24,10 +24,10 @@ from .batches import in_chunks, turning
 from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at
-from .peaks import inputs_of, watch_of
 from .rubbing import always_drives, joint_forces
 from .segments import crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
 from .signals import Signal, design_motion, signal
+from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
 

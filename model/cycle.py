@@ -15,12 +15,12 @@ from .errors import InputError
 from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
-from .peaks import watch_of
 from .position_error import influences, root_sum_square, worst_case
 from .rubbing import joint_forces
 from .segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
 from .self_locking import locking_margin
 from .signals import Signal, design_motion
+from .watch import watch_of
 
 Array = NDArray[np.float64]
 

@@ -19,10 +19,9 @@ from .arithmetic import STEP, inlined, kernel
 from .batches import in_chunks, turning
 from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
-from .parameters import DESIGN, LOAD_SLOTS, Loads, derive, design_at, load_structure, raw_vector
+from .parameters import DESIGN, derive, design_at
 from .rubbing import always_drives
 from .segments import (
-    Watch,
     crowded,
     crowding,
     cut_cycle,
@@ -33,6 +32,7 @@ from .segments import (
     work_space,
 )
 from .signals import Signal, design_motion, signal
+from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
 
@@ -319,32 +319,6 @@ def _find(
                 m = design_motion(zs, zc, z)
                 load = load_on_slider(m, z, stepped[v], 0, complex(angle, slip), outward, loads, piece, shift)
                 gradients[n, i, v] = signal(kind, zs, zc, m, z, load, sides).imag / STEP
-
-
-def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:
-    """Return which part of the cycle counts for a signal of a mechanism."""
-    strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
-    friction = mechanism.friction
-    split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
-    swing = kind.needs_forces and friction.slider_pin.circle > 0.0
-    if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
-        window = mechanism.tolerances.window
-        return Watch(strokes[window.during], float(window.start), float(window.end), False)
-    return Watch(strokes[during], 0.0, 1.0, split, swing)
-
-
-def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
-    """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
-    raw, loads = raw_vector(mechanism), load_structure(mechanism)
-    if kind.needs_forces:
-        return raw, loads
-    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], load_structure(Mechanism())
-
-
-def stroke_dependent(mechanism: Mechanism) -> bool:
-    """Whether a load changes at the dead centres."""
-    structure = load_structure(mechanism)
-    return bool(np.any(structure.factor[:, 0] != structure.factor[:, 1]))
 
 
 def find_peaks(

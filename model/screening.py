@@ -24,9 +24,9 @@ from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .mechanism import Clearances, Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
-from .peaks import watch_of
 from .segments import crowding
 from .signals import Signal, design_motion, signal
+from .watch import watch_of
 
 Array = NDArray[np.float64]
 

@@ -28,9 +28,9 @@ from ..friction import require_frictionless
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from ..parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
-from ..peaks import watch_of
 from ..segments import Cuts, cut_cycle, enter, load_on_slider, within
 from ..signals import Signal, design_motion
+from ..watch import watch_of
 from .energy import height_energy, moving_inertia
 
 Array = NDArray[np.float64]

@@ -51,6 +51,7 @@ class Target(Part):
 _EXAMPLES: dict[str, Any] = {
     "time_ratio": 1.2,
     "transmission_angle": "40 deg",
+    "self_locking_margin": "10 deg",
     "stroke": "280 mm",
     "position_error": "0.3 mm",
     "position_error_rss": "0.2 mm",

@@ -235,11 +235,12 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
-    value = {"time_ratio": 1.1, "transmission_angle": 1.0, "stroke": 0.05}.get(name, 4.0)
+    value = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "stroke": 0.05}.get(name, 4.0)
     job = small(
         constraints={name: {"min": value}},
         objectives={name: "minimise"},
         tolerances={"crank": "0.05 mm"},
+        friction={"guide": 0.1},
     )
     problem = parse_job(job)
     assert problem.constraints == (Constraint(quantity=name, lower=value),)
@@ -283,7 +284,7 @@ def test_the_examples_of_the_schema_are_valid() -> None:
             parse_job(small(tolerances={"crank": "0.05 mm"}) | {key: example})
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
-            parse_job(small(tolerances={"crank": "0.05 mm"}, objectives={name: example}))
+            parse_job(small(tolerances={"crank": "0.05 mm"}, friction={"guide": 0.1}, objectives={name: example}))
 
 
 def test_the_schema_cannot_be_changed_from_outside() -> None:

@@ -1,0 +1,39 @@
+"""What a signal of a machine needs to be followed over the cycle: loads, and where its curve is piecewise."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .mechanism import Mechanism
+from .parameters import LOAD_SLOTS, Loads, load_structure, raw_vector
+from .segments import Watch
+from .signals import Signal
+
+Array = NDArray[np.float64]
+
+
+def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:
+    """Return which part of the cycle counts for a signal of a mechanism."""
+    strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
+    friction = mechanism.friction
+    split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
+    swing = kind.needs_forces and friction.slider_pin.circle > 0.0
+    if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
+        window = mechanism.tolerances.window
+        return Watch(strokes[window.during], float(window.start), float(window.end), False)
+    return Watch(strokes[during], 0.0, 1.0, split, swing)
+
+
+def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
+    """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
+    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    if kind.needs_forces:
+        return raw, loads
+    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], load_structure(Mechanism())
+
+
+def stroke_dependent(mechanism: Mechanism) -> bool:
+    """Whether a load changes at the dead centres."""
+    structure = load_structure(mechanism)
+    return bool(np.any(structure.factor[:, 0] != structure.factor[:, 1]))
