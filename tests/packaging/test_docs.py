@@ -164,7 +164,7 @@ def test_the_sketch_shows_the_signs_of_the_code(root: Path) -> None:
     assert arrow(file, "load")[0] > 0.0
     assert arrow(file, "outward-open")[0] > 0.0
     assert arrow(file, "outward-crossed")[0] < 0.0
-    assert arrow(file, "guide") == (0.0, pytest.approx(85.0))
+    assert arrow(file, "guide") == pytest.approx((0.0, 85.0))
 
 
 def test_the_sketch_of_the_dead_centres_is_to_scale(root: Path) -> None:
