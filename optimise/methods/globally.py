@@ -28,8 +28,11 @@ _ROUGH = 5  # steps of SHGO's own descent, which knows no kinks; the epigraph fo
 _BASINS = 12
 
 
-class _Screened:
-    """Objective and violation of one sheet for a solver that asks for the one after the other."""
+class _Exact:
+    """Objective and violation of one sheet for a solver that asks for the one after the other.
+
+    Exact: a screened peak may be off by more than what is left to gain near the optimum.
+    """
 
     def __init__(self, evaluator: Evaluator) -> None:
         self.evaluator = evaluator
@@ -38,10 +41,19 @@ class _Screened:
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        _, values, violation = self.evaluator.screen(u)
-        good = violation <= FEASIBLE
-        self.known = {point.tobytes(): float(value) for point, value in zip(u[good], values[good, 0], strict=True)}
-        return np.where(good, 0.0, np.minimum(violation, _FAR))
+        violation = np.full(len(u), _FAR)
+        valid = np.flatnonzero(self.evaluator.valid(u))
+        self.known = {}
+        if len(valid):
+            goals, limits = self.evaluator.exact(u[valid])
+            values = goals.values.max(axis=1)
+            violation[valid] = np.minimum(limits.values.max(axis=1, initial=0.0), _FAR)
+            self.known = {
+                u[row].tobytes(): float(value)
+                for row, value in zip(valid.tolist(), values, strict=True)
+                if violation[row] <= FEASIBLE and np.isfinite(value)
+            }
+        return np.where(violation <= FEASIBLE, 0.0, violation)
 
     def objective(self, u: Array) -> Array:
         """Return the minimised objective (n,) of points that were found feasible."""
@@ -77,7 +89,7 @@ def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: 
     k, count = evaluator.dimension, 0
     generations = max(1, budget(problem) // (len(evaluators) * _POPULATION * k) - 1)
     run.rounds = len(run.told) + 1 + generations // _TOLD
-    screened = _Screened(evaluator)
+    exact = _Exact(evaluator)
 
     def each(intermediate_result: Any) -> bool:
         nonlocal count
@@ -90,10 +102,10 @@ def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: 
 
     minimised: Any = evolve  # its stubs know no function of many points
     found = minimised(
-        lambda x: screened.objective(x.T),
+        lambda x: exact.objective(x.T),
         [(0.0, 1.0)] * k,
         constraints=NonlinearConstraint(
-            lambda x: screened.violation(np.atleast_2d(x.T)).reshape(1, *x.shape[1:]), -np.inf, FEASIBLE
+            lambda x: exact.violation(np.atleast_2d(x.T)).reshape(1, *x.shape[1:]), -np.inf, FEASIBLE
         ),
         maxiter=generations,
         strategy="rand1bin",  # best1bin runs dry in valleys that lie along the kink of two peaks
@@ -135,13 +147,13 @@ def _basins(problem: Problem, evaluators: list[Evaluator], index: int) -> list[t
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]
-    screened = _Screened(evaluator)
+    exact = _Exact(evaluator)
     points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
     searched: Any = homology
     found = searched(
-        lambda u: float(screened.objective(u[None])[0]),
+        lambda u: float(exact.objective(u[None])[0]),
         [(0.0, 1.0)] * evaluator.dimension,
-        constraints={"type": "ineq", "fun": lambda u: -screened.violation(u[None])},
+        constraints={"type": "ineq", "fun": lambda u: -exact.violation(u[None])},
         n=points,
         iters=_ITERATIONS,
         sampling_method="sobol",
