@@ -16,7 +16,7 @@ from .evaluation import Evaluator, constraints_of
 from .front import ParetoFront, Status
 from .hypervolume import choose, hypervolume, scaling
 from .pile import STATIONARY, Pile
-from .polish import polish
+from .polish import polish, project
 from .problem import Problem
 from .search import Archive, Run
 from .stationarity import Array, multipliers
@@ -59,6 +59,21 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     if not len(pile):
         return None
     return _assemble(problem, evaluators, pile, run, "cancelled" if stopped or run.stop() else "done")
+
+
+def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
+    """Return the front from the designs of an archive as they are, moved no more than onto the constraints.
+
+    None if no design could be moved there. Designs that meet the constraints already are not touched.
+    """
+    pile = Pile(span_of(problem, archive.values))
+    rows = _choice(problem, archive) if len(problem.objectives) > 1 else np.arange(min(len(archive), _STARTS))
+    for index, u in by_sheet(evaluators, archive.sheet, archive.u, rows):
+        valid = u[evaluators[index].valid(u)]
+        pile.add(index, evaluators[index], project(evaluators[index], valid, pile.span))
+    if not len(pile):
+        return None
+    return _assemble(problem, evaluators, pile, run, "cancelled" if run.stop() else "done")
 
 
 def span_of(problem: Problem, values: Array) -> Array:

@@ -90,6 +90,13 @@ def polish(
     return batch.result()
 
 
+def project(evaluator: Evaluates, start: Array, scale: Array) -> Polished:
+    """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
+    batch = _Batch(evaluator, start, scale, None)
+    batch.restore()
+    return batch.result()
+
+
 class _Batch:
     """Designs under polish: where they stand, their rows, and which still move."""
 

@@ -9,6 +9,7 @@ from typing import Literal
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from ..objectives.registry import QUANTITIES, quantity
+from .methods.registry import require_known
 
 Sense = Literal["minimise", "maximise", "target"]
 
@@ -76,20 +77,27 @@ class Objective:
 class Settings:
     """How to search.
 
-    method: "auto". designs: how many to deliver at most. samples: designs evaluated per round before the polish; None
-    lets the method choose. seed: of everything random.
+    method: a name from `methods.registry`. designs: how many to deliver at most. samples: designs evaluated per round
+    before the polish; None lets the method choose. evaluations: how many designs a method other than "auto" may
+    evaluate; None for its own budget. seed: of everything random.
     """
 
     method: str = "auto"
     designs: int = 100
     samples: int | None = None
+    evaluations: int | None = None
     seed: int = 1
 
     def __post_init__(self) -> None:
-        for name, least in (("designs", 1), ("samples", 1), ("seed", 0)):
+        require_known(self.method)
+        for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
             value = getattr(self, name)
             if value is not None and value < least:
                 raise InputError(f"{name} must be at least {least}; got {value}")
+        if self.method == "auto" and self.evaluations is not None:
+            raise InputError(
+                f"the method auto has no budget of evaluations; got {self.evaluations}; leave it out, or name a method"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -60,14 +60,18 @@ class Archive:
         _, values, violation = evaluator.screen(u, band=self.band)
         good = violation <= self.band + FEASIBLE
         self.feasible += int((violation <= FEASIBLE).sum())
-        padded = np.zeros((int(good.sum()), 3))
-        padded[:, : u.shape[1]] = u[good]
+        self.take(index, u[good], values[good])
+        return int(good.sum())
+
+    def take(self, index: int, u: Array, values: Array) -> None:
+        """Take in points (n, k) of a sheet that are known to be feasible, with their objectives (n, m) as minimised."""
+        padded = np.zeros((len(u), self.u.shape[1]))
+        padded[:, : u.shape[1]] = u
         self.sheet = np.concatenate([self.sheet, np.full(len(padded), index)])
         self.u = np.concatenate([self.u, padded])
-        self.values = np.concatenate([self.values, values[good]])
+        self.values = np.concatenate([self.values, values])
         alone = self.values.shape[1] == 1
         self.keep(np.argsort(self.values[:, 0], kind="stable")[:_BEST] if alone else nondominated(self.values))
-        return len(padded)
 
     def keep(self, rows: NDArray[np.int64]) -> None:
         """Keep only these rows."""

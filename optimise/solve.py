@@ -1,4 +1,4 @@
-"""The default search: eliminate, sample, zoom, polish, choose."""
+"""From a problem to its front: eliminate, search by the method asked for, deliver."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..model.errors import InputError
 from ..objectives.registry import QUANTITIES
-from .deliver import deliver, empty, planned
+from .deliver import as_found, deliver, empty, planned
 from .elimination import UNKNOWNS, Sheet, sheets
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .infeasibility import diagnose
+from .methods.registry import require_eliminated, require_fit, search_of
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
 from .stationarity import Array
@@ -26,17 +26,25 @@ def solve(
     progress: called after every round. cancelled: asked between rounds; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     """
-    if problem.settings.method != "auto":
-        raise InputError(f"the method must be 'auto'; got {problem.settings.method!r}")
+    require_fit(problem)
+    method = problem.settings.method
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-    run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
-    archive = explore(problem, evaluators, run)
-    front = deliver(problem, evaluators, archive, run) if len(archive) else None
+    if method == "auto":
+        run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
+        archive = explore(problem, evaluators, run)
+        front = deliver(problem, evaluators, archive, run) if len(archive) else None
+    else:
+        require_eliminated(problem, evaluators)
+        run = Run(problem, progress, cancelled, 1)
+        archive = search_of(method)(problem, evaluators, run)
+        front = as_found(problem, evaluators, archive, run) if len(archive) else None
     if front is not None:
         return front
     if run.stop():
         return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     diagnosis = diagnose(problem, _best)
+    if len(diagnosis.feasible) and method != "auto":
+        return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
     if len(diagnosis.feasible):
         archive = Archive.empty(len(problem.objectives))
         _seed(archive, evaluators, diagnosis.feasible)
@@ -50,6 +58,11 @@ def solve(
 _THIN = (
     "designs that meet all requirements to rounding exist, but none that meets the equalities exactly; "
     "widen the ranges a little"
+)
+
+_MISSED = (
+    "{} found no design that meets all requirements, though such designs exist; allow it more evaluations, "
+    "or use the method auto"
 )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
 from ...model.errors import InputError
+from ..methods.registry import Name, require_fit
 from ..problem import Problem, Range, Settings
 from ..units import shown
 from .clearance import ClearancePart
@@ -33,7 +34,12 @@ class VariablesPart(Part):
 class OptimiserPart(Part):
     """How to search."""
 
-    method: Literal["auto"] = Field("auto", description="how to search", examples=["auto"])
+    method: Name = Field(
+        "auto",
+        description="how to search: the default finds the front of any number of objectives and polishes every design; "
+        "the others deliver what they find",
+        examples=["auto"],
+    )
     designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = Field(
         100, description="how many designs to deliver at most", examples=[100]
     )
@@ -41,6 +47,11 @@ class OptimiserPart(Part):
         None,
         description="designs evaluated per round of the search; chosen by the method if left out",
         examples=[20_000],
+    )
+    evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = Field(
+        None,
+        description="how many designs a method other than auto may evaluate; its own budget if left out",
+        examples=[50_000],
     )
     seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
         1,
@@ -142,8 +153,10 @@ class Job(Part):
                 method=self.optimiser.method,
                 designs=self.optimiser.designs,
                 samples=self.optimiser.samples,
+                evaluations=self.optimiser.evaluations,
                 seed=self.optimiser.seed,
             ),
         )
         require_consistent(problem)
+        require_fit(problem)
         return problem

@@ -166,7 +166,9 @@ BAD: list[tuple[str, str, list[str]]] = [
     (DESIGNS, "designs = 10001", ["optimiser.designs", "at most 10000", "10001"]),
     (DESIGNS, "designs = 1.5", ["optimiser.designs", "whole number", "1.5"]),
     (DESIGNS, "designs = true", ["optimiser.designs", "whole number", "true"]),
-    (DESIGNS, 'method = "nsga2"', ["optimiser.method", '"auto"', '"nsga2"']),
+    (DESIGNS, 'method = "slqp"', ["optimiser.method", '"auto"', '"slqp"', 'did you mean "slsqp"?']),
+    (DESIGNS, 'method = "slsqp"', ["slsqp takes one objective", "got 4", "auto, epsilon_constraint"]),
+    (DESIGNS, "evaluations = 100", ["auto has no budget", "100", "name a method"]),
     ("seed = 1", "seed = -1", ["optimiser.seed", "at least 0", "-1"]),
     # Syntax
     (SPEED, "speed = ", ["no valid TOML", f"line {LINE}"]),

@@ -1,0 +1,140 @@
+"""Methods by name: what is refused, what is delivered, how a run tells and stops."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.evaluation import Evaluator
+from slidercrank.optimise.front import Progress
+from slidercrank.optimise.methods.registry import METHODS, NAMES, budget
+from slidercrank.optimise.problem import Problem, Settings
+from slidercrank.optimise.search import Archive, Run
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import MACHINE, Bounds, degrees, problem
+
+BOTH = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=20)
+POINTS = 512
+
+
+def asked(given: Problem, method: str, **settings: int) -> Problem:
+    """Return a problem that asks for a method."""
+    return replace(given, settings=replace(given.settings, method=method, **settings))
+
+
+def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Sample in two rounds, within a band where equalities remain; the least that a method may be."""
+    archive = Archive.empty(len(problem.objectives))
+    archive.band = 0.05 if evaluators[0].loose else 0.0
+    random = np.random.default_rng(problem.settings.seed)
+    run.rounds = 2
+    for _ in range(run.rounds):
+        if run.stop():
+            break
+        archive.screen(0, evaluators[0], random.random((POINTS, evaluators[0].dimension)))
+        run.tell("sampling", evaluators, archive)
+    return archive
+
+
+@pytest.fixture(autouse=True)
+def sobol(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Put `scatter` in the place of a method."""
+    name = f"slidercrank.optimise.methods.{METHODS['sobol'].module}"
+    module = ModuleType(name)
+    vars(module)["sobol"] = scatter
+    monkeypatch.setitem(sys.modules, name, module)
+
+
+def test_every_name_has_a_method() -> None:
+    assert ["auto", *METHODS] == list(NAMES)
+
+
+def test_the_budget_is_the_one_asked_or_the_method_s_own() -> None:
+    assert budget(asked(BOTH, "nbi", evaluations=123)) == 123
+    assert budget(asked(BOTH, "nbi")) == METHODS["nbi"].budget
+
+
+def test_a_budget_without_a_method_is_refused() -> None:
+    with pytest.raises(InputError, match="auto has no budget of evaluations; got 100"):
+        Settings(evaluations=100)
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.objectives == "one"])
+def test_several_objectives_are_refused_naming_the_methods_that_fit(method: str) -> None:
+    wanted = rf"{method} takes one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
+    with pytest.raises(InputError, match=wanted):
+        solve(asked(BOTH, method))
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.objectives == "several"])
+def test_one_objective_is_refused_naming_the_methods_that_fit(method: str) -> None:
+    with pytest.raises(InputError, match=f"{method} takes several objectives; got 1 .*; use one of auto, slsqp"):
+        solve(asked(problem({"peak_torque": "minimise"}), method))
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.equalities])
+def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method: str) -> None:
+    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
+    with pytest.raises(InputError, match=f"{method} cannot hold peak_slider_speed at one value.*use slsqp or auto"):
+        solve(asked(given, method))
+
+
+def test_designs_are_delivered_as_they_were_found() -> None:
+    front = solve(asked(BOTH, "sobol"))
+    random = np.random.default_rng(1)
+    evaluator = Evaluator(BOTH, sheets(BOTH)[0])
+    sampled = evaluator.sheet.dimensions(random.random((2 * POINTS, 2)))
+    assert front.status == "done"
+    assert 5 <= len(front) <= 20
+    assert all((np.abs(sampled - design).max(axis=1) == 0.0).any() for design in front.dimensions)
+    assert "best found" in set(front.designs["status"])
+    assert front.evaluations >= 2 * POINTS
+    assert front.rates(front.knee()).shape == (2, 2)
+    assert "slack_stroke_mm" in front.designs
+
+
+def test_what_lies_beside_an_equality_is_moved_onto_it() -> None:
+    given = problem(
+        {"transmission_angle": "maximise", "time_ratio": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0}
+    )
+    front = solve(asked(given, "sobol"))
+    speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
+    assert len(front) > 0
+    assert np.abs(speed / 4.0 - 1.0).max() <= 1e-8
+
+
+def test_rounds_are_told_and_the_run_stops_between_them() -> None:
+    rounds: list[Progress] = []
+    whole = solve(asked(BOTH, "sobol"), progress=rounds.append)
+    assert [(entry.round, entry.rounds) for entry in rounds] == [(1, 2), (2, 2)]
+    assert len(whole.history) == 2
+    assert whole.history[0].hypervolume <= whole.history[1].hypervolume
+    rounds.clear()
+    part = solve(asked(BOTH, "sobol"), progress=rounds.append, cancelled=lambda: len(rounds) >= 1)
+    assert part.status == "cancelled"
+    assert len(part) > 0
+    assert len(part.history) == 1
+
+
+def test_a_contradiction_is_explained_whatever_the_method() -> None:
+    held: dict[str, Bounds] = {"stroke": 0.2, "time_ratio": (1.5, None), "transmission_angle": (degrees(60.0), None)}
+    front = solve(asked(problem({"peak_torque": "minimise", "footprint": "minimise"}, held), "sobol"))
+    assert front.status == "infeasible"
+    assert "can be had with all else kept" in front.message
+
+
+def test_no_method_is_imported_before_it_is_used() -> None:
+    code = (
+        "import sys; from slidercrank import load_job, solve; import slidercrank.optimise.solve as _;"
+        "print([name for name in sys.modules if 'optimise.methods.' in name])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == "['slidercrank.optimise.methods.registry']"
