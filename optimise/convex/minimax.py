@@ -24,7 +24,7 @@ to the residual (Karush-Kuhn-Tucker). The proof is local; that no other valley i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,8 +33,9 @@ from ...objectives.cycle_peak import CyclePeak
 from ...objectives.registry import QUANTITIES
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator
+from ..methods.registry import budget
 from ..problem import Problem
-from ..search import WIDTHS, Archive, Run, explore
+from ..search import SAMPLES, WIDTHS, Archive, Run, explore
 from ..stationarity import Array
 from .scp import Descent, Point
 
@@ -113,13 +114,26 @@ def minimise_peak(
 
 def search(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the optima that the descents ended in, each a local one; the method "minimax" of a job."""
-    archive = explore(problem, evaluators, run)
-    found = descend(evaluators, archive, _scale(problem, archive), starts=STARTS, cancelled=run.stop)
-    archive.band = 0.0
-    for index, point in found:
-        archive.screen(index, evaluators[index], point.u[None])
+    screened = explore(_within_budget(problem), evaluators, run)
+    scale = _scale(problem, screened)
+
+    def spent() -> bool:
+        return run.stop() or sum(evaluator.evaluations for evaluator in evaluators) >= budget(problem)
+
+    archive = Archive.empty(1)
+    for index, point in descend(evaluators, screened, scale, starts=STARTS, cancelled=spent):
+        archive.take(index, point.u[None], np.array([[point.top * scale]]))
     run.tell("descending", evaluators, archive)
     return archive
+
+
+def _within_budget(problem: Problem) -> Problem:
+    """Return the problem with samples that take five eighths of the evaluations that a job allows."""
+    allowed = problem.settings.evaluations
+    if allowed is None:
+        return problem
+    samples = min(problem.settings.samples or SAMPLES, max(16, allowed // 8))
+    return replace(problem, settings=replace(problem.settings, samples=samples))
 
 
 def descend(
@@ -148,7 +162,8 @@ def _scale(problem: Problem, archive: Archive) -> float:
 
 
 def _starts(archive: Archive, count: int) -> list[int]:
-    rows, chosen = np.argsort(archive.values[:, 0], kind="stable"), []
+    rows = np.argsort(archive.values[:, 0], kind="stable")
+    chosen: list[int] = []
     while len(rows) and len(chosen) < count:
         best = int(rows[0])
         chosen.append(best)

@@ -2,13 +2,12 @@
 
 Joint forces come from the inverse dynamics of the whole machine with the sections in question, so they grow with them.
 The moment in the rod is that of its own mass only (inertia whip and weight): pins without friction carry none. For end
-accelerations a, b across the rod (less gravity) the load per length of a uniform bar, mass m' per length, is linear, and
-the moment of the bar on two supports at the share x of its length L
+accelerations a, b across the rod (less gravity) the load per length of a uniform bar, mass m' per length, is linear,
+and the moment of the bar on two supports at the share x of its length L
 
     M(x) = -m' L^2 / 6 (a x (1 - x)(2 - x) + b x (1 - x)(1 + x))
 
-(Shigley, "Mechanical Engineering Design", 9th ed., table A-9, superposed). The round ends beyond the pins add moments
-there, m'' the second and m' the first moment of a half-disc: at most what `Whip` keeps for them.
+(a uniform and a triangular load on a simple beam, superposed).
 """
 
 from __future__ import annotations
@@ -116,8 +115,8 @@ def whip_of(mechanism: Mechanism, linkage: Linkage) -> Whip:
     axis = np.stack([np.cos(motion.rod_angle), np.sin(motion.rod_angle)], axis=-1)
     normal = np.stack([-axis[:, 1], axis[:, 0]], axis=-1)
     ends = []
-    for along in (0.0, float(linkage.rod)):
-        point = linkage.rod_point(angles, along=along, speed=mechanism.speed, acceleration=mechanism.acceleration)
+    for place in (0.0, float(linkage.rod)):
+        point = linkage.rod_point(angles, along=place, speed=mechanism.speed, acceleration=mechanism.acceleration)
         ends.append(point.acceleration - np.asarray(mechanism.gravity))
     across = np.stack([(end * normal).sum(axis=1) for end in ends])
     along = np.stack([(end * axis).sum(axis=1) for end in ends])

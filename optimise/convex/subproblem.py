@@ -62,7 +62,7 @@ class Subproblem:
         ]
         if q:
             self.held.append(self.rows + self.normals @ self.move <= self.slack)
-        curve: Any = 0.5 * cp.sum_squares(self.root @ self.move)
+        curve: Any = 0.5 * cp.sum(cp.square(self.root @ self.move))
         self.programme = cp.Problem(cp.Minimize(self.top + self.weight * self.slack + curve), self.held)
 
     def solve(
@@ -88,7 +88,7 @@ class Subproblem:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the step is judged by what it gains
             try:
-                self.programme.solve(
+                self.programme.solve(  # type: ignore[no-untyped-call]
                     solver=cp.CLARABEL,
                     tol_gap_abs=_TOLERANCE,
                     tol_gap_rel=_TOLERANCE,
@@ -100,10 +100,11 @@ class Subproblem:
             return None
         duals = [np.maximum(np.atleast_1d(constraint.dual_value), 0.0) for constraint in self.held]
         limiting = duals[3] if len(duals) > 3 else np.zeros(0)
+        move, top, slack = (np.asarray(found.value, np.float64) for found in (self.move, self.top, self.slack))
         step = Step(
-            np.clip(self.move.value, low, high),
-            float(self.top.value),
-            max(0.0, float(self.slack.value)),
+            np.clip(move, low, high),
+            float(top),
+            max(0.0, float(slack)),
             duals[0],
             limiting,
             duals[1],
