@@ -35,6 +35,7 @@ from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator
 from ..methods.registry import budget
 from ..problem import Problem
+from ..sampling import first_samples
 from ..search import SAMPLES, WIDTHS, Archive, Run, explore
 from ..stationarity import Array
 from .scp import Descent, Point
@@ -43,6 +44,7 @@ STARTS = 12
 """Designs that the programme starts from, the best screened ones that are apart."""
 OPTIMAL = 1e-6
 """Residual that counts as optimal."""
+_LAST = 4096  # samples for the starts where none is feasible
 _APART = 0.1  # of the unit box, between starts
 _CARRIES = 1e-7  # multipliers below it are the solver's rounding
 
@@ -102,8 +104,7 @@ def minimise_peak(
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
     run = Run(problem, None, cancelled, 1 + len(WIDTHS))
     archive = explore(problem, evaluators, run)
-    scale = _scale(problem, archive)
-    found = descend(evaluators, archive, scale, starts=starts, cancelled=run.stop)
+    scale, found = descend(problem, evaluators, archive, starts=starts, cancelled=run.stop)
     if not found:
         raise InputError(
             f"no design of {problem.name!r} that meets all requirements was found; widen the ranges or the limits"
@@ -115,13 +116,13 @@ def minimise_peak(
 def search(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the optima that the descents ended in, each a local one; the method "minimax" of a job."""
     screened = explore(_within_budget(problem), evaluators, run)
-    scale = _scale(problem, screened)
 
     def spent() -> bool:
         return run.stop() or sum(evaluator.evaluations for evaluator in evaluators) >= budget(problem)
 
     archive = Archive.empty(1)
-    for index, point in descend(evaluators, screened, scale, starts=STARTS, cancelled=spent):
+    scale, found = descend(problem, evaluators, screened, starts=STARTS, cancelled=spent)
+    for index, point in found:
         archive.take(index, point.u[None], np.array([[point.top * scale]]))
     run.tell("descending", evaluators, archive)
     return archive
@@ -137,28 +138,36 @@ def _within_budget(problem: Problem) -> Problem:
 
 
 def descend(
-    evaluators: list[Evaluator], archive: Archive, scale: float, *, starts: int, cancelled: Callable[[], bool]
-) -> list[tuple[int, Point]]:
-    """Return sheet and end of the descents that became feasible, from the best designs of an archive that are apart."""
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, *, starts: int, cancelled: Callable[[], bool]
+) -> tuple[float, list[tuple[int, Point]]]:
+    """Return the objective's scale, and sheet and end of the descents that became feasible.
+
+    They start from the best designs of an archive that are apart, or where it is empty from what violates least.
+    """
+    begin = [(int(archive.sheet[row]), archive.u[row]) for row in _starts(archive, starts)]
+    begin = begin or _nearest(evaluators, starts)
+    begin = [(index, u[: evaluators[index].dimension]) for index, u in begin]
+    values = archive.values[:, 0]
+    if not len(values):
+        values = np.array([evaluators[index].exact(u[None])[0].values.max() for index, u in begin])
+    scale = _scale(problem, values)
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     found = []
-    for row in _starts(archive, starts):
+    for index, u in begin:
         if cancelled():
             break
-        index = int(archive.sheet[row])
-        point = descents[index].run(archive.u[row, : evaluators[index].dimension])
+        point = descents[index].run(u)
         if point.violation <= FEASIBLE:
             found.append((index, point))
-    return found
+    return scale, found
 
 
-def _scale(problem: Problem, archive: Archive) -> float:
+def _scale(problem: Problem, values: Array) -> float:
     """Return what the objective is scaled by: its best size, or its spread where a target can be met."""
-    if not len(archive):
+    if not len(values):
         return 1.0
-    values = archive.values[:, 0]
     target = abs(problem.objectives[0].target or 0.0)
-    return float(max(abs(values[0]), target) or np.ptp(values) or 1.0)
+    return float(max(abs(values.min()), target) or np.ptp(values) or 1.0)
 
 
 def _starts(archive: Archive, count: int) -> list[int]:
@@ -170,6 +179,17 @@ def _starts(archive: Archive, count: int) -> list[int]:
         apart = np.abs(archive.u[rows] - archive.u[best]).max(axis=1) >= _APART
         rows = rows[apart | (archive.sheet[rows] != archive.sheet[best])]
     return chosen
+
+
+def _nearest(evaluators: list[Evaluator], count: int) -> list[tuple[int, Array]]:
+    """Return sheets and points that violate the constraints least, where no sample comes near to meeting them."""
+    found: list[tuple[float, int, Array]] = []
+    for index, evaluator in enumerate(evaluators):
+        u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)
+        violation = evaluator.screen(u)[2]
+        rows = np.argsort(violation, kind="stable")[:count]
+        found += [(float(violation[row]), index, u[row]) for row in rows[np.isfinite(violation[rows])].tolist()]
+    return [(index, u) for _, index, u in sorted(found, key=lambda item: item[0])[:count]]
 
 
 def _result(

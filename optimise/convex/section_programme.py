@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -84,16 +85,12 @@ class Task:
         return self.material.density * (of_crank + of_rod)
 
 
-def _of_range(name: str) -> bool:
-    return name.endswith(("width", "depth"))
-
-
 class SectionProgramme:
     """Least mass under the limit states, loads being monomials of the sizes: F x1^a1 x2^a2 x3^a3 x4^a4."""
 
     def __init__(self, task: Task, loads: list[str]) -> None:
         """State the programme for the loads of these names."""
-        import cvxpy as cp
+        cp: Any = import_module("cvxpy")  # its stubs leave out most of its names
 
         self.loads, self.powers = cp.Parameter(len(loads), pos=True), cp.Parameter((len(loads), 4))
         self.low, self.high = cp.Parameter(4, pos=True), cp.Parameter(4, pos=True)
@@ -122,15 +119,13 @@ class SectionProgramme:
 
         sizes: (4,), logarithms, where the loads (n,) have the slopes powers (n, 4).
         """
-        import cvxpy as cp
+        cp: Any = import_module("cvxpy")
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the iteration goes on until it settles
-            self.programme.solve(  # type: ignore[no-untyped-call]
-                gp=True, solver=cp.CLARABEL, tol_gap_abs=_EXACT, tol_gap_rel=_EXACT, tol_feas=_EXACT
-            )
+            self.programme.solve(gp=True, solver=cp.CLARABEL, tol_gap_abs=_EXACT, tol_gap_rel=_EXACT, tol_feas=_EXACT)
         if self.programme.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
             raise InputError(
                 f"the sections could not be sized: the solver ended as {self.programme.status}; check loads and limits"

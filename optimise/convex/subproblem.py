@@ -12,7 +12,9 @@ Lagrangian. Its multipliers of the pieces are a convex combination by constructi
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -48,7 +50,7 @@ class Subproblem:
 
     def __init__(self, k: int, p: int, q: int) -> None:
         """State the programme."""
-        import cvxpy as cp
+        cp: Any = import_module("cvxpy")  # its stubs leave out most of its names
 
         self.move, self.top, self.slack = cp.Variable(k), cp.Variable(), cp.Variable(nonneg=True)
         self.pieces, self.slopes = cp.Parameter(p), cp.Parameter((p, k))
@@ -75,9 +77,7 @@ class Subproblem:
         weight: float,
     ) -> Step | None:
         """Return the step for values and gradients of pieces and constraints; None where the solver gives up."""
-        import warnings
-
-        import cvxpy as cp
+        cp: Any = import_module("cvxpy")
 
         (pieces, slopes), (rows, normals) = _present(*goals), _present(*limits)
         self.pieces.value, self.slopes.value = pieces, slopes
@@ -88,7 +88,7 @@ class Subproblem:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the step is judged by what it gains
             try:
-                self.programme.solve(  # type: ignore[no-untyped-call]
+                self.programme.solve(
                     solver=cp.CLARABEL,
                     tol_gap_abs=_TOLERANCE,
                     tol_gap_rel=_TOLERANCE,
