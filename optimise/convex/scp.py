@@ -17,6 +17,7 @@ CONVERGED = 1e-8
 _ITERATIONS = 80
 _RADIUS, _LARGEST, _SHORTEST = 0.1, 0.5, 1e-12  # trust region, of the unit box
 _POOR, _GOOD = 0.1, 0.75  # actual over predicted decrease that shrinks and that widens it
+_MET = 1e-11  # relative violation that more steps need not remove
 _NOISE = 1e-14  # of the objective: decreases that rounding may hide
 _WEIGHT, _HEAVIEST = 10.0, 1e7  # penalty of a relative violation, objective scaled to one
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
@@ -76,7 +77,8 @@ class Descent:
                 break
             point.step, point.residual = step, residual_of(point, step)
             still = float(np.abs(step.move).max()) < _SHORTEST
-            if point.residual <= CONVERGED or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
+            done = point.residual <= CONVERGED and point.violation <= _MET
+            if done or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
                 break
             root = self._root(point, step)
             step, weight = self._programme(point, root, radius, weight)
