@@ -24,6 +24,7 @@ from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
 from .screen import give, say
+from .sections_command import sections
 from .sweep_command import sweep
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
@@ -102,7 +103,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, check, schema, front, export, cases):
+for command in (optimise, analyse, sweep, check, schema, front, export, cases, sections):
     app.command()(command)
 
 

@@ -15,13 +15,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
+from ..convex.section_limits import Material, SectionLimits
 from ..problem import Problem
 from ..units import shown
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job
 
-__all__ = ["Job", "job_schema", "load_job", "parse_job"]
+__all__ = ["Job", "job_schema", "load_job", "load_sections", "parse_job"]
 
 
 def load_job(path: str | PathLike[str]) -> Problem:
@@ -52,6 +53,15 @@ def parse_job(data: Mapping[str, Any]) -> Problem:
         raise
     except InputError as error:
         raise JobError(str(error)) from None
+
+
+def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
+    """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
+    load_job(path)  # tells what is wrong with the file, if anything is
+    part = Job.model_validate(read(Path(path))).sections
+    if part is None:
+        raise JobError(f"{path}: sizing sections needs the table [sections]; got none; add its material and its pins")
+    return part.build()
 
 
 def job_schema() -> dict[str, Any]:

@@ -17,6 +17,7 @@ from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of
+from .sections import SectionsPart
 from .values import AnyRange, Part, PositiveRange
 
 
@@ -131,6 +132,23 @@ class Job(Part):
     objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = Field(
         description="what is wanted: the front shows the best compromises",
         examples=[{"time_ratio": "maximise", "peak_torque": "minimise"}],
+    )
+    sections: SectionsPart | None = Field(
+        None,
+        description="material, pins and safety of crank and rod, for the sizing of their sections",
+        examples=[
+            {
+                "material": {
+                    "density": "7850 kg/m^3",
+                    "elasticity": "207 GPa",
+                    "yield_strength": "350 MPa",
+                    "ultimate_strength": "520 MPa",
+                    "endurance": "150 MPa",
+                    "bearing_pressure": "20 MPa",
+                },
+                "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
+            }
+        ],
     )
     optimiser: OptimiserPart = Field(
         OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]

@@ -3,6 +3,7 @@
     auto                                        the default: sampling, zooming, polish by SQP (`search`, `deliver`)
     slsqp, trust_constr                         gradient methods from many starts, one objective
     differential_evolution, shgo                global methods, one objective
+    minimax                                     sequential convex programming, one objective, all peaks at once
     epsilon_constraint, chebyshev, nbi          fronts by scalarisation, two objectives or more
     nsga2, nsga3, tpe, cmaes, random, sobol     evolutionary and model-based methods, plain sampling
 
@@ -30,6 +31,7 @@ Name = Literal[
     "trust_constr",
     "differential_evolution",
     "shgo",
+    "minimax",
     "epsilon_constraint",
     "chebyshev",
     "nbi",
@@ -74,6 +76,7 @@ METHODS: dict[str, Method] = {
     "trust_constr": Method("gradient", 20_000, "one"),
     "differential_evolution": Method("globally", 50_000, "one", equalities=False),
     "shgo": Method("globally", 50_000, "one", equalities=False),
+    "minimax": Method("minimax", 50_000, "one"),
     "epsilon_constraint": Method("scalarised", 100_000, "several"),
     "chebyshev": Method("scalarised", 100_000, "several"),
     "nbi": Method("scalarised", 100_000, "several"),

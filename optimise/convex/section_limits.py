@@ -1,0 +1,70 @@
+"""What sections are made of and what they must keep: material, safety factors, pins, sizes that can be made."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+
+
+def _require(what: str, name: str, value: float, least: float = 0.0) -> None:
+    if not math.isfinite(value) or value <= least:
+        raise InputError(f"{what} must have a {name} of more than {least:g} and finite; got {value:g}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """What crank and rod are made of, SI.
+
+    endurance: fully reversed strength of the finished part, all corrections and the stress raisers of the eyes in it
+    (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
+    """
+
+    density: float
+    elasticity: float
+    yield_strength: float
+    ultimate_strength: float
+    endurance: float
+    bearing_pressure: float
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            _require("a material", name.replace("_", " "), getattr(self, name))
+        if not self.endurance <= self.yield_strength <= self.ultimate_strength:
+            raise InputError(
+                "a material needs endurance <= yield strength <= ultimate strength; got "
+                f"{self.endurance:g}, {self.yield_strength:g} and {self.ultimate_strength:g} Pa; check the three"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SectionLimits:
+    """Safety factors, pins, and the sections that can be made, SI.
+
+    crank_pivot, crank_pin, slider_pin: pin diameters, m. width, depth: least and greatest, m. criterion: of fatigue.
+    The factors' defaults are customary for known loads and materials; set your own.
+    """
+
+    crank_pivot: float
+    crank_pin: float
+    slider_pin: float
+    width: tuple[float, float] = (5e-3, 0.2)
+    depth: tuple[float, float] = (3e-3, 0.1)
+    static_safety: float = 2.0
+    fatigue_safety: float = 1.5
+    buckling_safety: float = 3.0
+    criterion: str = "goodman"
+
+    def __post_init__(self) -> None:
+        for name in ("crank_pivot", "crank_pin", "slider_pin"):
+            _require("a pin", f"diameter ({name})", getattr(self, name))
+        for name in ("static_safety", "fatigue_safety", "buckling_safety"):
+            if not 1.0 <= getattr(self, name) < math.inf:
+                raise InputError(f"{name} must be at least 1 and finite; got {getattr(self, name):g}")
+        for name in ("width", "depth"):
+            low, high = getattr(self, name)
+            if not 0.0 < low < high < math.inf:
+                raise InputError(f"the {name} needs 0 < least < greatest, finite; got {low:g} to {high:g} m")
+        if self.criterion not in ("goodman", "soderberg"):
+            raise InputError(f"the fatigue criterion must be 'goodman' or 'soderberg'; got {self.criterion!r}")
