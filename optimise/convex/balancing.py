@@ -37,7 +37,7 @@ from ...model.mechanism import Mechanism
 from ...model.peaks import find_peaks
 from ...model.shaking import ShakingCurves, shaking_curves
 from ...model.signals import Signal
-from ...model.tolerance.sources import single
+from ...model.single import single
 from .shaking_rows import Array, mean_rows, moving_moment, rows, with_masses
 
 Measure = Literal["peak", "rms"]

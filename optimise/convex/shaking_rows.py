@@ -69,10 +69,9 @@ def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
     weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2) / _NODES
     force, moment = rows(mechanism, linkage, angles)
     share = np.sqrt(weight)[:, None]
-    return (
-        np.linalg.qr(np.concatenate([share * force[0], share * force[1]]), mode="r"),
-        np.linalg.qr(share * moment, mode="r"),
-    )
+    both = np.concatenate([share * force[0], share * force[1]]), share * moment
+    reduced: list[Array] = [np.asarray(np.linalg.qr(table, mode="r")) for table in both]
+    return reduced[0], reduced[1]
 
 
 def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:

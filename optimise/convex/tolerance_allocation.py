@@ -36,7 +36,7 @@ from ...model.errors import InputError
 from ...model.linkage import Linkage
 from ...model.loads import require_word
 from ...model.mechanism import Mechanism, Window
-from ...model.tolerance.sources import single
+from ...model.single import single
 from .costs import Costs
 from .error_rows import Array, ErrorRows, Kind
 
@@ -274,4 +274,4 @@ class _Programme:
 def _nearest(angles: Array, among: Array) -> NDArray[np.intp]:
     """Return which of some crank angles is nearest to each angle, rad."""
     apart: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
-    return apart.argmin(axis=1)
+    return np.asarray(apart.argmin(axis=1))

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.optimize
 from numpy.typing import NDArray
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage import Linkage
@@ -16,10 +17,12 @@ from slidercrank.model.mechanism import Branch, Clearances, Mechanism, Tolerance
 from slidercrank.model.tolerance.first_order import first_order
 from slidercrank.model.tolerance.sources import counted_angles
 from slidercrank.optimise.convex.costs import NAMES, Cost, Costs
-from slidercrank.optimise.convex.tolerance_allocation import Allocation, Kind, allocate
+from slidercrank.optimise.convex.error_rows import Kind
+from slidercrank.optimise.convex.tolerance_allocation import Allocation, allocate
 from tests.model.cases import linkage_of, random_designs
 
 Array = NDArray[np.float64]
+search: Any = scipy.optimize.minimize  # its stubs have no array of constraints
 KINDS: tuple[Kind, ...] = ("worst case", "rss")
 SIEVE = Linkage(0.14, 0.31, 0.06)
 PLAIN = Costs(
@@ -51,7 +54,8 @@ def values_of(found: Allocation) -> Array:
 
 
 def influence_sizes(linkage: Linkage, theta: Any) -> Array:
-    return np.abs(np.stack(np.broadcast_arrays(*linkage.error_influences(theta))))
+    sizes: Array = np.abs(np.stack(np.broadcast_arrays(*linkage.error_influences(theta))))
+    return sizes
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -109,13 +113,13 @@ def by_slsqp(mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float,
     def slope(z: Array) -> Array:
         return np.array([c.slope(float(t)) * t for c, t in zip(each, unit * np.exp(z), strict=True)])
 
-    start = np.full(4, np.log(0.5 * room.min() / (4.0 * s.max(axis=1) @ unit**power) ** 1.0) / power)
+    start = np.full(4, np.log(0.5 * room.min() / (4.0 * s.max(axis=1) @ unit**power)) / power)
     bounds = [
         (np.log(c.least / c.at) if c.least else -12.0, np.log(c.greatest / c.at) if np.isfinite(c.greatest) else 12.0)
         for c in each
     ]
     scale = 1.0 / cost(start)
-    done = minimize(
+    done = search(
         lambda z: scale * cost(z),
         np.clip(start, *np.array(bounds).T),
         jac=lambda z: scale * slope(z),
@@ -191,7 +195,7 @@ def test_prices_predict_what_loosening_a_limit_or_a_bound_by_one_percent_saves(k
         part = next(part for part in base.parts if part.name == which)
         cost = costs.given[which]
         end = {"greatest": cost.greatest * (1.0 + share)} if which == "rod" else {"least": cost.least * (1.0 - share)}
-        moved = dataclasses.replace(costs, **{which: dataclasses.replace(cost, **end)})  # type: ignore[arg-type]
+        moved = dataclasses.replace(costs, **{which: dataclasses.replace(cost, **end)})
         return base.cost - allocate(SIEVE, moved, 2e-4, kind).cost, part.saving * part.tolerance * share
 
     for which in ("limit", "rod", "offset"):
