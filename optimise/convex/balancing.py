@@ -235,9 +235,8 @@ class _Programme:
                 rules.append(cp.norm(parts, axis=0) <= goals[-1])
             else:
                 rules.append(cp.abs(first + others @ z) <= goals[-1])
-        held = cp.norm(z[:2]) <= (math.inf if self.most is None else self.most) / self.unit[0]
-        if self.most is not None:
-            rules.append(held)
+        held = [] if self.most is None else [cp.norm(z[:2]) <= self.most / self.unit[0]]
+        rules += held
         if self.rod is not None:
             rules += [cp.quad_over_lin(z[3:5], z[2]) <= z[5], z[5] <= z[2], z[2] <= self.rod.mass / self.unit[2]]
         problem = cp.Problem(cp.Minimize(sum(goals)), rules)
@@ -249,7 +248,7 @@ class _Programme:
         x = np.zeros(6)
         x[: self.count] = z.value * self.unit[: self.count]
         tight = self.most is not None and math.hypot(x[0], x[1]) > self.most * (1.0 - 1e-6)
-        price = float(held.dual_value) * self.force / self.unit[0] if tight else 0.0
+        price = held[0].dual_value * self.force / self.unit[0] if tight else 0.0
         return self._lightest(self._inside(x)), float(problem.value * self.force), float(price)
 
     def _inside(self, x: Array) -> Array:

@@ -62,6 +62,12 @@ def job(tmp_path: Path) -> Path:
     return file
 
 
+def test_help_names_both(command: Command) -> None:
+    for name in ("allocate", "balance"):
+        assert f"  {name} " in command("--help").stdout
+        assert command(name, "--help").exit_code == 0
+
+
 def test_allocation_is_that_of_the_model(job: Path, command: Command) -> None:
     done = command("allocate", job, *ALLOCATE, "--kind", "rss", "--json")
     assert done.exit_code == 0, done.stderr
