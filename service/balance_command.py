@@ -165,8 +165,10 @@ def show(screen: Console, numbers: dict[str, Any]) -> None:
     ]
     rod = numbers["rod_balance"]
     if rod is not None:
-        where = (rod["centre_along_mm"], rod["centre_across_mm"])
-        place = "" if None in where else f"centre {where[0]:.5g} mm along, {where[1]:.4g} mm across the rod"
+        place = ""
+        if rod["centre_along_mm"] is not None:
+            along, across = (round(rod[f"centre_{name}_mm"], 3) + 0.0 for name in ("along", "across"))  # no "-0"
+            place = f"centre {along:g} mm along, {across:g} mm across the rod"
         lines += [
             ("added to the rod", rod["mass_kg"], "kg", place),
             ("its inertia about the crank pin", rod["inertia_kg_m2"], "kg m^2", ""),
