@@ -9,6 +9,7 @@ from typing import Literal
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from ..objectives.registry import QUANTITIES, quantity
+from .convex.costs import Costs
 from .methods.registry import require_known
 
 Sense = Literal["minimise", "maximise", "target"]
@@ -104,7 +105,7 @@ class Settings:
 class Problem:
     """A complete optimisation problem.
 
-    crank, rod, offset: where the three dimensions may lie, m.
+    crank, rod, offset: where the three dimensions may lie, m. costs: of the tolerances, for their allocation.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Problem:
     objectives: tuple[Objective, ...]
     constraints: tuple[Constraint, ...] = ()
     settings: Settings = Settings()
+    costs: Costs | None = None
 
     def __post_init__(self) -> None:
         if not self.objectives:

@@ -18,7 +18,9 @@ import typer
 from typer.core import TyperGroup
 
 from ..model.errors import SlidercrankError
+from .allocate_command import allocate
 from .analyse_command import analyse
+from .balance_command import balance
 from .cases_command import cases
 from .job_commands import check, schema
 from .optimise_command import optimise
@@ -103,7 +105,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, check, schema, front, export, cases, sections):
+for command in (optimise, analyse, sweep, allocate, balance, sections, check, schema, front, export, cases):
     app.command()(command)
 
 

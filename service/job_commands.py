@@ -28,6 +28,7 @@ def check(
     parts: list[tuple[str, Any]] = [
         ("given", summary["given"]),
         ("tolerances", summary["tolerances"]),
+        ("costs", summary["costs"]),
         ("variables", summary["variables"]),
         ("rules", summary["rules"]),
         ("objectives", summary["objectives"]),

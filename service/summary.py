@@ -10,13 +10,14 @@ from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
 from ..objectives.registry import quantity
+from ..optimise.convex.costs import Cost
 from ..optimise.elimination import UNKNOWNS, sheets
 from ..optimise.evaluation import constraints_of
 from ..optimise.problem import Constraint, Objective, Problem, Range
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
-    """Return a job in words: name, given, variables, rules, objectives, degrees of freedom, search."""
+    """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, search."""
     sheet = sheets(problem)[0]
     free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
     settings = problem.settings
@@ -25,6 +26,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "name": problem.name,
         "given": _given(problem.mechanism),
         "tolerances": _tolerances(problem.mechanism),
+        "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [f"{name} {_range(getattr(problem, name))}" for name in UNKNOWNS],
         "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
         "objectives": [_objective(objective) for objective in problem.objectives],
@@ -135,6 +137,16 @@ def _tolerance(tolerance: Tolerance) -> str:
     if tolerance.fraction:
         parts.append(f"{100.0 * tolerance.fraction:.6g} %")
     return " + ".join(parts)
+
+
+def _cost(name: str, cost: Cost) -> str:
+    factor, unit = (math.degrees(1.0), "deg") if name == "crank_angle" else (1e3, "mm")
+    power = "" if cost.exponent == 1.0 else f"^{cost.exponent:.6g}"
+    fixed = f"{cost.fixed:.6g} + " if cost.fixed else ""
+    ends = [f"at least {factor * cost.least:.6g} {unit}"] if cost.least else []
+    ends += [f"at most {factor * cost.greatest:.6g} {unit}"] if math.isfinite(cost.greatest) else []
+    text = f"{name.replace('_', ' ')} {fixed}{cost.cost:.6g} ({factor * cost.at:.6g} {unit} / tolerance){power}"
+    return ", ".join([text, *ends])
 
 
 def _range(bounds: Range) -> str:

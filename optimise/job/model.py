@@ -12,6 +12,7 @@ from ..problem import Problem, Range, Settings
 from ..units import shown
 from .clearance import ClearancePart
 from .contradictions import require_consistent
+from .costs import CostsPart
 from .drive import DrivePart
 from .friction import FrictionPart
 from .loads import Load
@@ -120,6 +121,11 @@ class Job(Part):
         description="a joint that is loose, for the simulation of its impacts; designs are sized with ideal joints",
         examples=[{"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"}],
     )
+    costs: CostsPart | None = Field(
+        None,
+        description="what tolerances cost, for their allocation",
+        examples=[{"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}}],
+    )
     variables: VariablesPart = Field(
         description="where the three dimensions may lie",
         examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
@@ -167,6 +173,7 @@ class Job(Part):
             offset=Range(lower=variables.offset[0], upper=variables.offset[1]),
             objectives=tuple(objectives_of(self.objectives)),
             constraints=tuple(constraints_of(self.constraints)),
+            costs=None if self.costs is None else self.costs.build(),
             settings=Settings(
                 method=self.optimiser.method,
                 designs=self.optimiser.designs,

@@ -1,0 +1,78 @@
+"""What tolerances cost to make."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """Cost of holding a tolerance t: fixed + cost (at / t)^exponent.
+
+    With exponent 1 the reciprocal model a + b / t (b = cost at), with others the power model a + b / t^k; both in M. F.
+    Spotts, "Allocation of tolerances to minimize cost of assembly", J. Engineering for Industry 95, 1973, and the
+    survey of K. W. Chase and W. H. Greenwood, "Design issues in mechanical tolerance analysis", Manufacturing Review
+    1(1), 1988. Any currency, the same in all costs.
+
+    cost: of the part that depends on the tolerance, where that is `at`. at: m, of the crank angle rad. fixed: the rest.
+    least, greatest: between which the process can be set, m or rad.
+    """
+
+    cost: float
+    at: float
+    fixed: float = 0.0
+    exponent: float = 1.0
+    least: float = 0.0
+    greatest: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("cost", "at", "exponent"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"the {name} of a tolerance's cost must be positive and finite; got {value:g}")
+        if not math.isfinite(self.fixed) or self.fixed < 0.0:
+            raise InputError(f"the fixed cost of a tolerance must be zero or more and finite; got {self.fixed:g}")
+        if not 0.25 <= self.exponent <= 4.0:
+            raise InputError(
+                f"the exponent of a tolerance's cost must be from 0.25 to 4; got {self.exponent:g}; "
+                "processes have 0.5 to 3"
+            )
+        if not (math.isfinite(self.least) and 0.0 <= self.least < self.greatest):
+            raise InputError(
+                "the least tolerance must be zero or more and below the greatest; "
+                f"got {self.least:g} to {self.greatest:g}; a given tolerance belongs to the mechanism, without a cost"
+            )
+
+    def of(self, tolerance: float) -> float:
+        """Return the cost of a tolerance, m or rad; infinite at zero."""
+        return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
+
+    def slope(self, tolerance: float) -> float:
+        """Return the change of the cost with the tolerance, per m or rad; never positive."""
+        return -self.exponent * (self.of(tolerance) - self.fixed) / tolerance
+
+
+@dataclass(frozen=True, kw_only=True)
+class Costs:
+    """The costs of the tolerances; None: that tolerance is not to be chosen but what the mechanism has."""
+
+    crank: Cost | None = None
+    rod: Cost | None = None
+    offset: Cost | None = None
+    crank_angle: Cost | None = None
+
+    def __post_init__(self) -> None:
+        if not self.given:
+            raise InputError("costs must name at least one of crank, rod, offset and crank_angle; got none")
+
+    @property
+    def given(self) -> dict[str, Cost]:
+        """The costs that there are, by name, in the order of `NAMES`."""
+        return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
+
+
+NAMES = ("crank", "rod", "offset", "crank_angle")
+"""What has a tolerance that can be chosen, in the order of `model.tolerance.sources.SOURCES`."""

@@ -1,0 +1,95 @@
+"""What tolerances cost in a job file, [costs], and how it becomes the costs of an allocation."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from ...model.errors import InputError
+from .. import units
+from ..convex.costs import Cost, Costs
+from .values import AngleTolerance, Fraction, Part, Physical, PositiveLength, PositiveRatio, Radius
+
+PositiveAngle = Annotated[float, Physical(units.ANGLE, "positive")]
+
+
+class _CostPart(Part):
+    """What all costs have. Any currency, the same in all."""
+
+    cost: PositiveRatio = Field(
+        description="of the part that depends on the tolerance, where that is `at`", examples=[8.0]
+    )
+    fixed: Fraction = Field(0.0, description="the rest of the cost", examples=[5.0])
+    exponent: PositiveRatio = Field(
+        1.0, description="k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", examples=[1.0]
+    )
+
+
+class LengthCostPart(_CostPart):
+    """Cost of the tolerance of a length: fixed + cost (at / tolerance)^exponent."""
+
+    at: PositiveLength = Field(description="the tolerance that `cost` is for", examples=["0.05 mm"])
+    min: Radius = Field(0.0, description="least tolerance that can be made", examples=["0.005 mm"])
+    max: PositiveLength | None = Field(None, description="greatest tolerance that is allowed", examples=["0.2 mm"])
+
+    @model_validator(mode="after")
+    def _possible(self) -> LengthCostPart:
+        _build(self)
+        return self
+
+
+class AngleCostPart(_CostPart):
+    """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
+
+    at: PositiveAngle = Field(description="the tolerance that `cost` is for", examples=["0.1 deg"])
+    min: AngleTolerance = Field(0.0, description="least tolerance that can be made", examples=["0.01 deg"])
+    max: PositiveAngle | None = Field(None, description="greatest tolerance that is allowed", examples=["1 deg"])
+
+    @model_validator(mode="after")
+    def _possible(self) -> AngleCostPart:
+        _build(self)
+        return self
+
+
+def _build(part: LengthCostPart | AngleCostPart) -> Cost:
+    return Cost(
+        cost=part.cost,
+        at=part.at,
+        fixed=part.fixed,
+        exponent=part.exponent,
+        least=part.min,
+        greatest=math.inf if part.max is None else part.max,
+    )
+
+
+class CostsPart(Part):
+    """What it costs to hold each tolerance, for the allocation of tolerances; one without a cost stays as given."""
+
+    crank: LengthCostPart | None = Field(
+        None, description="of the crank", examples=[{"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"}]
+    )
+    rod: LengthCostPart | None = Field(
+        None, description="of the rod", examples=[{"cost": 6.0, "at": "0.05 mm", "fixed": 2.0}]
+    )
+    offset: LengthCostPart | None = Field(
+        None, description="of the offset", examples=[{"cost": 4.0, "at": "0.1 mm", "exponent": 2.0}]
+    )
+    crank_angle: AngleCostPart | None = Field(
+        None, description="of the crank angle", examples=[{"cost": 10.0, "at": "0.1 deg", "max": "1 deg"}]
+    )
+
+    @model_validator(mode="after")
+    def _some(self) -> CostsPart:
+        if not self.model_fields_set:
+            raise InputError(
+                "must name at least one of crank, rod, offset and crank_angle; got an empty table; "
+                'add for example crank = { cost = 8.0, at = "0.05 mm" }'
+            )
+        return self
+
+    def build(self) -> Costs:
+        """Return the costs as an allocation takes them."""
+        given = {name: getattr(self, name) for name in ("crank", "rod", "offset", "crank_angle")}
+        return Costs(**{name: _build(part) for name, part in given.items() if part is not None})
