@@ -112,7 +112,7 @@ def test_the_other_pins_can_be_loose_too(joint: str) -> None:
         sieve(-200.0), loads=(StrokeForce(outward=-50.0, inward=20.0), Viscous(coefficient=10.0)), branch="crossed"
     )
     clearance = replace(SOFT, joint=joint, friction=0.1)  # type: ignore[arg-type]
-    run = simulate(machine, LINKAGE, clearance, cycles=2, discard=1, tolerance=1e-8)
+    run = simulate(machine, replace(LINKAGE, branch="crossed"), clearance, cycles=2, discard=1, tolerance=1e-8)
     depth = np.hypot(run.journal_x, run.journal_y) - 1e-3
     np.testing.assert_allclose(run.penetration, depth, rtol=0, atol=1e-15)
     assert depth.max() < 1e-3

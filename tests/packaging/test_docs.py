@@ -67,7 +67,7 @@ def test_links_within_a_page_lead_to_headings(pages: dict[Path, str]) -> None:
 
 def test_files_that_the_pages_name_exist(pages: dict[Path, str], root: Path) -> None:
     named = {path for page in pages.values() for path in MODULE.findall(prose(page))}
-    assert "model/kinematics.py" in named
+    assert "runs/feeder.toml" in named
     assert {path for path in named if not (root / path).exists()} == set()
 
 

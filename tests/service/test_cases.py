@@ -11,7 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slidercrank.model.clearance.joint import Clearance
+from slidercrank.service.cases import case_2, figures
 from slidercrank.service.cases.collect import collect
+from slidercrank.service.cases.figures import draw_cases
 from slidercrank.service.cases.published import CASES, Case, Row, confirmed, read_table
 from tests.model.virtual_work import path
 from tests.service.conftest import Command
@@ -209,7 +212,17 @@ def test_json_has_every_row(command: Command, cases: list[Case]) -> None:
 
 
 def test_figures_of_one_case_are_drawn(command: Command, tmp_path: Path) -> None:
-    done = command("cases", "--case", 2, "--figures", tmp_path / "figures", "--json")
+    done = command("cases", "--case", 3, "--figures", tmp_path / "figures", "--json")
     assert done.exit_code == 0, done.stderr
     files = sorted(file.name for file in (tmp_path / "figures").iterdir())
-    assert files == ["case_2_motion.png", "case_2_sensitivity.png"]
+    assert files == ["case_3_motion_and_forces.png"]
+
+
+def test_case_2_has_the_figure_of_its_loose_joint_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The simulation takes long and has its own tests; here only what is simulated counts."""
+    drawn: list[tuple[object, ...]] = []
+    monkeypatch.setattr(figures, "draw_clearance_speeds", lambda *given: drawn.append(given) or given[-1])
+    names = [file.name for file in draw_cases([2], tmp_path)]
+    assert names == ["case_2_motion.png", "case_2_sensitivity.png", "case_2_clearance.png"]
+    assert drawn == [(case_2.LOOSE, case_2.SIEVE, tmp_path / "case_2_clearance.png")]
+    assert case_2.LOOSE.clearance == Clearance(joint="crank pin", radius=1e-3, journal_radius=0.01)

@@ -102,8 +102,8 @@ def test_extremes_within_the_box_are_beyond_its_corners() -> None:
 def test_crossed_branch_is_the_mirror_image() -> None:
     for mechanism, linkage in CASES[:10]:
         other: Branch = "open" if linkage.branch == "crossed" else "crossed"
-        mirrored = dataclasses.replace(mechanism, branch=other)
-        one, two = extremes(mechanism, linkage, TURN), extremes(mirrored, linkage, math.pi - TURN)
+        mirrored, image = dataclasses.replace(mechanism, branch=other), dataclasses.replace(linkage, branch=other)
+        one, two = extremes(mechanism, linkage, TURN), extremes(mirrored, image, math.pi - TURN)
         np.testing.assert_allclose(one.least, -two.greatest, rtol=1e-9, atol=1e-15)
         np.testing.assert_allclose(one.greatest, -two.least, rtol=1e-9, atol=1e-15)
 
@@ -182,5 +182,5 @@ def test_linkages_within_the_limits_must_turn() -> None:
         extremes(mechanism, close, 0.0)
     with pytest.raises(InputError, match="below 180 deg"):
         extremes(Mechanism(tolerances=Tolerances(crank_angle=Tolerance(absolute=4.0))), SUPPORT, 0.0)
-    with pytest.raises(InputError, match=r"one linkage is needed; got an array of shape \(2,\)"):
+    with pytest.raises(InputError, match=r"one linkage at a time; got an array of shape \(2,\)"):
         extremes(PUBLISHED, Linkage([1.4, 1.5], 1.8), 0.0)

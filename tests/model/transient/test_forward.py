@@ -120,9 +120,10 @@ def test_a_conservative_machine_keeps_its_energy_over_many_turns() -> None:
 
 def test_a_conservative_machine_runs_back_to_where_it_came_from() -> None:
     machine = replace(TABLES, speed=1.0, loads=(*TABLES.loads[1:3],))
-    there = simulate(machine, LINKAGE, COAST, duration=1.0, start=State(angle=0.4, speed=12.0))
+    linkage = on_branch(machine)
+    there = simulate(machine, linkage, COAST, duration=1.0, start=State(angle=0.4, speed=12.0))
     end = State(angle=float(there.angle[-1]), speed=-float(there.speed[-1]))
-    back = simulate(machine, LINKAGE, COAST, duration=1.0, start=end)
+    back = simulate(machine, linkage, COAST, duration=1.0, start=end)
     assert back.angle[-1] == pytest.approx(0.4, abs=1e-8)
     assert back.speed[-1] == pytest.approx(-12.0, rel=1e-9)
 
