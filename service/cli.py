@@ -1,7 +1,7 @@
 """The command line: `slidercrank COMMAND`.
 
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
-feasible, or no design that meets the conditions; 130 interrupted (Ctrl-C).
+feasible, or no design that meets the conditions; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
 Nothing that is slow to import is imported here or at the top of the command modules: `--help` stays quick.
 """
@@ -20,6 +20,7 @@ from typer.core import TyperGroup
 from ..model.errors import SlidercrankError
 from .analyse_command import analyse
 from .cases_command import cases
+from .certify_command import certify
 from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
@@ -102,7 +103,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, check, schema, front, export, cases):
+for command in (optimise, analyse, sweep, check, schema, front, export, cases, certify):
     app.command()(command)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import reduce
 
@@ -16,12 +17,21 @@ from ...objectives.cycle_peak import CyclePeak
 from ...objectives.registry import QUANTITIES
 from ..elimination import UNKNOWNS
 from ..evaluation import Evaluator, constraints_of
-from ..problem import Constraint, Objective, Problem
+from ..problem import Constraint, Objective, Problem, Range
 from .cycle import Curve, best_angles
 from .enclosure import Array, Enclosure, coordinate
 from .limits import Limits
 
 Mask = NDArray[np.bool_]
+_ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
+# Whether a closed form rises with crank, rod and |offset|; the derivatives have one sign for all that turns fully.
+_RISES = {
+    ClosedForm.TIME_RATIO: (True, False, True),
+    ClosedForm.TRANSMISSION_ANGLE: (False, True, False),
+    ClosedForm.STROKE: (True, False, True),
+    ClosedForm.ROD_TO_OFFSET: (True, True, False),
+    ClosedForm.ROD_TO_CRANK: (False, True, True),
+}
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
 
 
@@ -87,12 +97,13 @@ class Boxes:
         """Prepare the curves; raise `InputError` for an objective that cannot be bounded."""
         problem, self.evaluator = evaluator.problem, evaluator
         self.sheet, self.problem, self.span = evaluator.sheet, problem, span
-        self.computed = evaluator.computed
         self.objectives = problem.objectives if objectives else ()
         for objective in self.objectives:
             reason = covered(problem, objective)
             if reason:
                 raise InputError(f"no certificate for this job: {reason}; leave this objective out")
+        least = next(c.lower for c in constraints_of(problem) if c.quantity == "transmission_angle")
+        self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
         used = [c for c in constraints_of(problem) if usable(problem, c)]
         self.cheap = [c for c in used if isinstance(QUANTITIES[c.quantity], ClosedFormQuantity)]
         self.costly = [c for c in used if c not in self.cheap]
@@ -106,7 +117,7 @@ class Boxes:
             n, k = lower.shape
             limits = Limits(n, k)
             r, l, e = self._dimensions(lower, upper, limits)
-            self._geometry(r, l, e, limits)
+            limits.add((r + e * self.sheet.sign - l) / l)
             for constraint in self.cheap:
                 limits.hold(constraint, *self._closed(constraint.quantity, r, l, e))
             rows = np.flatnonzero(limits.alive)
@@ -145,6 +156,7 @@ class Boxes:
             )
 
     def _dimensions(self, lower: Array, upper: Array, limits: Limits) -> tuple[Enclosure, Enclosure, Enclosure]:
+        """Return crank, rod and offset, (n, 1); those that are computed are held to their ranges."""
         n, k = lower.shape
         sheet = self.sheet
         known: dict[str, Enclosure] = {}
@@ -157,23 +169,13 @@ class Boxes:
             ]
             known[name] = coordinate(first, last, column, k)
         for step in sheet.steps:
-            bounds = sheet.bounds[step.target]
-            slack = _SLACK * bounds.upper
             found = step.formula(*(known[name] for name in step.sources))
-            limits.exist(found)
-            known[step.target] = found.confined(bounds.lower - slack, bounds.upper + slack)
+            bounds = sheet.bounds[step.target]
+            scale = max(bounds.upper, 1e-300)
+            limits.add((found - bounds.upper) * (1.0 / scale))
+            limits.add((bounds.lower - found) * (1.0 / scale))
+            known[step.target] = found.confined(*_room(step.target, known, bounds, self.lean))
         return known["crank"], known["rod"], known["offset"] * sheet.sign
-
-    def _geometry(self, r: Enclosure, l: Enclosure, e: Enclosure, limits: Limits) -> None:
-        """Hold the ranges of the computed dimensions and full rotation, l > r + |e|."""
-        a = e * self.sheet.sign
-        for name, value in zip(UNKNOWNS, (r, l, a), strict=True):
-            if name in self.computed:
-                bounds = self.sheet.bounds[name]
-                scale = max(bounds.upper, 1e-300)
-                limits.add((value - bounds.upper) * (1.0 / scale))
-                limits.add((bounds.lower - value) * (1.0 / scale))
-        limits.add((r + a - l) / l)
 
     def _closed(
         self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
@@ -181,14 +183,22 @@ class Boxes:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
         quantity = QUANTITIES[name]
         assert isinstance(quantity, ClosedFormQuantity)
-        forms = [closed_form(int(form), r, l, e) for form in quantity.forms]
-        value = reduce(_beside, forms)
-        if quantity.forms == (ClosedForm.ROD_TO_OFFSET,):  # 1 / |e| has no linear part where e may be zero
-            (short, long), (small, big) = l.ends(), magnitude(e).ends()
-            small = np.maximum(small, 0.0)
-            return value, (short / big)[:, 0], (long / small)[:, 0]
+        value = reduce(_beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
         most = value.ends()[1].max(axis=1)
-        return value, None, most
+        if quantity.forms[0] not in _RISES:
+            return value, None, most
+        ends = [x.ends() for x in (r, l, magnitude(e))]
+        least_at, most_at = [
+            [
+                np.maximum(pair[rises != upper], 0.0)[:, 0]
+                for pair, rises in zip(ends, _RISES[quantity.forms[0]], strict=True)
+            ]
+            for upper in (True, False)
+        ]
+        kind = int(quantity.forms[0])
+        least, other = closed_form(kind, *least_at), closed_form(kind, *most_at)
+        least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
+        return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
 
     def _angles(self, rows: NDArray[np.int64], lower: Array, upper: Array) -> tuple[Array, dict[str, Array]]:
         """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn."""
@@ -200,6 +210,19 @@ class Boxes:
             if turns.any():
                 found[name][turns] = best_angles(curve.peak, self.problem.mechanism, middle[turns])
         return middle, found
+
+
+def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
+    """Return what a computed dimension may be where it meets its range, and r + |e| <= lean l if these are known."""
+    others = [known[other].ends() for other in UNKNOWNS if other != name and other in known]
+    slack = _SLACK * bounds.upper
+    low, high = np.full_like(others[0][0], bounds.lower - slack), np.full_like(others[0][0], bounds.upper + slack)
+    if len(others) < 2:
+        return low, high
+    (one, two), (three, four) = others  # in the order crank, rod, offset
+    if name == "rod":
+        return np.maximum(low, (one + three) / lean), high
+    return low, np.minimum(high, lean * four - one if name == "offset" else lean * two - three)
 
 
 def _ends(value: Enclosure, low: Array, high: Array) -> tuple[Array, Array]:

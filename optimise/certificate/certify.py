@@ -57,18 +57,43 @@ def certify(
     """Return a proof of how far a front can be from the true one.
 
     epsilon: to be proven, of the objectives' ranges over the front. seconds: budget; what is proven by then is
-    returned. cancelled: asked between rounds. Raises `InputError` for an empty front and for objectives that cannot be
-    bounded over a range of designs: averages over the cycle, forces under friction, peaks to be maximised.
+    returned. progress: called between rounds. cancelled: asked between rounds. Raises `InputError` for an empty front
+    and for objectives that cannot be bounded over a range of designs: averages over the cycle, forces under friction,
+    peaks that are not minimised.
     """
-    if not len(front):
-        raise InputError("an empty front cannot be certified; see its message for why nothing is feasible")
+    return certify_designs(
+        front.problem, front.dimensions, epsilon=epsilon, seconds=seconds, progress=progress, cancelled=cancelled
+    )
+
+
+def certify_designs(
+    problem: Problem,
+    dimensions: Array,
+    *,
+    epsilon: float = EPSILON,
+    seconds: float = SECONDS,
+    progress: Callable[[Step], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Certificate:
+    """Return the same for designs (n, 3) of any origin: crank, rod, offset, m, that meet the job's requirements."""
+    if not len(dimensions):
+        raise InputError("an empty front cannot be certified; its message says why nothing is feasible")
     if not 0.0 < epsilon < 1.0:
         raise InputError(f"epsilon is a share of the objectives' ranges, more than 0 and less than 1; got {epsilon:g}")
     if not seconds > 0.0:
         raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
-    search = _Search(front.problem, front.dimensions, front.values, epsilon, seconds, cancelled)
+    search = _Search(problem, dimensions, epsilon, seconds, cancelled)
     search.run(progress)
     return search.certificate()
+
+
+def _objectives(problem: Problem, dimensions: Array) -> Array:
+    """Return the minimised objectives (n, m) of designs, exact over continuous crank angle."""
+    columns = [
+        minimised(wish, QUANTITIES[wish.quantity].evaluate(problem.mechanism, dimensions).values)
+        for wish in problem.objectives
+    ]
+    return np.stack(columns, axis=1)
 
 
 class _Search:
@@ -78,7 +103,6 @@ class _Search:
         self,
         problem: Problem,
         dimensions: Array,
-        values: Array,
         epsilon: float,
         seconds: float,
         cancelled: Callable[[], bool] | None,
@@ -86,6 +110,7 @@ class _Search:
         self.start = time.perf_counter()
         self.problem, self.epsilon, self.seconds = problem, epsilon, seconds
         self.cancelled = cancelled
+        values = _objectives(problem, dimensions)
         self.span, self.ideal = span_of(problem, values), values.min(axis=0)
         self.front = self._scaled(values)
         self.designs = self.front
@@ -185,12 +210,7 @@ class _Search:
         return excess(corner, fresh, known=found, enough=self.epsilon)
 
     def _exact(self, dimensions: Array) -> Array:
-        """Return the scaled objectives of designs, exact over continuous crank angle."""
-        columns = [
-            minimised(wish, QUANTITIES[wish.quantity].evaluate(self.problem.mechanism, dimensions).values)
-            for wish in self.problem.objectives
-        ]
-        return self._scaled(np.stack(columns, axis=1))
+        return self._scaled(_objectives(self.problem, dimensions))
 
     def _note(self, design: Array) -> None:
         """Remember a design that lies farther beyond the front than any before."""

@@ -73,12 +73,12 @@ class Enclosure:
         known = np.isfinite(least) & np.isfinite(most)
         return np.where(known, least, -np.inf), np.where(known, most, np.inf)
 
-    def confined(self, low: float, high: float) -> Enclosure:
-        """Return the number where only values from low to high matter: those alone where it may reach farther."""
+    def confined(self, low: Array, high: Array) -> Enclosure:
+        """Return the number where only values from low to high (n, ...) matter: they alone where it reaches farther."""
         clear = self.reach <= high - low
         if clear.all():
             return self
-        inside = between(np.full_like(self.centre, low), np.full_like(self.centre, high), len(self.slopes))
+        inside = between(low, np.maximum(low, high), len(self.slopes))
         return Enclosure(
             np.where(clear, self.centre, inside.centre),
             np.where(clear, self.slopes, inside.slopes),
