@@ -19,7 +19,7 @@ from ..elimination import UNKNOWNS
 from ..evaluation import Evaluator, constraints_of
 from ..problem import Constraint, Objective, Problem, Range
 from .cycle import Curve, best_angles
-from .enclosure import Array, Enclosure, coordinate
+from .enclosure import Array, Enclosure, beside, coordinate
 from .limits import Limits
 
 Mask = NDArray[np.bool_]
@@ -183,7 +183,7 @@ class Boxes:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
         quantity = QUANTITIES[name]
         assert isinstance(quantity, ClosedFormQuantity)
-        value = reduce(_beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
+        value = reduce(beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
         most = value.ends()[1].max(axis=1)
         if quantity.forms[0] not in _RISES:
             return value, None, most
@@ -195,8 +195,7 @@ class Boxes:
             ]
             for upper in (True, False)
         ]
-        kind = int(quantity.forms[0])
-        least, other = closed_form(kind, *least_at), closed_form(kind, *most_at)
+        least, other = [_turning(int(quantity.forms[0]), *at) for at in (least_at, most_at)]
         least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
 
@@ -210,6 +209,11 @@ class Boxes:
             if turns.any():
                 found[name][turns] = best_angles(curve.peak, self.problem.mechanism, middle[turns])
         return middle, found
+
+
+def _turning(kind: int, r: Array, l: Array, a: Array) -> Array:
+    """Return a closed form of linkages, not a number where one does not turn fully."""
+    return np.where(l > r + a, closed_form(kind, r, l, a), np.nan)
 
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
@@ -240,16 +244,6 @@ def _minimised(objective: Objective, below: Array, above: Array) -> Array:
     return below
 
 
-def _beside(one: Enclosure, two: Enclosure) -> Enclosure:
-    empty = None if one.empty is None or two.empty is None else one.empty & two.empty
-    return Enclosure(
-        np.concatenate([one.centre, two.centre], axis=1),
-        np.concatenate([one.slopes, two.slopes], axis=2),
-        np.concatenate([one.rest, two.rest], axis=1),
-        empty,
-    )
-
-
 def _rows(value: Enclosure, rows: NDArray[np.int64]) -> Enclosure:
     empty = None if value.empty is None else value.empty[rows]
     return Enclosure(value.centre[rows], value.slopes[:, rows], value.rest[rows], empty)
@@ -257,7 +251,8 @@ def _rows(value: Enclosure, rows: NDArray[np.int64]) -> Enclosure:
 
 def _spread(value: Enclosure, rows: NDArray[np.int64], n: int) -> Enclosure:
     """Return an enclosure of n boxes that says nothing of those not in `rows`."""
-    centre, slopes = np.zeros((n, 1)), np.zeros((len(value.slopes), n, 1))
-    rest = np.full((n, 1), np.nan)
+    parts = value.centre.shape[1]
+    centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))
+    rest = np.full((n, parts), np.nan)
     centre[rows], slopes[:, rows], rest[rows] = value.centre, value.slopes, value.rest
     return Enclosure(centre, slopes, rest)

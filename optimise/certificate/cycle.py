@@ -24,10 +24,11 @@ from ...model.screening import screen, screens
 from ...model.signals import Signal, design_motion, signal
 from ...model.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
-from .enclosure import UNIT, Array, Enclosure, between
+from .enclosure import UNIT, Array, Enclosure, beside, between
 
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
+_AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
 _derive = cast(Any, derive).py_func
 
 
@@ -50,12 +51,14 @@ class Curve:
         self.watch = watch_of(mechanism, peak.signal, during=peak.during)
         self.direction = 1.0 if mechanism.speed >= 0.0 else -1.0
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
+        self.jumps = self.watch.split and peak.signal not in (Signal.TORQUE, Signal.POWER)
         self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
     def over(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, 1) at crank angles (n,) from crank, rod and offset (n, 1); `middle` (n, 3) designs.
+        """Return the signal (n, p) at crank angles (n,) for crank, rod and offset (n, 1) and middle designs (n, 3).
 
-        The rest is not a number where the angle does not count in all of the box.
+        It has two parts where it may jump at the angle. The rest is not a number where the angle does not count in all
+        of the box.
         """
         raw = self.raw.astype(object)[:, None]
         raw[:3, 0] = dimensions
@@ -67,8 +70,17 @@ class Curve:
         cosine: Any = np.cos(theta)
         if self.shares:
             sine, cosine = _at_share(d, sine, cosine, middle, self.watch.start, self.watch.end)
+        jump = None
+        if self.jumps:
+            jump, sine, cosine = _at_dead_centre(d, sine, cosine, middle)
         m = design_motion(sine, cosine, d)
         outward = m.x_1 * (d.branch * self.direction)
+        if jump is not None and jump.any():
+            # The peak is the greater of what the curve tends to from either side, which are the two strokes.
+            sides = [
+                _chosen(jump, between(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
+            ]
+            return beside(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
         value = self._signal(sine, cosine, m, d, block, theta, outward)
         if self.partial and not self.shares:
             low, high = outward.ends()
@@ -163,6 +175,24 @@ def _at_share(
     h = _chosen(on_inner | on_outer, 0.0 * d.r, h)
     x = _chosen(on_inner, d.inner * d.branch, _chosen(on_outer, d.outer * d.branch, x))
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
+
+
+def _at_dead_centre(
+    d: Design, sine: Array, cosine: Array, middle: Array
+) -> tuple[NDArray[np.bool_], Enclosure, Enclosure]:
+    """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there with it."""
+    r, l, e = (column[:, None] for column in middle.T)
+    at = motion(sine, cosine, r, l, e, d.branch)
+    on = np.abs(at.x_1) < _AT_REST * r
+    far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
+    q = _chosen(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
+    x = _chosen(far, d.outer * d.branch, d.inner * d.branch)
+    k = len(q.slopes)
+    return (
+        on,
+        _chosen(on, q * d.e / d.r, between(sine, sine, k)),
+        _chosen(on, q * x / d.r, between(cosine, cosine, k)),
+    )
 
 
 def _chosen(mask: NDArray[np.bool_], one: Enclosure, two: Enclosure) -> Enclosure:

@@ -133,7 +133,7 @@ class Enclosure:
 
     def __mul__(self, other: Any) -> Enclosure:
         if other is self:
-            return self._squared()
+            return Enclosure._squared(self)
         if not isinstance(other, Enclosure):
             return self._scaled(other)
         a, b = self.centre, other.centre
@@ -233,6 +233,17 @@ def between(low: Any, high: Any, k: int) -> Enclosure:
     low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
+
+
+def beside(one: Enclosure, two: Enclosure) -> Enclosure:
+    """Return the parts (n, p) of one and of another side by side."""
+    empty = None if one.empty is None or two.empty is None else one.empty & two.empty
+    return Enclosure(
+        np.concatenate([one.centre, two.centre], axis=1),
+        np.concatenate([one.slopes, two.slopes], axis=2),
+        np.concatenate([one.rest, two.rest], axis=1),
+        empty,
+    )
 
 
 def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
