@@ -71,18 +71,16 @@ def message_of(
     def share(value: float) -> str:
         return f"{100.0 * value:.3g} %"
 
-    some = f"the {designs} designs" if designs > 1 else "the design"
     if not np.isfinite(proven):
         return "nothing is proven yet: some of the design box has no bound; allow more time"
-    if added:
-        first = f"proven: no feasible design beats {some} and {added} added ones by more than {share(proven)}"
-    else:
-        first = f"proven: no feasible design beats {some} by more than {share(proven)}"
-    text = f"{first} of the objectives' ranges"
+    some = f"the {designs} designs" if designs > 1 else "the design"
+    whole = f"{some} and {added} added ones" if added else some
+    most = f"at most {share(proven)} of each objective's range"
+    text = f"proven: for every feasible design, one of {whole} is worse by {most}"
     if added:
         text += f"; {some} alone: {share(delivered)}"
         if gap > asked:
-            text += f", and a design {share(gap)} beyond them is known"
+            text += f", and a design {share(gap)} beyond {'them' if designs > 1 else 'it'} is known"
     if status == "out of budget":
         text += f"; {share(asked)} was asked, allow more time or a larger epsilon"
     return f"interrupted; {text}" if status == "cancelled" else text

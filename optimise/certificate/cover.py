@@ -99,11 +99,14 @@ def thinned(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
     if not len(points) or not covers.any(axis=0).all():
         return np.arange(len(values)) if len(points) else np.zeros(0, dtype=np.int64)
     left = np.ones(len(points), dtype=bool)
+    gains = covers.sum(axis=1)
     picked: list[int] = []
     while left.any():
-        best = int(np.argmax((covers & left).sum(axis=1)))
+        best = int(np.argmax(gains))
         picked.append(best)
-        left &= ~covers[best]
+        fresh = left & covers[best]
+        gains -= covers[:, fresh].sum(axis=1)
+        left &= ~fresh
     return np.array(sorted(picked), dtype=np.int64)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from ...objectives.cycle_peak import CyclePeak
 from ...objectives.registry import QUANTITIES
 from ..deliver import span_of
 from ..elimination import sheets
@@ -220,14 +221,20 @@ class Search:
             open=len(tree),
             remaining=tree.volume(),
             where=where,
-            notes=tuple(
-                f"the bounds do not use the requirement on {QUANTITIES[c.quantity].title}"
-                for c in constraints_of(self.problem)
-                if not usable(self.problem, c)
-            ),
+            notes=self._notes(),
             seconds=time.perf_counter() - self.start,
             message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
         )
+
+    def _notes(self) -> tuple[str, ...]:
+        found = []
+        for constraint in constraints_of(self.problem):
+            quantity = QUANTITIES[constraint.quantity]
+            if not usable(self.problem, constraint):
+                found.append(f"the bounds do not use the requirement on {quantity.title}")
+            elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
+                found.append(f"the bounds do not use that {quantity.title} has a least value")
+        return tuple(found)
 
     def _dimensions(self) -> Array:
         found = np.zeros((len(self.u), 3))
