@@ -62,7 +62,12 @@ def arcsine(z: Any) -> Any:
 
 
 def magnitude(z: Any) -> Any:
-    """Return z or -z, whichever has a real part that is not negative: |z| with its derivative away from zero."""
+    """Return z or -z, whichever has a real part that is not negative: |z| with its derivative away from zero.
+
+    What stands for more than one number (an enclosure over a box) brings a `magnitude` of its own.
+    """
+    if hasattr(z, "magnitude"):
+        return z.magnitude()
     return np.where(np.real(z) < 0.0, -z, z)[()]
 
 

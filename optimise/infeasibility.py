@@ -76,7 +76,7 @@ def diagnose(problem: Problem, best: Callable[[Problem], float | None]) -> Diagn
     best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. First the greatest
     relative violation is minimised from many starts, without eliminating anything. If it stays positive, each
     requirement in turn becomes the objective of the problem without it. Both searches are local from many starts:
-    strong evidence, no proof.
+    strong evidence; `certificate.infeasible` gives the proof where it can.
     """
     feasible, turning, nearest = _least_violation(problem)
     if len(feasible):

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..objectives.registry import QUANTITIES
+from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, empty, planned
 from .elimination import UNKNOWNS, Sheet, sheets
 from .evaluation import Evaluator
@@ -52,7 +53,10 @@ def solve(
         front = deliver(problem, evaluators, archive, run) if len(archive) else None
         if front is not None:
             return front
-    return empty(problem, evaluators, run, "infeasible", diagnosis.message or _THIN)
+    message = diagnosis.message or _THIN
+    if diagnosis.message and prove_infeasible(problem, cancelled=cancelled):
+        message += "; proven: no design of the ranges meets them all"
+    return empty(problem, evaluators, run, "infeasible", message)
 
 
 _THIN = (

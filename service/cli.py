@@ -1,7 +1,7 @@
 """The command line: `slidercrank COMMAND`.
 
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
-feasible, or no design that meets the conditions; 130 interrupted (Ctrl-C).
+feasible, or no design that meets the conditions; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
 Nothing that is slow to import is imported here or at the top of the command modules: `--help` stays quick.
 """
@@ -22,6 +22,7 @@ from .allocate_command import allocate
 from .analyse_command import analyse
 from .balance_command import balance
 from .cases_command import cases
+from .certify_command import certify
 from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
@@ -105,7 +106,10 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, allocate, balance, sections, check, schema, front, export, cases):
+COMMANDS = (
+    optimise, analyse, sweep, allocate, balance, sections, certify, check, schema, front, export, cases,
+)
+for command in COMMANDS:
     app.command()(command)
 
 

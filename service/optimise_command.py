@@ -81,7 +81,17 @@ def show_result(result: Result) -> None:
 
 def _contents(folder: Path) -> list[str]:
     names = [
-        name for name in ("front.csv", "front.json", "job.toml", "job.json", "log.txt") if (folder / name).exists()
+        name
+        for name in (
+            "front.csv",
+            "front.json",
+            "certificate.csv",
+            "certificate.json",
+            "job.toml",
+            "job.json",
+            "log.txt",
+        )
+        if (folder / name).exists()
     ]
     pictures = len(list((folder / "figures").glob("*.png")))
     return [*names, f"figures/ ({pictures} pictures)"] if pictures else names

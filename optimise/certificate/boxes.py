@@ -1,0 +1,258 @@
+"""What can be said of all designs of a box at once: that none is feasible, and the least that any objective may be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.arithmetic import magnitude
+from ...model.closed_forms import ClosedForm, closed_form
+from ...model.errors import InputError
+from ...objectives.closed_form import ClosedFormQuantity
+from ...objectives.cycle_peak import CyclePeak
+from ...objectives.registry import QUANTITIES
+from ..elimination import UNKNOWNS
+from ..evaluation import Evaluator, constraints_of
+from ..problem import Constraint, Objective, Problem, Range
+from .cycle import Curve, best_angles
+from .enclosure import Array, Enclosure, beside, coordinate
+from .limits import Limits
+
+Mask = NDArray[np.bool_]
+_ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
+# Whether a closed form rises with crank, rod and |offset|; the derivatives have one sign for all that turns fully.
+_RISES = {
+    ClosedForm.TIME_RATIO: (True, False, True),
+    ClosedForm.TRANSMISSION_ANGLE: (False, True, False),
+    ClosedForm.STROKE: (True, False, True),
+    ClosedForm.ROD_TO_OFFSET: (True, True, False),
+    ClosedForm.ROD_TO_CRANK: (False, True, True),
+}
+_SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
+
+
+def covered(problem: Problem, objective: Objective) -> str:
+    """Return why an objective cannot be bounded over a box; empty if it can.
+
+    Bounded are all closed forms, and from below the peaks over the cycle of machines without friction.
+    """
+    quantity = QUANTITIES[objective.quantity]
+    if isinstance(quantity, ClosedFormQuantity):
+        return ""
+    if not isinstance(quantity, CyclePeak):
+        return f"{quantity.title} has no bound over a range of designs"
+    if quantity.signal.needs_forces and problem.mechanism.friction.acts:
+        return f"{quantity.title} has no bound over a range of designs where there is friction"
+    if objective.sense != "minimise":
+        return f"{quantity.title} is bounded from below only, so it can be certified as minimised, not otherwise"
+    return ""
+
+
+def usable(problem: Problem, constraint: Constraint) -> bool:
+    """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
+    quantity = QUANTITIES[constraint.quantity]
+    if isinstance(quantity, ClosedFormQuantity):
+        return True
+    wanted = Objective(quantity=constraint.quantity, sense="minimise")
+    return constraint.upper is not None and not covered(problem, wanted)
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """What holds for the designs of n boxes.
+
+    alive: whether one may be feasible; what follows means nothing where not. lower, upper: (n, k), the part of the box
+    that holds all feasible ones. corner: (n, m), what no feasible one's minimised objectives are below, -inf where
+    nothing is known. smear: (n, k), what the width along each axis matters. trial: (n, k), a point that is feasible if
+    the box's linear part does not deceive.
+    """
+
+    alive: Mask
+    lower: Array
+    upper: Array
+    corner: Array
+    smear: Array
+    trial: Array
+
+    def __getitem__(self, rows: NDArray[np.int64] | Mask) -> Bounded:
+        return Bounded(
+            self.alive[rows], self.lower[rows], self.upper[rows], self.corner[rows], self.smear[rows], self.trial[rows]
+        )
+
+
+def together(parts: list[Bounded]) -> Bounded:
+    """Return boxes one after the other."""
+    fields = ("alive", "lower", "upper", "corner", "smear", "trial")
+    return Bounded(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
+
+
+class Boxes:
+    """Bounds boxes of the unit box of one sheet. span: (m,), by which objectives are compared."""
+
+    def __init__(self, evaluator: Evaluator, span: Array, *, objectives: bool = True) -> None:
+        """Prepare the curves; raise `InputError` for an objective that cannot be bounded."""
+        problem, self.evaluator = evaluator.problem, evaluator
+        self.sheet, self.problem, self.span = evaluator.sheet, problem, span
+        self.objectives = problem.objectives if objectives else ()
+        for objective in self.objectives:
+            reason = covered(problem, objective)
+            if reason:
+                raise InputError(f"no certificate for this job: {reason}; leave this objective out")
+        least = next(c.lower for c in constraints_of(problem) if c.quantity == "transmission_angle")
+        self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
+        used = [c for c in constraints_of(problem) if usable(problem, c)]
+        self.cheap = [c for c in used if isinstance(QUANTITIES[c.quantity], ClosedFormQuantity)]
+        self.costly = [c for c in used if c not in self.cheap]
+        names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
+        peaks = [QUANTITIES[name] for name in names]
+        self.curves = {peak.name: Curve(problem.mechanism, peak) for peak in peaks if isinstance(peak, CyclePeak)}
+
+    def bound(self, lower: Array, upper: Array) -> Bounded:
+        """Return what holds for boxes lower to upper (n, k)."""
+        with np.errstate(all="ignore"):
+            n, k = lower.shape
+            limits = Limits(n, k)
+            r, l, e = self._dimensions(lower, upper, limits)
+            limits.add((r + e * self.sheet.sign - l) / l)
+            for constraint in self.cheap:
+                limits.hold(constraint, *self._closed(constraint.quantity, r, l, e))
+            rows = np.flatnonzero(limits.alive)
+            middle, angles = self._angles(rows, lower, upper)
+            part = [_rows(x, rows) for x in (r, l, e)]
+            curves = {
+                name: _spread(curve.over(part, angles[name], middle), rows, n) for name, curve in self.curves.items()
+            }
+            for constraint in self.costly:
+                curve = curves[constraint.quantity]
+                limits.hold(Constraint(quantity=constraint.quantity, upper=constraint.upper), curve, None, None)
+            low, high = limits.contracted()
+            corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
+            for column, objective in enumerate(self.objectives):
+                if objective.quantity in curves:
+                    known: tuple[Enclosure, Array | None, Array | None] = curves[objective.quantity], np.zeros(n), None
+                else:
+                    known = self._closed(objective.quantity, r, l, e)
+                value, least, most = known
+                below, above = _ends(value, low, high)
+                below = below if least is None else np.maximum(below, least)
+                above = above if most is None else np.minimum(above, most)
+                corner[:, column] = _minimised(objective, below, above)
+                wide = np.abs(value.slopes).max(axis=2) * (high - low) / self.span[column]
+                smear = np.fmax(smear, wide.T)
+            centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+            trial = limits.inside(low, high)
+            smear = np.fmax(smear, limits.smear(low, high))
+            return Bounded(
+                limits.alive,
+                np.clip(centre + half * low.T, lower, upper),
+                np.clip(centre + half * high.T, lower, upper),
+                corner,
+                smear,
+                np.clip(centre + half * trial.T, lower, upper),
+            )
+
+    def _dimensions(self, lower: Array, upper: Array, limits: Limits) -> tuple[Enclosure, Enclosure, Enclosure]:
+        """Return crank, rod and offset, (n, 1); those that are computed are held to their ranges."""
+        n, k = lower.shape
+        sheet = self.sheet
+        known: dict[str, Enclosure] = {}
+        for name, bounds in sheet.bounds.items():
+            if bounds.fixed:
+                known[name] = Enclosure(np.full((n, 1), bounds.lower), np.zeros((k, n, 1)), np.zeros((n, 1)))
+        for column, name in enumerate(sheet.free):
+            first, last = [
+                sheet.lower[column] * (1.0 - u[:, column]) + sheet.upper[column] * u[:, column] for u in (lower, upper)
+            ]
+            known[name] = coordinate(first, last, column, k)
+        for step in sheet.steps:
+            found = step.formula(*(known[name] for name in step.sources))
+            bounds = sheet.bounds[step.target]
+            scale = max(bounds.upper, 1e-300)
+            limits.add((found - bounds.upper) * (1.0 / scale))
+            limits.add((bounds.lower - found) * (1.0 / scale))
+            known[step.target] = found.confined(*_room(step.target, known, bounds, self.lean))
+        return known["crank"], known["rod"], known["offset"] * sheet.sign
+
+    def _closed(
+        self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
+    ) -> tuple[Enclosure, Array | None, Array | None]:
+        """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
+        quantity = QUANTITIES[name]
+        assert isinstance(quantity, ClosedFormQuantity)
+        value = reduce(beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
+        most = value.ends()[1].max(axis=1)
+        if quantity.forms[0] not in _RISES:
+            return value, None, most
+        ends = [x.ends() for x in (r, l, magnitude(e))]
+        least_at, most_at = [
+            [
+                np.maximum(pair[rises != upper], 0.0)[:, 0]
+                for pair, rises in zip(ends, _RISES[quantity.forms[0]], strict=True)
+            ]
+            for upper in (True, False)
+        ]
+        least, other = [_turning(int(quantity.forms[0]), *at) for at in (least_at, most_at)]
+        least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
+        return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
+
+    def _angles(self, rows: NDArray[np.int64], lower: Array, upper: Array) -> tuple[Array, dict[str, Array]]:
+        """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn."""
+        middle = self.sheet.dimensions(0.5 * (lower[rows] + upper[rows]))
+        turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
+        found = {}
+        for name, curve in self.curves.items():
+            found[name] = np.full(len(rows), 0.5 * np.pi)
+            if turns.any():
+                found[name][turns] = best_angles(curve.peak, self.problem.mechanism, middle[turns])
+        return middle, found
+
+
+def _turning(kind: int, r: Array, l: Array, a: Array) -> Array:
+    """Return a closed form of linkages, not a number where one does not turn fully."""
+    return np.where(l > r + a, closed_form(kind, r, l, a), np.nan)
+
+
+def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
+    """Return what a computed dimension may be where it meets its range, and r + |e| <= lean l if these are known."""
+    others = [known[other].ends() for other in UNKNOWNS if other != name and other in known]
+    slack = _SLACK * bounds.upper
+    low, high = np.full_like(others[0][0], bounds.lower - slack), np.full_like(others[0][0], bounds.upper + slack)
+    if len(others) < 2:
+        return low, high
+    (one, two), (three, four) = others  # in the order crank, rod, offset
+    if name == "rod":
+        return np.maximum(low, (one + three) / lean), high
+    return low, np.minimum(high, lean * four - one if name == "offset" else lean * two - three)
+
+
+def _ends(value: Enclosure, low: Array, high: Array) -> tuple[Array, Array]:
+    """Return what the greatest part of (n, p) is at least, and at most."""
+    least, most = value.ends(low, high)
+    return least.max(axis=1), most.max(axis=1)
+
+
+def _minimised(objective: Objective, below: Array, above: Array) -> Array:
+    """Return what an objective between two ends is at least, as it is minimised."""
+    if objective.sense == "maximise":
+        return -above
+    if objective.target is not None:
+        return np.maximum(np.maximum(below - objective.target, objective.target - above), 0.0)
+    return below
+
+
+def _rows(value: Enclosure, rows: NDArray[np.int64]) -> Enclosure:
+    empty = None if value.empty is None else value.empty[rows]
+    return Enclosure(value.centre[rows], value.slopes[:, rows], value.rest[rows], empty)
+
+
+def _spread(value: Enclosure, rows: NDArray[np.int64], n: int) -> Enclosure:
+    """Return an enclosure of n boxes that says nothing of those not in `rows`."""
+    parts = value.centre.shape[1]
+    centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))
+    rest = np.full((n, parts), np.nan)
+    centre[rows], slopes[:, rows], rest[rows] = value.centre, value.slopes, value.rest
+    return Enclosure(centre, slopes, rest)

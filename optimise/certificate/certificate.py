@@ -1,0 +1,86 @@
+"""What a search for a proof gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from .enclosure import Array
+
+Status = Literal["proven", "out of budget", "cancelled"]
+
+
+@dataclass(frozen=True)
+class Step:
+    """Where the proof stands. epsilon: proven so far for the completed set, infinite while nothing is."""
+
+    epsilon: float
+    boxes: int
+    open: int
+    added: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A proof of how far a front can be from the true one.
+
+    asked: epsilon asked for. epsilon: proven for the front completed by the added designs. delivered: proven for the
+    front alone. gap: what the front alone misses for certain, the excess of the design `hole` (crank, rod, offset, m;
+    None if no design lies beyond the front). All in units of the objectives' ranges `span` (m,), SI.
+    hypervolume_gap: by how much at most the true front's hypervolume exceeds the front's, in its units; beyond the
+    front's ideal point counts too. added: (n, 3), m, the designs that complete the front; added_values: (n, m), SI,
+    minimised; table: all their quantities. boxes: bounded. open: left open. remaining: their share of the design box.
+    where: the range of crank, rod and offset, m, in the open box of the largest excess, (3, 2); None if none is open.
+    notes: requirements that the bounds did not use. The proof holds without them, but is harder to get.
+    """
+
+    status: Status
+    asked: float
+    epsilon: float
+    delivered: float
+    gap: float
+    hole: Array | None
+    hypervolume_gap: float
+    span: Array
+    added: Array
+    added_values: Array
+    table: pd.DataFrame
+    boxes: int
+    open: int
+    remaining: float
+    where: Array | None
+    notes: tuple[str, ...]
+    seconds: float
+    message: str
+
+    @property
+    def proven(self) -> bool:
+        """Whether the epsilon asked for is proven."""
+        return self.epsilon <= self.asked
+
+
+def message_of(
+    status: Status, asked: float, proven: float, delivered: float, gap: float, designs: int, added: int
+) -> str:
+    """Return the proof in words."""
+
+    def share(value: float) -> str:
+        return f"{100.0 * value:.3g} %"
+
+    if not np.isfinite(proven):
+        return "nothing is proven yet: some of the design box has no bound; allow more time"
+    some = f"the {designs} designs" if designs > 1 else "the design"
+    whole = f"{some} and {added} added ones" if added else some
+    most = f"at most {share(proven)} of each objective's range"
+    text = f"proven: for every feasible design, one of {whole} is worse by {most}"
+    if added:
+        text += f"; {some} alone: {share(delivered)}"
+        if gap > asked:
+            text += f", and a design {share(gap)} beyond {'them' if designs > 1 else 'it'} is known"
+    if status == "out of budget":
+        text += f"; {share(asked)} was asked, allow more time or a larger epsilon"
+    return f"interrupted; {text}" if status == "cancelled" else text

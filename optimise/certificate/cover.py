@@ -1,0 +1,140 @@
+"""By how much designs fall short of covering a point of the objective space, and which few of them cover many points.
+
+A design p covers a point z to e when p_j <= z_j + e in every objective j (all minimised and scaled). The *excess* of z
+over designs is the least e to which one of them covers it: additive epsilon dominance (E. Zitzler et al., "Performance
+assessment of multiobjective optimizers", IEEE Trans. Evol. Comput. 7(2), 2003, sec. III).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.arithmetic import kernel
+from ...model.batches import in_chunks
+from ..hypervolume import REFERENCE, nondominated
+from .enclosure import Array
+
+_EXACT = 4000  # points in three and more dimensions of which the hypervolume takes about a second
+
+
+@kernel
+def _excess(points: Any, designs: Any, first: Any, enough: Any, out: Any) -> None:
+    for i in range(points.shape[0]):
+        best = out[i]
+        for q in range(first[i], designs.shape[0]):
+            if best <= enough:
+                break
+            worst = -np.inf
+            for j in range(points.shape[1]):
+                worst = max(worst, designs[q, j] - points[i, j])
+                if worst >= best:
+                    break
+            best = min(best, worst)
+        out[i] = best
+
+
+def excess(
+    points: Array,
+    designs: Array,
+    *,
+    known: Array | None = None,
+    first: NDArray[np.int64] | None = None,
+    enough: float = -np.inf,
+) -> Array:
+    """Return the excess (n,) of points (n, m) over designs (p, m), infinite without any.
+
+    known: excess over other designs, whose least counts. first: (n,), the designs before it are left out. enough: a
+    value that need not be improved.
+    """
+    n = len(points)
+    out = np.full(n, np.inf) if known is None else known.copy()
+    start = np.zeros(n, dtype=np.int64) if first is None else first
+    points, designs = np.ascontiguousarray(points), np.ascontiguousarray(designs)
+
+    def work(begin: int, end: int) -> None:
+        _excess(points[begin:end], designs, start[begin:end], enough, out[begin:end])
+
+    in_chunks(n, work, size=4096)
+    return out
+
+
+@kernel
+def _choose(points: Any, values: Any, epsilon: Any, chosen: Any) -> None:
+    count = 0
+    order = np.empty(points.shape[0], np.int64)
+    for i in range(points.shape[0]):
+        covered = False
+        for c in range(count):
+            q = order[count - 1 - c]  # neighbours come one after the other
+            covers = True
+            for j in range(points.shape[1]):
+                covers = covers and values[q, j] <= points[i, j] + epsilon
+            if covers:
+                covered = True
+                break
+        if not covered:
+            covers = True
+            for j in range(points.shape[1]):
+                covers = covers and values[i, j] <= points[i, j] + epsilon
+            if covers:
+                order[count] = i
+                count += 1
+                chosen[i] = True
+
+
+def choose_covering(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
+    """Return which of the values (n, m) cover their own point (n, m) to epsilon where those before them do not."""
+    chosen = np.zeros(len(points), dtype=bool)
+    _choose(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
+    return np.flatnonzero(chosen)
+
+
+def thinned(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
+    """Return few rows of values (p, m) that cover all points (n, m) to epsilon; the one covering most comes first."""
+    covers = np.stack([(row <= points + epsilon).all(axis=1) for row in values]) if len(values) else np.zeros((0, 0))
+    if not len(points) or not covers.any(axis=0).all():
+        return np.arange(len(values)) if len(points) else np.zeros(0, dtype=np.int64)
+    left = np.ones(len(points), dtype=bool)
+    gains = covers.sum(axis=1)
+    picked: list[int] = []
+    while left.any():
+        best = int(np.argmax(gains))
+        picked.append(best)
+        fresh = left & covers[best]
+        gains -= covers[:, fresh].sum(axis=1)
+        left &= ~fresh
+    return np.array(sorted(picked), dtype=np.int64)
+
+
+def volume(values: Array) -> float:
+    """Return the hypervolume of scaled values in the units of fronts; what lies beyond the ideal counts too."""
+    values = values[(values < REFERENCE).all(axis=1)]
+    if not len(values):
+        return 0.0
+    m = values.shape[1]
+    if m == 1:
+        return float((REFERENCE - values.min()) / REFERENCE)
+    values = np.ascontiguousarray(values[nondominated(values)])
+    return float(moocore.hypervolume(values, ref=REFERENCE) / REFERENCE**m)
+
+
+def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> float:
+    """Return by how much the hypervolume of the true front may exceed that of `front`; all scaled.
+
+    Every feasible design is covered by `designs` to epsilon, and lies beyond one of `points` unless the front itself
+    covers it to epsilon. Of the two sets that the true front cannot leave, the smaller.
+    """
+    if not np.isfinite(epsilon):
+        return float("inf")
+    most = volume(designs - epsilon)
+    beyond = np.concatenate([front - epsilon, points])
+    beyond = beyond[np.isfinite(beyond).all(axis=1)] if np.isfinite(points).all() else beyond[:0]
+    if len(beyond):
+        beyond = beyond[nondominated(beyond)]
+        if len(beyond) <= _EXACT:
+            most = min(most, volume(beyond))
+    return max(0.0, most - volume(front))

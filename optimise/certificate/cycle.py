@@ -1,0 +1,210 @@
+"""A curve over the cycle, enclosed over boxes of designs at chosen crank angles.
+
+The greatest value of a curve over the cycle is at least its value at any one crank angle, so an enclosure at one angle
+bounds a peak from below, for every design of a box. At the angle where the peak of the box's middle design is, the
+bound is right to second order in the size of the box: there the curve is flat over crank angle. Where the curve counts
+only over a part of the stroke, and the peak sits on the end of that part, the angle follows the design: it is the one
+at which the slider has covered a fixed share of its stroke. From above a peak is not bounded here.
+"""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.arithmetic import magnitude, root
+from ...model.dynamics import Forces, forces, smooth_load
+from ...model.kinematics import motion
+from ...model.mechanism import Mechanism
+from ...model.parameters import DESIGN, Design, LoadKind, Loads, derive, design_at
+from ...model.peaks import find_peaks
+from ...model.screening import screen, screens
+from ...model.signals import Signal, design_motion, signal
+from ...model.watch import inputs_of, watch_of
+from ...objectives.cycle_peak import CyclePeak
+from .enclosure import UNIT, Array, Enclosure, beside, between
+
+_TURN = 2.0 * np.pi
+_ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
+_AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
+_derive = cast(Any, derive).py_func
+
+
+def best_angles(peak: CyclePeak, mechanism: Mechanism, designs: Array) -> Array:
+    """Return the crank angle, rad, of each design's peak (n,)."""
+    if screens(mechanism, peak.signal, during=peak.during):
+        return screen(mechanism, (peak.signal,), designs)[0].angles
+    angles = find_peaks(mechanism, peak.signal, designs, during=peak.during, kept=1).angles[:, 0]
+    return np.where(np.isfinite(angles), angles, 0.0)
+
+
+class Curve:
+    """One signal of a machine over boxes of designs. Without friction: its forces are no plain formula."""
+
+    def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
+        """Prepare the raw numbers and tables that the signal needs."""
+        self.kind, self.peak = peak.signal, peak
+        self.mechanism = mechanism
+        self.raw, self.loads = inputs_of(mechanism, peak.signal)
+        self.watch = watch_of(mechanism, peak.signal, during=peak.during)
+        self.direction = 1.0 if mechanism.speed >= 0.0 else -1.0
+        self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
+        self.jumps = self.watch.split and peak.signal not in (Signal.TORQUE, Signal.POWER)
+        self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+
+    def over(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
+        """Return the signal (n, p) at crank angles (n,) for crank, rod and offset (n, 1) and middle designs (n, 3).
+
+        It has two parts where it may jump at the angle. The rest is not a number where the angle does not count in all
+        of the box.
+        """
+        raw = self.raw.astype(object)[:, None]
+        raw[:3, 0] = dimensions
+        block = np.empty((DESIGN + 2 * len(self.loads.kind), 1), dtype=object)
+        _derive(raw, self.loads.kind, self.loads.datum, block)
+        d = design_at(block, 0)
+        theta = angles[:, None]
+        sine: Any = np.sin(theta)
+        cosine: Any = np.cos(theta)
+        if self.shares:
+            sine, cosine = _at_share(d, sine, cosine, middle, self.watch.start, self.watch.end)
+        jump = None
+        if self.jumps:
+            jump, sine, cosine = _at_dead_centre(d, sine, cosine, middle)
+        m = design_motion(sine, cosine, d)
+        outward = m.x_1 * (d.branch * self.direction)
+        if jump is not None and jump.any():
+            # The peak is the greater of what the curve tends to from either side, which are the two strokes.
+            sides = [
+                _chosen(jump, between(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
+            ]
+            return beside(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
+        value = self._signal(sine, cosine, m, d, block, theta, outward)
+        if self.partial and not self.shares:
+            low, high = outward.ends()
+            counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
+            value = Enclosure(value.centre, value.slopes, np.where(counts, value.rest, np.nan), value.empty)
+        return value
+
+    def _signal(
+        self, sine: Any, cosine: Any, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure
+    ) -> Enclosure:
+        if self.kind.needs_forces:
+            load = smooth_load(m, d, _by_stroke(outward, d.outward_force, d.inward_force))
+            for k in range(len(self.loads.kind)):
+                if self.loads.start[k] < self.loads.start[k + 1]:
+                    load = load + self._table(k, m, d, block, theta, outward)
+            return _of_forces(self.kind, forces(sine, cosine, m, d, load), d)
+        return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
+
+    def _table(self, k: int, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Enclosure:
+        loads: Loads = self.loads
+        part = slice(loads.start[k], loads.start[k + 1])
+        at, force = loads.at[part], loads.force[part]
+        factor = _by_stroke(outward, *loads.factor[k].tolist())
+        if loads.kind[k] == LoadKind.ANGLE_TABLE:
+            turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
+            return cast(Enclosure, factor * np.interp(turned, at, force))
+        at_x = (m.x * d.branch - block[DESIGN + 2 * k + 1, 0]) * block[DESIGN + 2 * k, 0]
+        return factor * interpolated(at_x, at, force)
+
+
+def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
+    """Return the table's force over an enclosed position: the chord, and how far the knots lie off it."""
+    low, high = x.ends()
+    first, last = np.interp(low, at, force), np.interp(high, at, force)
+    wide = high > low
+    slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
+    above, below = np.zeros_like(low), np.zeros_like(low)
+    for knot, value in zip(at, force, strict=True):
+        off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
+        above, below = np.maximum(above, off), np.minimum(below, off)
+    chord = (x - low) * slope + (first + 0.5 * (above + below))
+    most = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
+    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (above - below) + 4.0 * most, chord.empty)
+
+
+def _of_forces(kind: Signal, f: Forces, d: Design) -> Enclosure:
+    """Return what `signal` does of forces without friction; the compiled step that it takes them from is for floats."""
+    if kind == Signal.TORQUE:
+        found = magnitude(f.torque)
+    elif kind == Signal.POWER:
+        found = magnitude(f.torque * d.speed)
+    elif kind == Signal.GUIDE_FORCE:
+        found = magnitude(f.guide)
+    else:
+        x, y = {
+            Signal.PIVOT_FORCE: (f.pivot_x, f.pivot_y),
+            Signal.CRANK_PIN_FORCE: (f.crank_pin_x, f.crank_pin_y),
+            Signal.SLIDER_PIN_FORCE: (f.slider_pin_x, f.slider_pin_y),
+        }[kind]
+        found = root(x * x + y * y)
+    return cast(Enclosure, found)
+
+
+def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
+    """Return one number in the outward stroke and another in the inward one, both where the stroke is not certain."""
+    low, high = outward.ends()
+    k = len(outward.slopes)
+    least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
+    most = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
+    return between(least, most, k)
+
+
+def _at_share(
+    d: Design, sine: Array, cosine: Array, middle: Array, start: float, end: float
+) -> tuple[Enclosure, Enclosure]:
+    """Return sine and cosine of the crank angle at the share of the stroke that the middle design has covered.
+
+    With B the slider pin and q = (r^2 + B^2 - l^2) / (2 B^2), the crank pin is q B +- h B' where B' is B turned by 90
+    degrees and h^2 = r^2 / B^2 - q^2. On a dead centre it lies on the line of the rod: -r/(l - r) or r/(l + r) times B.
+    """
+    r, l, e = (column[:, None] for column in middle.T)
+    at = motion(sine, cosine, r, l, e, d.branch)
+    inner, outer = np.sqrt((l - r) ** 2 - e * e), np.sqrt((l + r) ** 2 - e * e)
+    share = np.clip((at.x * d.branch - inner) / (outer - inner), start, end)
+    side = np.where(at.x * r * sine >= e * r * cosine, 1.0, -1.0)
+    x = (d.inner + (d.outer - d.inner) * np.clip(share, _ON_END, 1.0 - _ON_END)) * d.branch
+    square = x * x + d.e * d.e
+    q = (d.r * d.r + square - d.l * d.l) / (square * 2.0)
+    h = np.sqrt(d.r * d.r / square - q * q) * side
+    on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
+    q = _chosen(on_inner, -d.r / (d.l - d.r), _chosen(on_outer, d.r / (d.l + d.r), q))
+    h = _chosen(on_inner | on_outer, 0.0 * d.r, h)
+    x = _chosen(on_inner, d.inner * d.branch, _chosen(on_outer, d.outer * d.branch, x))
+    return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
+
+
+def _at_dead_centre(
+    d: Design, sine: Array, cosine: Array, middle: Array
+) -> tuple[NDArray[np.bool_], Enclosure, Enclosure]:
+    """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there with it."""
+    r, l, e = (column[:, None] for column in middle.T)
+    at = motion(sine, cosine, r, l, e, d.branch)
+    on = np.abs(at.x_1) < _AT_REST * r
+    far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
+    q = _chosen(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
+    x = _chosen(far, d.outer * d.branch, d.inner * d.branch)
+    k = len(q.slopes)
+    return (
+        on,
+        _chosen(on, q * d.e / d.r, between(sine, sine, k)),
+        _chosen(on, q * x / d.r, between(cosine, cosine, k)),
+    )
+
+
+def _chosen(mask: NDArray[np.bool_], one: Enclosure, two: Enclosure) -> Enclosure:
+    return Enclosure(
+        np.where(mask, one.centre, two.centre),
+        np.where(mask, one.slopes, two.slopes),
+        np.where(mask, one.rest, two.rest),
+        _where(mask, one.empty, two.empty),
+    )
+
+
+def _where(mask: NDArray[np.bool_], one: NDArray[np.bool_] | None, two: NDArray[np.bool_] | None) -> Any:
+    if one is None and two is None:
+        return None
+    return np.where(mask, False if one is None else one, False if two is None else two)

@@ -1,0 +1,266 @@
+"""Arithmetic that encloses a formula over a whole box of designs: linear part plus a bound on what is left.
+
+Over a box with coordinates d in [-1, 1]^k, a number of every design is written as
+
+    value(d) in centre + slopes . d + [-rest, rest]        wherever the formula is defined,
+
+a Taylor model of first order (Makino and Berz, "Taylor models and other validated functional inclusion methods", Int.
+J. Pure Appl. Math. 4(4), 2003). Its excess over the true range shrinks with the square of the box. Each operation holds
+point by point, so it does not matter that a formula is undefined elsewhere in the box.
+
+The formulas of the model are plain functions that take whatever has +, -, *, / and NumPy's sqrt and arcsin: an
+`Enclosure` runs through them as a float does, so the physics is not written a second time.
+
+Rounding: every operation adds `UNIT` times the size of all that enters to the rest, eight times what IEEE doubles
+round it by; results are inflated by `INFLATION` of their size once more, for sines and other rounded numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+UNIT = 2.0**-50
+INFLATION = 1e-12
+
+
+class Enclosure:
+    """A number of each of n boxes, enclosed over the box.
+
+    centre, rest: (n, ...). slopes: (k, n, ...). empty: where the formula is defined nowhere in the box; None for
+    nowhere. A rest that is not finite says nothing about the number.
+    """
+
+    __slots__ = ("_reach", "centre", "empty", "rest", "slopes")
+
+    def __init__(self, centre: Any, slopes: Any, rest: Any, empty: Mask | None = None) -> None:
+        """Take the parts as they are."""
+        self.centre, self.slopes, self.rest, self.empty = centre, slopes, rest, empty
+        self._reach: Array | None = None
+
+    @property
+    def reach(self) -> Array:
+        """How far the number may be from the centre."""
+        if self._reach is None:
+            self._reach = np.abs(self.slopes).sum(axis=0) + self.rest
+        return self._reach
+
+    @property
+    def size(self) -> Array:
+        """The greatest absolute value that the number may have."""
+        return np.asarray(np.abs(self.centre) + self.reach)
+
+    def ends(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
+        """Return the least and the greatest value, infinite where unknown.
+
+        low, high: (k, n), the part of [-1, 1]^k that matters; all of it by default.
+        """
+        swing = np.abs(self.slopes).sum(axis=0)
+        below, above = -swing, swing
+        if low is not None and high is not None:
+            if self.centre.ndim > 1:
+                low, high = low[..., None], high[..., None]
+            one, two = self.slopes * low, self.slopes * high
+            below, above = np.minimum(one, two).sum(axis=0), np.maximum(one, two).sum(axis=0)
+        room = self.rest + INFLATION * self.size
+        least, most = self.centre + below - room, self.centre + above + room
+        known = np.isfinite(least) & np.isfinite(most)
+        return np.where(known, least, -np.inf), np.where(known, most, np.inf)
+
+    def confined(self, low: Array, high: Array) -> Enclosure:
+        """Return the number where only values from low to high (n, ...) matter: they alone where it reaches farther."""
+        clear = self.reach <= high - low
+        if clear.all():
+            return self
+        inside = between(low, np.maximum(low, high), len(self.slopes))
+        return Enclosure(
+            np.where(clear, self.centre, inside.centre),
+            np.where(clear, self.slopes, inside.slopes),
+            np.where(clear, self.rest, inside.rest),
+            self.empty,
+        )
+
+    def magnitude(self) -> Enclosure:
+        """Return the absolute value."""
+        low, high = self.centre - self.reach, self.centre + self.reach
+        sign = np.where(low >= 0.0, 1.0, -1.0)
+        both = (low < 0.0) & (high > 0.0)
+        if not both.any():
+            return self._scaled(sign)
+        # On [low, high] the absolute value lies between its chord and the chord less its height above zero.
+        width = np.where(both, high - low, 1.0)
+        slope = np.where(both, (high + low) / width, sign)
+        height = np.where(both, -2.0 * low * high / width, 0.0)
+        found = self._scaled(slope)
+        return Enclosure(
+            found.centre + 0.5 * height, found.slopes, found.rest + 0.5 * height + UNIT * self.size, self.empty
+        )
+
+    def _scaled(self, factor: Any) -> Enclosure:
+        weight = np.abs(factor)
+        return Enclosure(
+            self.centre * factor, self.slopes * factor, (self.rest + UNIT * self.size) * weight, self.empty
+        )
+
+    def __neg__(self) -> Enclosure:
+        return Enclosure(-self.centre, -self.slopes, self.rest, self.empty)
+
+    def __add__(self, other: Any) -> Enclosure:
+        if isinstance(other, Enclosure):
+            return Enclosure(
+                self.centre + other.centre,
+                self.slopes + other.slopes,
+                self.rest + other.rest + UNIT * (self.size + other.size),
+                _either(self.empty, other.empty),
+            )
+        centre = self.centre + other
+        rest = self.rest + UNIT * (self.size + np.abs(other))
+        return Enclosure(centre, _wide(self.slopes, centre), rest, self.empty)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> Enclosure:
+        return cast(Enclosure, self + (-other))
+
+    def __rsub__(self, other: Any) -> Enclosure:
+        return cast(Enclosure, (-self) + other)
+
+    def __mul__(self, other: Any) -> Enclosure:
+        if other is self:
+            return Enclosure._squared(self)
+        if not isinstance(other, Enclosure):
+            return self._scaled(other)
+        a, b = self.centre, other.centre
+        rest = np.abs(a) * other.rest + np.abs(b) * self.rest + self.reach * other.reach
+        return Enclosure(
+            a * b,
+            a * other.slopes + b * self.slopes,
+            rest + UNIT * (self.size * other.size),
+            _either(self.empty, other.empty),
+        )
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Enclosure:
+        return self * other._inverted() if isinstance(other, Enclosure) else self._scaled(1.0 / other)
+
+    def __rtruediv__(self, other: Any) -> Enclosure:
+        return self._inverted()._scaled(other)
+
+    def _squared(self) -> Enclosure:
+        """(c + t)^2 = c^2 + 2 c t + t^2 with t^2 in [0, reach^2]."""
+        half = 0.5 * self.reach * self.reach
+        rest = 2.0 * np.abs(self.centre) * self.rest + half + UNIT * self.size**2
+        return Enclosure(self.centre * self.centre + half, 2.0 * self.centre * self.slopes, rest, self.empty)
+
+    def _inverted(self) -> Enclosure:
+        """1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)): the last is largest at the end next to zero."""
+        size, reach = np.abs(self.centre), self.reach
+        clear = size > reach * (1.0 + INFLATION)
+        inverse = 1.0 / np.where(clear, self.centre, np.nan)
+        most = (reach * inverse) ** 2 / (size - reach)
+        square = inverse * inverse
+        rest = self.rest * square + 0.5 * most + UNIT * (np.abs(inverse) + reach * square + most)
+        return Enclosure(inverse + np.sign(inverse) * 0.5 * most, -self.slopes * square, rest, self.empty)
+
+    def _root(self) -> Enclosure:
+        """With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end."""
+        reach = self.reach
+        least, most = self.centre - reach, self.centre + reach
+        clear = least > 0.0
+        q = np.sqrt(np.where(clear, self.centre, 1.0))
+        bend = (q - np.sqrt(np.where(clear, least, 1.0))) ** 2 / (2.0 * q)
+        centre, slopes = q - 0.5 * bend, self.slopes * (0.5 / q)
+        rest = self.rest * (0.5 / q) + 0.5 * bend + UNIT * (q + reach / q)
+        if clear.all():
+            return Enclosure(centre, slopes, rest, self.empty)
+        # What is defined lies between zero and the root of the greatest value.
+        half = np.where(np.isfinite(most), 0.5 * np.sqrt(np.maximum(most, 0.0)) * (1.0 + INFLATION), np.nan)
+        return Enclosure(
+            np.where(clear, centre, half),
+            np.where(clear, slopes, 0.0),
+            np.where(clear, rest, half),
+            _either(self.empty, most < -INFLATION * np.abs(self.centre)),
+        )
+
+    def _arcsine(self) -> Enclosure:
+        """Tangent at the centre; the second derivative x / (1 - x^2)^(3/2) grows with |x|."""
+        most = self.size
+        clear = most < 1.0
+        c, x = np.where(clear, self.centre, 0.0), np.where(clear, most, 0.0)
+        slope = 1.0 / np.sqrt(1.0 - c * c)
+        bend = 0.5 * self.reach**2 * x / (1.0 - x * x) ** 1.5
+        centre, slopes = np.arcsin(c), self.slopes * slope
+        rest = self.rest * slope + bend * (1.0 + INFLATION) + 8.0 * UNIT * (1.0 + self.reach * slope)
+        if clear.all():
+            return Enclosure(centre, slopes, rest, self.empty)
+        low = np.arcsin(np.clip(self.centre - self.reach, -1.0, 1.0))
+        high = np.arcsin(np.clip(self.centre + self.reach, -1.0, 1.0))
+        outside = np.abs(self.centre) - self.reach > 1.0 + INFLATION
+        return Enclosure(
+            np.where(clear, centre, 0.5 * (low + high)),
+            np.where(clear, slopes, 0.0),
+            np.where(clear, rest, 0.5 * (high - low) + 8.0 * UNIT),
+            _either(self.empty, outside),
+        )
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        """Run NumPy's functions on enclosures: what formulas call, and arrays on the left of an operator."""
+        if method != "__call__" or options or ufunc not in _FUNCTIONS:
+            return NotImplemented
+        return _FUNCTIONS[ufunc](*inputs)
+
+
+_FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    np.sqrt: Enclosure._root,
+    np.arcsin: Enclosure._arcsine,
+    np.negative: lambda a: -a,
+    np.add: lambda a, b: a + b if isinstance(a, Enclosure) else b + a,
+    np.subtract: lambda a, b: a - b if isinstance(a, Enclosure) else b.__rsub__(a),
+    np.multiply: lambda a, b: a * b if isinstance(a, Enclosure) else b * a,
+    np.true_divide: lambda a, b: a / b if isinstance(a, Enclosure) else b.__rtruediv__(a),
+}
+
+
+def between(low: Any, high: Any, k: int) -> Enclosure:
+    """Return a number of which only the ends are known."""
+    low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
+    rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
+    return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
+
+
+def beside(one: Enclosure, two: Enclosure) -> Enclosure:
+    """Return the parts (n, p) of one and of another side by side."""
+    empty = None if one.empty is None or two.empty is None else one.empty & two.empty
+    return Enclosure(
+        np.concatenate([one.centre, two.centre], axis=1),
+        np.concatenate([one.slopes, two.slopes], axis=2),
+        np.concatenate([one.rest, two.rest], axis=1),
+        empty,
+    )
+
+
+def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
+    """Return the free unknown that varies from low to high (n,) along axis `column` of k, shape (n, 1)."""
+    slopes = np.zeros((k, len(low), 1))
+    slopes[column, :, 0] = 0.5 * (high - low)
+    size = np.abs(low) + np.abs(high)
+    return Enclosure(0.5 * (low + high)[:, None], slopes, (UNIT * size)[:, None])
+
+
+def _either(one: Mask | None, two: Mask | None) -> Mask | None:
+    if one is None or two is None:
+        return one if two is None else two
+    return one | two
+
+
+def _wide(slopes: Array, centre: Array) -> Array:
+    """Return slopes as wide as a centre that an array has widened."""
+    shape = (len(slopes), *np.shape(centre))
+    return slopes if slopes.shape == shape else np.broadcast_to(slopes, shape)

@@ -1,0 +1,49 @@
+"""The proof that no design meets all requirements of a job: every box of designs breaks one of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from ..elimination import sheets
+from ..evaluation import FEASIBLE, Evaluator
+from ..problem import Problem
+from .boxes import Boxes
+from .tree import Tree, pool
+
+SECONDS = 5.0
+_BATCH = 2048
+_MOST = 400_000  # boxes bounded: the same job gives the same answer unless the machine is very slow
+
+
+def prove_infeasible(
+    problem: Problem, *, seconds: float = SECONDS, cancelled: Callable[[], bool] | None = None
+) -> bool:
+    """Return whether it is proven that no design of the job's ranges meets all its requirements.
+
+    False when a design meets them all, or when the budget ends first: then nothing is known. Requirements that cannot
+    be bounded over a range of designs are not used: the others must contradict each other.
+    """
+    start = time.perf_counter()
+    one = np.ones(len(problem.objectives))
+    tree = Tree([Boxes(Evaluator(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
+    with pool() as threads:
+        fresh = [(index, *tree.first(index)) for index in range(len(tree.sheets))]
+        while fresh:
+            for index, lower, upper in fresh:
+                boxes = tree.bound(index, lower, upper, threads)
+                n = len(boxes.lower)
+                if n and (tree.sheets[index].evaluator.screen(boxes.trial)[2] <= FEASIBLE).any():
+                    return False
+                tree.put(index, boxes, np.zeros((n, 0)), np.prod(boxes.upper - boxes.lower, axis=1), 0)
+            if not len(tree):
+                return True
+            late = time.perf_counter() - start > seconds or tree.bounded > _MOST
+            rows = tree.largest(_BATCH)
+            if late or not len(rows) or (cancelled is not None and cancelled()):
+                return False
+            fresh = tree.halves(rows)
+            tree.keep(np.setdiff1d(np.arange(len(tree)), rows))
+    return not len(tree)

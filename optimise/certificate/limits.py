@@ -1,0 +1,91 @@
+"""Conditions on boxes of designs: which boxes can meet them, in which part, and a point that probably does."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..evaluation import FEASIBLE
+from ..problem import Constraint
+from .enclosure import INFLATION, Array, Enclosure
+
+_INSIDE = 1e-9  # relative: by how much a trial design stays off the limits
+_ROUNDS = 3  # of moving it into the box's feasible part
+
+
+class Limits:
+    """Conditions `enclosure <= FEASIBLE` on n boxes, gathered one by one, and which boxes may meet them."""
+
+    def __init__(self, n: int, k: int) -> None:
+        """Start without conditions."""
+        self.alive = np.ones(n, dtype=bool)
+        self.rows: list[tuple[Array, Array, Array]] = []  # centre (n,), slopes (k, n), rest (n,)
+        self.k = k
+
+    def exist(self, value: Enclosure) -> None:
+        """Require a number to be defined somewhere in the box."""
+        if value.empty is not None:
+            self.alive &= ~value.empty.any(axis=1)
+
+    def add(self, value: Enclosure) -> None:
+        """Require a number (n, p), each of its p parts, to be at most `FEASIBLE`."""
+        self.exist(value)
+        self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
+        for part in range(value.centre.shape[1]):
+            known = np.isfinite(value.size[:, part])
+            self.rows.append(
+                (
+                    np.where(known, value.centre[:, part], -np.inf),
+                    np.where(known, value.slopes[:, :, part], 0.0),
+                    np.where(known, value.rest[:, part], 0.0),
+                )
+            )
+
+    def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, most: Array | None) -> None:
+        """Require a constraint on the greatest of a quantity's parts; least, most: what else is known of it."""
+        upper, lower = constraint.upper, constraint.lower
+        if upper is not None:
+            scale = abs(upper) or 1.0
+            self.add((value - upper) * (1.0 / scale))
+            if least is not None:
+                self.alive &= ~(least - upper > FEASIBLE * scale)
+        if lower is not None:
+            scale = abs(lower) or 1.0
+            if value.centre.shape[1] == 1:
+                self.add((lower - value) * (1.0 / scale))
+            if most is not None:
+                self.alive &= ~(lower - most > FEASIBLE * scale)
+
+    def contracted(self) -> tuple[Array, Array]:
+        """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
+        low, high = -np.ones((self.k, len(self.alive))), np.ones((self.k, len(self.alive)))
+        for centre, slopes, rest in self.rows:
+            # centre + slopes . d - rest <= FEASIBLE, with all coordinates but one at their best.
+            best = np.minimum(slopes * low, slopes * high)
+            room = FEASIBLE - centre + rest + INFLATION * (np.abs(centre) + np.abs(slopes).sum(axis=0))
+            for i in range(self.k):
+                slope = slopes[i]
+                limit = (room - best.sum(axis=0) + best[i]) / np.where(slope == 0.0, np.nan, slope)
+                limit = np.where(np.isfinite(limit), limit, np.where(slope < 0.0, -np.inf, np.inf))
+                high[i] = np.where(slope > 0.0, np.minimum(high[i], limit + INFLATION), high[i])
+                low[i] = np.where(slope < 0.0, np.maximum(low[i], limit - INFLATION), low[i])
+        self.alive &= (low <= high).all(axis=0)
+        return np.minimum(low, 1.0), np.maximum(high, -1.0)
+
+    def inside(self, low: Array, high: Array) -> Array:
+        """Return points (k, n) moved from the middle across the conditions that fail there, one after the other."""
+        d = 0.5 * (low + high)
+        for _ in range(_ROUNDS):
+            for centre, slopes, rest in self.rows:
+                over = centre + (slopes * d).sum(axis=0) + rest + _INSIDE
+                steep = (slopes * slopes).sum(axis=0)
+                step = np.where((over > 0.0) & (steep > 0.0), over / np.where(steep > 0.0, steep, 1.0), 0.0)
+                d = np.clip(d - step * slopes, low, high)
+        return d
+
+    def smear(self, low: Array, high: Array) -> Array:
+        """Return what the width along each axis matters to the conditions that are not sure to hold, (n, k)."""
+        most = np.zeros((len(self.alive), self.k))
+        for centre, slopes, rest in self.rows:
+            open_ = centre + np.maximum(slopes * low, slopes * high).sum(axis=0) + rest > 0.0
+            most = np.fmax(most, (np.abs(slopes) * (high - low) * open_).T)
+        return most

@@ -1,0 +1,278 @@
+"""The search for a proof: open boxes, the set of designs that covers, what is known of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from ...objectives.cycle_peak import CyclePeak
+from ...objectives.registry import QUANTITIES
+from ..deliver import span_of
+from ..elimination import sheets
+from ..evaluation import FEASIBLE, Evaluator, constraints_of, minimised
+from ..polish import polish
+from ..problem import Problem
+from .boxes import Boxes, usable
+from .certificate import Certificate, Status, Step, message_of
+from .cover import choose_covering, excess, thinned, volume_gap
+from .enclosure import Array
+from .tree import Tree, pool
+
+_BATCH = 4096  # boxes halved at a time
+_MOST = 4_000_000  # open boxes that memory is kept for
+_POLISHED = 400  # added designs that are polished; more would take longer than the proof
+_SHARE = 0.15  # of the time, kept for polishing
+_THIN = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
+
+
+def _objectives(problem: Problem, dimensions: Array) -> Array:
+    """Return the minimised objectives (n, m) of designs, exact over continuous crank angle."""
+    columns = [
+        minimised(wish, QUANTITIES[wish.quantity].evaluate(problem.mechanism, dimensions).values)
+        for wish in problem.objectives
+    ]
+    return np.stack(columns, axis=1)
+
+
+class Search:
+    """The branch and bound: open boxes, the set that covers, what is known of it."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        dimensions: Array,
+        epsilon: float,
+        seconds: float,
+        cancelled: Callable[[], bool] | None,
+    ) -> None:
+        """Prepare the bounds; raise `InputError` for objectives that have none."""
+        self.start = time.perf_counter()
+        self.problem, self.epsilon, self.seconds = problem, epsilon, seconds
+        self.cancelled = cancelled
+        values = _objectives(problem, dimensions)
+        self.span, self.ideal = span_of(problem, values), values.min(axis=0)
+        self.front = self._scaled(values)
+        self.designs = self.front
+        self.evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
+        self.tree = Tree([Boxes(evaluator, self.span) for evaluator in self.evaluators])
+        m = len(problem.objectives)
+        self.sheet: NDArray[np.int64] = np.zeros(0, np.int64)
+        self.u, self.added = np.zeros((0, 3)), np.zeros((0, m))
+        self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
+        self.closed = 0.0  # largest excess of closed boxes, of the set and of the front alone
+        self.closed_by_front = 0.0
+        self.gap, self.hole = 0.0, np.full(3, np.nan)
+        self.stopped = False
+
+    def _scaled(self, values: Array) -> Array:
+        return np.asarray((values - self.ideal) / self.span)
+
+    # ---- the search -----------------------------------------------------------------------------------------------
+
+    def run(self, progress: Callable[[Step], None] | None) -> None:
+        """Halve boxes until all are closed or the budget is spent."""
+        with pool() as threads:
+            for index in range(len(self.evaluators)):
+                self._take(index, *self.tree.first(index), threads)
+            while True:
+                self._tell(progress)
+                rows = self.tree.largest(_BATCH)
+                if not len(rows) or self._over():
+                    break
+                rows = self._recovered(rows)
+                halves = self.tree.halves(rows)
+                self.tree.keep(np.setdiff1d(np.arange(len(self.tree)), rows, assume_unique=True))
+                for index, lower, upper in halves:
+                    self._take(index, lower, upper, threads)
+        self._refresh()
+
+    def _over(self) -> bool:
+        self.stopped = self.stopped or (self.cancelled is not None and self.cancelled())
+        late = time.perf_counter() - self.start > self.seconds * (1.0 - _SHARE)
+        return self.stopped or late or len(self.tree) > _MOST
+
+    def _recovered(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Close those boxes that designs added since they were opened cover; return the others."""
+        tree = self.tree
+        tree.excess[rows] = excess(
+            tree.corner[rows],
+            self.designs,
+            known=tree.excess[rows],
+            first=tree.seen[rows],
+            enough=self.epsilon,
+        )
+        tree.seen[rows] = len(self.designs)
+        done = tree.excess[rows] <= self.epsilon
+        self._close(tree.corner[rows[done]], tree.excess[rows[done]])
+        gone = rows[done]
+        left = rows[~done]
+        if len(gone):
+            kept = np.ones(len(tree), dtype=bool)
+            kept[gone] = False
+            left = np.cumsum(kept)[left] - 1
+            tree.keep(kept)
+        return np.asarray(left)
+
+    def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
+        """Bound boxes of a sheet, close what can be closed, open the rest."""
+        boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
+        corner = self._scaled(boxes.corner)
+        found = excess(corner, self.designs, enough=self.epsilon)
+        wanting = np.flatnonzero(found > self.epsilon)
+        if len(wanting):
+            found[wanting] = self._add(index, boxes.trial[wanting], corner[wanting], found[wanting])
+        done = found <= self.epsilon
+        self._close(corner[done], found[done])
+        self.tree.put(index, boxes[~done], corner[~done], found[~done], len(self.designs))
+
+    def _add(self, index: int, trial: Array, corner: Array, found: Array) -> Array:
+        """Add designs that cover the corner of their box where no other does; return the excess of the corners."""
+        evaluator = self.evaluators[index]
+        dimensions, values, violation = evaluator.screen(trial)
+        good = np.flatnonzero(violation <= FEASIBLE)
+        if not len(good):
+            return found
+        scaled = self._scaled(values[good])
+        beyond = excess(scaled, self.front)
+        most = int(np.argmax(beyond))
+        if beyond[most] > self.gap:
+            self._note(dimensions[good[most]])
+        rows = good[choose_covering(corner[good], scaled, self.epsilon)]
+        if not len(rows):
+            return found
+        fresh = self._exact(dimensions[rows])
+        padded = np.zeros((len(rows), 3))
+        padded[:, : trial.shape[1]] = trial[rows]
+        self.sheet = np.concatenate([self.sheet, np.full(len(rows), index)])
+        self.u, self.added = np.concatenate([self.u, padded]), np.concatenate([self.added, fresh])
+        self.designs = np.concatenate([self.designs, fresh])
+        return excess(corner, fresh, known=found, enough=self.epsilon)
+
+    def _exact(self, dimensions: Array) -> Array:
+        return self._scaled(_objectives(self.problem, dimensions))
+
+    def _note(self, design: Array) -> None:
+        """Remember a design that lies farther beyond the front than any before."""
+        beyond = float(excess(self._exact(design[None]), self.front)[0])
+        if beyond > self.gap:
+            self.gap, self.hole = beyond, design
+
+    def _close(self, corner: Array, found: Array) -> None:
+        if not len(corner):
+            return
+        self.closed = max(self.closed, float(found.max()))
+        alone = excess(corner, self.front, enough=self.epsilon)
+        self.closed_by_front = max(self.closed_by_front, float(alone.max()))
+        self.needy.append(corner[alone > self.epsilon])
+
+    def _refresh(self) -> None:
+        """Count all designs for all open boxes, and close what they cover."""
+        if len(self.tree):
+            self._recovered(np.arange(len(self.tree)))
+
+    def _tell(self, progress: Callable[[Step], None] | None) -> None:
+        if progress is not None:
+            tree = self.tree
+            progress(Step(self._proven(), tree.bounded, len(tree), len(self.added), time.perf_counter() - self.start))
+
+    def _proven(self) -> float:
+        return max(self.closed, float(self.tree.excess.max(initial=0.0)))
+
+    # ---- what it gives --------------------------------------------------------------------------------------------
+
+    def certificate(self) -> Certificate:
+        """Return what is proven, the added designs polished and no more of them than it takes."""
+        from ...objectives.analysis import analyse
+
+        tree, proven = self.tree, self._proven()
+        needy = np.concatenate(self.needy)
+        self._thin(needy)
+        self._polish()
+        self._thin(needy)
+        self.designs = np.concatenate([self.front, self.added])
+        dimensions = self._dimensions()
+        beyond = excess(self.added, self.front)
+        if len(beyond) and beyond.max() > self.gap:
+            self._note(dimensions[int(np.argmax(beyond))])
+        # Whoever is covered by an added design is covered by the front to the sum of both excesses.
+        least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
+        delivered = max(min(least, proven + float(beyond.max(initial=0.0))), self.gap)
+        status: Status = "cancelled" if self.stopped else "out of budget"
+        if proven <= self.epsilon:
+            status = "proven"
+        where = self._where() if len(tree) else None
+        return Certificate(
+            status=status,
+            asked=self.epsilon,
+            epsilon=proven,
+            delivered=delivered,
+            gap=self.gap,
+            hole=self.hole if self.gap > 0.0 else None,
+            hypervolume_gap=volume_gap(self.front, self.designs, proven, np.concatenate([needy, tree.corner])),
+            span=self.span,
+            added=dimensions,
+            added_values=self.added * self.span + self.ideal,
+            table=analyse(self.problem.mechanism, dimensions) if len(dimensions) else pd.DataFrame(),
+            boxes=tree.bounded,
+            open=len(tree),
+            remaining=tree.volume(),
+            where=where,
+            notes=self._notes(),
+            seconds=time.perf_counter() - self.start,
+            message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
+        )
+
+    def _notes(self) -> tuple[str, ...]:
+        found = []
+        for constraint in constraints_of(self.problem):
+            quantity = QUANTITIES[constraint.quantity]
+            if not usable(self.problem, constraint):
+                found.append(f"the bounds do not use the requirement on {quantity.title}")
+            elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
+                found.append(f"the bounds do not use that {quantity.title} has a least value")
+        return tuple(found)
+
+    def _dimensions(self) -> Array:
+        found = np.zeros((len(self.u), 3))
+        for index, evaluator in enumerate(self.evaluators):
+            own = self.sheet == index
+            found[own] = evaluator.sheet.dimensions(self.u[own][:, : evaluator.dimension])
+        return found
+
+    def _thin(self, needy: Array) -> None:
+        """Leave out added designs whose corners others cover."""
+        if not len(self.tree) and len(self.added) * len(needy) <= _THIN:
+            rows = thinned(needy, self.added, self.epsilon)
+            self.sheet, self.u, self.added = self.sheet[rows], self.u[rows], self.added[rows]
+
+    def _polish(self) -> None:
+        """Move added designs onto the front where that makes no objective worse: what they cover stays covered."""
+        if len(self.added) > _POLISHED:
+            return
+        for index, evaluator in enumerate(self.evaluators):
+            own = np.flatnonzero(self.sheet == index)
+            for begin in range(0, len(own), 32):
+                rows = own[begin : begin + 32]
+                if time.perf_counter() - self.start > self.seconds or self.stopped:
+                    return
+                k = evaluator.dimension
+                part = polish(evaluator, self.u[rows][:, :k], self.span)
+                fresh = self._exact(evaluator.sheet.dimensions(part.u))
+                better = (part.violation <= FEASIBLE) & (fresh <= self.added[rows]).all(axis=1)
+                self.u[rows[better], :k] = part.u[better]
+                self.added[rows[better]] = fresh[better]
+
+    def _where(self) -> Array:
+        tree = self.tree
+        row = int(np.argmax(tree.excess))
+        evaluator = self.evaluators[int(tree.sheet[row])]
+        k = evaluator.dimension
+        corners = np.stack(np.meshgrid(*([0.0, 1.0],) * k, indexing="ij"), axis=-1).reshape(-1, k) if k else None
+        low, high = tree.lower[row, :k], tree.upper[row, :k]
+        u = np.zeros((1, 0)) if corners is None else low + (high - low) * corners
+        found = evaluator.sheet.dimensions(u)
+        return np.stack([found.min(axis=0), found.max(axis=0)], axis=1)

@@ -1,0 +1,114 @@
+"""Branch and bound over the free unknowns: boxes that may still hold an uncovered design, largest excess first."""
+
+from __future__ import annotations
+
+import itertools
+from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .boxes import Bounded, Boxes, together
+from .enclosure import Array
+
+_FIRST = {0: 1, 1: 64, 2: 24, 3: 12}  # boxes along each axis to begin with
+_CHUNK = 2048  # boxes bounded at once: the working arrays stay in the cache
+_FINEST = 2.0**-40
+"""Width of a box, in the unit box, below which it is not split further."""
+
+
+class Tree:
+    """The open boxes of all sheets.
+
+    sheet: (n,). lower, upper: (n, 3), padded with zeros. corner: (n, m), scaled. excess: (n,). seen: (n,), how many
+    designs it counts. axis: (n,), which to split; -1 where none is left.
+    """
+
+    def __init__(self, sheets: list[Boxes]) -> None:
+        """Start without boxes."""
+        self.sheets = sheets
+        m = len(sheets[0].objectives)
+        self.sheet: NDArray[np.int64] = np.zeros(0, np.int64)
+        self.lower, self.upper = np.zeros((0, 3)), np.zeros((0, 3))
+        self.corner, self.excess = np.zeros((0, m)), np.zeros(0)
+        self.seen: NDArray[np.int64] = np.zeros(0, np.int64)
+        self.axis: NDArray[np.int64] = np.zeros(0, np.int64)
+        self.bounded = 0
+
+    def __len__(self) -> int:
+        return len(self.sheet)
+
+    def volume(self) -> float:
+        """Return the open boxes' share of the whole, sheets counting alike."""
+        total = 0.0
+        for index, boxes in enumerate(self.sheets):
+            own, k = self.sheet == index, len(boxes.sheet.free)
+            total += float(np.prod((self.upper - self.lower)[own][:, :k], axis=1).sum())
+        return total / len(self.sheets)
+
+    def first(self, index: int) -> tuple[Array, Array]:
+        """Return the boxes (n, k) that a sheet begins with."""
+        k = len(self.sheets[index].sheet.free)
+        count = _FIRST[k]
+        places = np.array(list(itertools.product(range(count), repeat=k)), dtype=np.float64).reshape(count**k, k)
+        return places / count, (places + 1.0) / count
+
+    def bound(self, index: int, lower: Array, upper: Array, pool: ThreadPoolExecutor) -> Bounded:
+        """Return the bounds of boxes of a sheet, those that cannot hold a feasible design left out."""
+        self.bounded += len(lower)
+        parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
+        found = together(list(pool.map(lambda part: self.sheets[index].bound(lower[part], upper[part]), parts)))
+        return found[found.alive]
+
+    def put(self, index: int, boxes: Bounded, corner: Array, excess: Array, seen: int) -> None:
+        """Take boxes in."""
+        n, k = boxes.lower.shape
+        wide = boxes.upper - boxes.lower
+        # Where nothing is known of what matters, the widest; a little of it always, so that none stays wide for ever.
+        smear = np.where(np.isfinite(boxes.smear), boxes.smear, 0.0) + 0.05 * wide
+        smear = np.where(wide > _FINEST, smear, -1.0)
+        axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
+        padded = np.zeros((2, n, 3))
+        padded[0, :, :k], padded[1, :, :k] = boxes.lower, boxes.upper
+        self.sheet = np.concatenate([self.sheet, np.full(n, index)])
+        self.lower, self.upper = np.concatenate([self.lower, padded[0]]), np.concatenate([self.upper, padded[1]])
+        self.corner = np.concatenate([self.corner, corner])
+        self.excess = np.concatenate([self.excess, excess])
+        self.seen = np.concatenate([self.seen, np.full(n, seen)])
+        self.axis = np.concatenate([self.axis, axis])
+
+    def keep(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> None:
+        """Keep only these boxes."""
+        for name in ("sheet", "lower", "upper", "corner", "excess", "seen", "axis"):
+            setattr(self, name, getattr(self, name)[rows])
+
+    def largest(self, count: int) -> NDArray[np.int64]:
+        """Return boxes that can be split, those of the largest excess."""
+        rows = np.flatnonzero(self.axis >= 0)
+        if len(rows) <= count:
+            return rows
+        return rows[np.argpartition(-self.excess[rows], count)[:count]]
+
+    def halves(self, rows: NDArray[np.int64]) -> list[tuple[int, Array, Array]]:
+        """Return the two halves of boxes, by sheet: index, lower, upper (n, k)."""
+        found = []
+        for index, boxes in enumerate(self.sheets):
+            own, k = rows[self.sheet[rows] == index], len(boxes.sheet.free)
+            if not len(own):
+                continue
+            low, high, axis = self.lower[own][:, :k], self.upper[own][:, :k], self.axis[own]
+            at = np.arange(len(own))
+            middle = 0.5 * (low[at, axis] + high[at, axis])
+            left, right = high.copy(), low.copy()
+            left[at, axis] = right[at, axis] = middle
+            # Halves side by side: neighbours are likely to be covered by the same design.
+            lower = np.stack([low, right], axis=1).reshape(-1, k)
+            upper = np.stack([left, high], axis=1).reshape(-1, k)
+            found.append((index, lower, upper))
+        return found
+
+
+def pool() -> ThreadPoolExecutor:
+    """Return threads of its own: bounding asks kernels that wait for the shared ones."""
+    return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank-boxes")

@@ -1,0 +1,212 @@
+"""Certificates: what they prove holds for random designs, holes are found, what is not proven is said."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.optimise.certificate.certificate import Certificate, Step
+from slidercrank.optimise.certificate.certify import certify, certify_designs
+from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
+from slidercrank.optimise.certificate.enclosure import Array
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.hypervolume import hypervolume
+from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import degrees, problem, shipped_front
+
+HELD = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
+ROUNDED = 1e-9
+
+
+@cache
+def two() -> ParetoFront:
+    """Return a front of two objectives over two free unknowns."""
+    return solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=60))  # type: ignore[arg-type]
+
+
+@cache
+def certificate(epsilon: float = 0.01) -> Certificate:
+    return certify(two(), epsilon=epsilon, seconds=60.0)
+
+
+def feasible(given: Problem, count: int, seed: int = 9) -> Array:
+    """Return the objectives of random feasible designs (count, m)."""
+    random, found, total = np.random.default_rng(seed), [], 0
+    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
+    while total < count:
+        for evaluator in evaluators:
+            _, values, violation = evaluator.screen(random.random((60_000, evaluator.dimension)))
+            found.append(values[violation <= FEASIBLE])
+            total += len(found[-1])
+    return np.concatenate(found)[:count]
+
+
+def beats(values: Array, designs: Array, span: Array) -> float:
+    """Return the least epsilon to which some design covers each of the values, the greatest of them; by brute force."""
+    worst = 0.0
+    for part in np.array_split(values, max(1, len(values) // 500)):
+        short = ((designs[None] - part[:, None]) / span).max(axis=2).min(axis=1)
+        worst = max(worst, float(short.max()))
+    return worst
+
+
+@pytest.mark.parametrize("of", ["two", "feeder"])
+def test_10_000_random_feasible_designs_do_not_beat_the_bound(of: str) -> None:
+    front = two() if of == "two" else shipped_front("feeder")
+    found = certificate() if of == "two" else certify(front)
+    assert found.status == "proven"
+    assert found.proven
+    assert found.epsilon <= 0.01
+    values = feasible(front.problem, 10_000)
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+    assert beats(values, front.values, found.span) <= found.delivered + ROUNDED
+    assert found.gap <= found.delivered <= found.gap + found.epsilon + ROUNDED
+
+
+def test_added_designs_are_feasible_and_have_the_values_told() -> None:
+    front, found = two(), certificate()
+    assert len(found.added) == len(found.added_values) == len(found.table) > 0
+    assert found.table["stroke_mm"].to_numpy() == pytest.approx(200.0, rel=1e-9)
+    assert found.table["least_transmission_angle_deg"].min() >= 35.0 * (1.0 - 1e-9)
+    assert found.table["peak_torque_Nm"].to_numpy() == pytest.approx(found.added_values[:, 0], rel=1e-12)
+    assert found.table["time_ratio"].to_numpy() == pytest.approx(-found.added_values[:, 1], rel=1e-12)
+    assert found.span == pytest.approx(np.ptp(front.values, axis=0))
+
+
+def test_a_planted_hole_is_found_and_its_size_told() -> None:
+    front = two()
+    order = np.argsort(front.values[:, 1])
+    cut = order[20:35]
+    left = np.delete(np.arange(len(front)), cut)
+    found = certify_designs(front.problem, front.dimensions[left], epsilon=0.01)
+    assert found.proven
+    assert found.hole is not None
+    size = beats(front.values[cut], front.values[left], found.span)
+    assert size > 0.1
+    # Nothing that was removed lies farther beyond what is left than the hole found, to the epsilon of the proof.
+    assert size - 0.01 <= found.gap <= found.delivered <= size + 0.03
+    ratio = -found.added_values[:, 1]
+    assert ((ratio > -front.values[cut[-1], 1]) & (ratio < -front.values[cut[0], 1])).any()
+
+
+def test_a_hole_at_the_end_of_the_front_is_found_too() -> None:
+    front = two()
+    left = np.argsort(front.values[:, 0])[12:]
+    found = certify_designs(front.problem, front.dimensions[left])
+    missing = (front.values[left, 0].min() - front.values[:, 0].min()) / found.span[0]
+    assert found.proven
+    assert found.gap >= missing - 0.01
+
+
+def test_a_design_that_is_dominated_does_not_pass_for_the_front() -> None:
+    given = two().problem
+    evaluator = Evaluator(given, sheets(given)[0])
+    u = np.random.default_rng(2).random((20_000, 2))
+    dimensions, values, violation = evaluator.screen(u)
+    good = np.flatnonzero(violation <= FEASIBLE)
+    poor = good[np.argsort(values[good, 0])[len(good) // 2 :][:5]]
+    found = certify_designs(given, dimensions[poor], epsilon=0.05)
+    assert found.gap > 0.2
+
+
+def test_what_a_small_budget_leaves_open_is_told() -> None:
+    front = shipped_front("feeder")
+    found = certify(front, epsilon=0.002, seconds=0.3)
+    assert found.status == "out of budget"
+    assert not found.proven
+    assert found.epsilon > 0.002
+    assert found.open > 0
+    assert 0.0 < found.remaining <= 1.0
+    assert found.where is not None
+    assert (found.where[:, 0] <= found.where[:, 1]).all()
+    if np.isfinite(found.epsilon):
+        values = feasible(front.problem, 10_000)
+        assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+def test_a_cancelled_proof_keeps_what_is_proven() -> None:
+    steps: list[Step] = []
+    found = certify(two(), epsilon=1e-4, progress=steps.append, cancelled=lambda: len(steps) >= 6)
+    assert found.status == "cancelled"
+    assert len(steps) == 6
+    assert [step.boxes for step in steps] == sorted(step.boxes for step in steps)
+    assert found.epsilon <= steps[-1].epsilon
+    assert "interrupted" in found.message
+
+
+def test_a_single_objective_is_proven_to_a_share_of_its_value() -> None:
+    front = solve(problem({"peak_torque": "minimise"}, HELD))  # type: ignore[arg-type]
+    found = certify(front, epsilon=1e-4)
+    assert found.proven
+    assert found.delivered <= 1e-4
+    best = feasible(front.problem, 10_000).min()
+    assert best >= front.values[0, 0] * (1.0 - found.delivered)
+
+
+def test_a_target_that_is_met_is_proven_best() -> None:
+    front = solve(problem({"time_ratio": 1.15}, HELD))  # type: ignore[arg-type]
+    assert certify(front, epsilon=1e-3).proven
+
+
+def test_a_job_that_leaves_one_design_is_certified() -> None:
+    front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, crank=0.1, rod=0.3, offset=0.05))
+    found = certify(front)
+    assert found.proven
+    assert len(found.added) == 0
+
+
+def test_the_hypervolume_gap_holds_for_a_fuller_front() -> None:
+    front, found = two(), certificate()
+    fuller = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=600))  # type: ignore[arg-type]
+    ideal = front.values.min(axis=0)
+    more = hypervolume(fuller.values, ideal, found.span) - hypervolume(front.values, ideal, found.span)
+    assert 0.0 < more <= found.hypervolume_gap
+    assert found.hypervolume_gap < 0.05
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"), [({"epsilon": 0.0}, "epsilon is a share"), ({"seconds": 0.0}, "longer than zero")]
+)
+def test_senseless_options_are_refused(options: dict[str, float], reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        certify(two(), **options)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="empty front"):
+        certify_designs(two().problem, np.zeros((0, 3)))
+
+
+def test_excess_is_the_least_epsilon_that_covers() -> None:
+    random = np.random.default_rng(1)
+    points, designs = random.random((500, 3)), random.random((40, 3))
+    expected = (designs[None] - points[:, None]).max(axis=2).min(axis=1)
+    assert excess(points, designs) == pytest.approx(expected, abs=0.0)
+    assert np.isposinf(excess(points, designs[:0])).all()
+    first = np.full(500, 20)
+    part = excess(points, designs, known=excess(points, designs[:20]), first=first)
+    assert part == pytest.approx(expected, abs=0.0)
+
+
+def test_thinned_designs_cover_what_all_of_them_cover() -> None:
+    random = np.random.default_rng(1)
+    points = random.random((400, 2))
+    values = points + 0.05 * random.random((400, 2))
+    chosen = choose_covering(points, values, 0.1)
+    assert excess(points, values[chosen]).max() <= 0.1
+    few = thinned(points, values[chosen], 0.1)
+    assert excess(points, values[chosen][few]).max() <= 0.1
+    assert 0 < len(few) <= len(chosen) < 400
+
+
+def test_the_gap_of_a_front_that_is_the_true_one_is_what_epsilon_leaves() -> None:
+    line = np.linspace(0.0, 1.0, 201)
+    front = np.stack([line, 1.0 - line], axis=1)
+    # Translated by e the line gains a strip of width e along each side: (1.1 + e)^2 - 1/2 less 1.1^2 - 1/2.
+    strip = ((1.1 + 0.01) ** 2 - 1.1**2) / 1.21
+    assert volume_gap(front, front, 0.01, np.zeros((0, 2))) == pytest.approx(strip, rel=0.02)
+    assert volume_gap(front, front, 0.0, front) == 0.0
+    assert volume_gap(front, front, float("inf"), front) == float("inf")

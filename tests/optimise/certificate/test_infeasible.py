@@ -1,0 +1,60 @@
+"""Proofs that nothing is feasible: given where requirements contradict each other, never where a design meets them."""
+
+from __future__ import annotations
+
+import pytest
+
+from slidercrank.optimise.certificate.infeasible import prove_infeasible
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
+
+CONTRADICTIONS: tuple[dict[str, Bounds], ...] = (
+    {"time_ratio": 1.5, "transmission_angle": (degrees(40.0), None)},
+    {"time_ratio": (1.5, None), "transmission_angle": (degrees(40.0), None)},
+    {"time_ratio": (1.5, None), "transmission_angle": (degrees(28.0), None)},
+    {"stroke": 0.2, "peak_torque": (None, 15.0)},
+    {"stroke": 0.2, "peak_torque": (None, 0.5), "peak_slider_speed": (None, 0.5)},
+    {"rod_to_offset": 3.2, "transmission_angle": (degrees(40.0), None), "time_ratio": (1.4, None)},
+    {"stroke": 0.45},
+)
+
+
+@pytest.mark.parametrize("held", CONTRADICTIONS)
+def test_a_contradiction_is_proven(held: dict[str, Bounds]) -> None:
+    assert prove_infeasible(problem({"peak_torque": "minimise"}, held), seconds=60.0)
+
+
+def test_a_rod_that_is_too_short_for_any_crank_is_proven() -> None:
+    given = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, crank=(0.15, 0.2), rod=(0.06, 0.1))
+    assert prove_infeasible(given)
+
+
+@pytest.mark.parametrize(("stroke", "infeasible"), [(0.3, True), (0.2053607, False)])
+def test_given_dimensions_either_have_the_stroke_or_not(stroke: float, infeasible: bool) -> None:
+    """sqrt(0.4^2 - 0.05^2) - sqrt(0.2^2 - 0.05^2) = 0.20321..., within half a per cent of the range below."""
+    held: dict[str, Bounds] = {"stroke": (stroke * 0.98, stroke * 1.02)}
+    given = problem({"peak_torque": "minimise"}, held, crank=0.1, rod=0.3, offset=0.05)
+    assert prove_infeasible(given) is infeasible
+
+
+@pytest.mark.parametrize("job", JOBS)
+def test_a_feasible_job_is_never_proven_infeasible(job: str) -> None:
+    assert not prove_infeasible(shipped(job))
+
+
+@pytest.mark.parametrize("angle", [27.2, 27.4])
+def test_what_is_just_possible_is_not_proven_impossible(angle: float) -> None:
+    """A time ratio of 1.5 caps the transmission angle at 27.46 deg (see `test_infeasibility`)."""
+    held: dict[str, Bounds] = {"time_ratio": 1.5, "transmission_angle": (degrees(angle), None)}
+    assert not prove_infeasible(problem({"peak_torque": "minimise"}, held), seconds=1.0)
+
+
+def test_the_message_of_an_infeasible_job_says_that_it_is_proven() -> None:
+    front = solve(problem({"peak_torque": "minimise"}, CONTRADICTIONS[0]))
+    assert front.status == "infeasible"
+    assert front.message.endswith("proven: no design of the ranges meets them all")
+
+
+def test_a_budget_that_ends_first_proves_nothing() -> None:
+    held: dict[str, Bounds] = {"time_ratio": (1.5, None), "transmission_angle": (degrees(27.47), None)}
+    assert not prove_infeasible(problem({"peak_torque": "minimise"}, held), seconds=1e-3)
