@@ -20,6 +20,7 @@ from .rubbing import joint_forces
 from .segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
 from .self_locking import locking_margin
 from .signals import Signal, design_motion
+from .single import single
 from .watch import watch_of
 
 Array = NDArray[np.float64]
@@ -106,16 +107,7 @@ def cycle(
     and forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
     for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
-    linkage.require_full_rotation()
-    if np.shape(linkage.rotates_fully):
-        raise InputError(
-            f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"
-        )
-    if linkage.branch != mechanism.branch:
-        raise InputError(
-            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {mechanism.branch}; "
-            "set branch in both"
-        )
+    linkage = single(mechanism, linkage)
     angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
@@ -124,7 +116,7 @@ def cycle(
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")
     raw = raw_vector(mechanism)
-    raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    raw[:3] = linkage.crank, linkage.rod, linkage.offset
     out = np.empty((_COLUMNS, len(angles)))
     watch = Watch(0, 0.0, 1.0, False)
     _curves(raw, load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
@@ -150,9 +142,9 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
 
     At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
     """
-    linkage.require_full_rotation()
+    linkage = single(mechanism, linkage)
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
-    raw[:3] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    raw[:3] = linkage.crank, linkage.rod, linkage.offset
     margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])
     if not margin > 0.0:
         raise InputError(

@@ -13,7 +13,7 @@ Per turn, with dt = dtheta / w at constant speed:
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -26,6 +26,7 @@ from .linkage import Linkage
 from .mechanism import Mechanism
 from .segments import crowded, crowding, uncrowded
 from .signals import Signal
+from .single import single
 
 Array = NDArray[np.float64]
 
@@ -64,11 +65,11 @@ class Energies:
 
 
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
-    """Return the energies of one turn of one linkage; the branch is the mechanism's.
+    """Return the energies of one turn of one linkage.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
     """
-    linkage = replace(linkage, branch=mechanism.branch)
+    linkage = single(mechanism, linkage)
     cuts = breakpoints(mechanism, linkage)
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     kappa = crowding(*map(float, dimensions[0]))

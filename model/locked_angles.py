@@ -18,6 +18,7 @@ from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
 from .self_locking import locking_margin
+from .single import single
 
 Array = NDArray[np.float64]
 
@@ -44,8 +45,8 @@ class Verdict:
 
 
 def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
-    """Return whether friction locks one fully turning linkage, and where. The branch is the mechanism's."""
-    linkage = _own(mechanism, linkage)
+    """Return whether friction locks one fully turning linkage, and where."""
+    linkage = single(mechanism, linkage)
     margin = float(locking_margin(mechanism.friction, np.array([_dimensions(linkage)]))[0][0])
     if margin > 0.0:
         return Verdict(margin, (), None)
@@ -63,7 +64,7 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
 
 def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
     """Return for crank angles (n,), rad, of one linkage whether it "drives", "locks" or "may jam" under its loads."""
-    linkage = _own(mechanism, linkage)
+    linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
@@ -74,11 +75,6 @@ def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
         else:
             found.append("may jam" if _balances(design, float(theta), float(load)) else "locks")
     return np.array(found, dtype=np.str_)
-
-
-def _own(mechanism: Mechanism, linkage: Linkage) -> Linkage:
-    linkage.require_full_rotation()
-    return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), mechanism.branch)
 
 
 def _dimensions(linkage: Linkage) -> tuple[float, float, float]:

@@ -269,7 +269,8 @@ def _find(
                             high, angle = _refine(
                                 kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides
                             )
-                            if not _known(at, found, angle):
+                            # A row that rises to the very end of the segment has no top; the breakpoint may be one.
+                            if a + _SAME < angle < b - _SAME and not _known(at, found, angle):
                                 found = _keep(peak, at, segment, pin, found, high, angle, s, -1)
         for s in range(count):
             if thin[s]:

@@ -12,6 +12,7 @@ from .linkage import Linkage
 from .mechanism import Mechanism
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .signals import design_motion
+from .single import single
 
 Array = NDArray[np.float64]
 
@@ -31,8 +32,8 @@ class ShakingCurves:
 
 
 def shaking_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> ShakingCurves:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad; the branch is the mechanism's."""
-    linkage.require_full_rotation()
+    """Return the curves of one fully turning linkage at crank angles (n,), rad."""
+    linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     structure = load_structure(Mechanism())
     raw = raw_vector(mechanism)[: len(raw_vector(Mechanism())), None]

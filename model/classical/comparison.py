@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..friction import Friction
 from ..linkage import Linkage
 from ..mechanism import Mechanism
+from ..single import single
 from .lumped import lumped, rotating_and_reciprocating
 from .series import series_acceleration, series_torque, tangent_torque
 
@@ -46,7 +47,7 @@ def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> C
     Loads, gravity and the acceleration of the crank are left out. Masses of the formulas: the rod by its mass centre.
     Raises `InputError` without a crank speed, and for a mass centre that is not between the pins.
     """
-    linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
+    linkage = single(mechanism, linkage)
     inert = _inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed
@@ -87,9 +88,7 @@ def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLik
     """
     values = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
-    rows = [
-        compare(mechanism, Linkage(linkage.crank, linkage.rod, offset, mechanism.branch), theta) for offset in values
-    ]
+    rows = [compare(mechanism, Linkage(linkage.crank, linkage.rod, offset, linkage.branch), theta) for offset in values]
     return Errors(
         values,
         np.array([np.abs(row.acceleration).max() for row in rows]),

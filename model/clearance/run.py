@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..errors import InputError
 from ..friction import require_frictionless
 from ..linkage import Linkage
 from ..mechanism import Mechanism
+from ..single import single
 from .equations import observe
 from .joint import Clearance
 from .phases import FLIGHT, Integrator, Trace
@@ -105,7 +106,7 @@ def simulate(
     flight, so that the first turns, `discard` of them, show how the start dies out. A crank whose pivot is loose is
     turned by a coupling that gives way sideways only. Loads act at the actual position and velocity of the slider;
     which stroke it is, is told by the crank angle, so that a load opposing the motion is a force given in advance and
-    not friction. Counterweight and branch are the mechanism's.
+    not friction. The counterweight is the mechanism's.
 
     tolerance: relative, of a step of the integration (see `Integrator`). progress: called after every turn. cancelled:
     asked every few steps; when it says so, what there is so far is returned with status "cancelled".
@@ -122,7 +123,7 @@ def simulate(
     if not 1e-13 <= tolerance <= 1e-3:
         raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
     began = time.perf_counter()
-    linkage = replace(linkage, branch=mechanism.branch)
+    linkage = single(mechanism, linkage)
     integrator = _start(mechanism, linkage, clearance, tolerance)
     period = 2.0 * math.pi / abs(mechanism.speed)
     done = 0

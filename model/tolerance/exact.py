@@ -34,7 +34,8 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..linkage import Linkage
 from ..mechanism import Mechanism
-from .sources import Array, counted_angles, limit_box, single
+from ..single import single
+from .sources import Array, counted_angles, limit_box
 
 _CELLS = 4  # highest samples around which the greatest deviation is searched further
 _TURN = 2.0 * np.pi

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from ..cycle import cycle
 from ..linkage import Linkage
 from ..mechanism import Mechanism
-from .sources import Array, limit_box, limits, single, source_influences
+from ..single import single
+from .sources import Array, limit_box, limits, source_influences
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ from ..errors import InputError
 from ..linkage import Linkage
 from ..loads import require_word
 from ..mechanism import Mechanism
-from .sources import Array, counted_angles, limits, single, source_influences
+from ..single import single
+from .sources import Array, counted_angles, limits, source_influences
 from .spreads import Draw, Spreads
 
 CHUNK = 1024

@@ -11,6 +11,7 @@ from ..errors import AssemblyError, InputError
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from ..segments import crank_angle_at, crowded, crowding, uncrowded
+from ..single import single
 
 Array = NDArray[np.float64]
 
@@ -24,14 +25,6 @@ GUIDE = 7
 ANGLES = 256
 """Crank angles a turn that a search starts from."""
 _TURN = 2.0 * math.pi
-
-
-def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
-    """Return one fully turning linkage on the mechanism's branch; raise `InputError` if it is an array of them."""
-    if np.ndim(linkage.rotates_fully):
-        raise InputError(f"one linkage is needed; got an array of shape {np.shape(linkage.rotates_fully)}")
-    linkage.require_full_rotation()
-    return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), mechanism.branch)
 
 
 def limits(mechanism: Mechanism, linkage: Linkage) -> Array:

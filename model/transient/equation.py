@@ -30,6 +30,7 @@ from ..mechanism import Mechanism
 from ..parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
 from ..segments import Cuts, cut_cycle, enter, load_on_slider, within
 from ..signals import Signal, design_motion
+from ..single import single
 from ..watch import watch_of
 from .energy import height_energy, moving_inertia
 
@@ -120,7 +121,7 @@ class CrankEquation:
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
-        linkage.require_full_rotation()
+        linkage = single(mechanism, linkage)
         require_frictionless(mechanism.friction, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
@@ -134,7 +135,7 @@ class CrankEquation:
                 raw[Raw.END + LOAD_SLOTS * index :, _SPIN:][:LOAD_SLOTS] = 0.0
         self.block = np.empty((DESIGN + 2 * len(mechanism.loads), 4))
         _derive(raw, self.loads, self.block)
-        self.dead_centres = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch).dead_centre_angles
+        self.dead_centres = linkage.dead_centre_angles
         self.breakpoints = self._breakpoints(marks)
         self._stretches: dict[tuple[int, float], Stretch] = {}
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..linkage import Linkage
 from ..mechanism import Mechanism
+from ..single import single
 from .drive import Drive, speed_range
 from .equation import TURN, Array, CrankEquation, Stretch
 
@@ -104,7 +105,7 @@ class Recorder:
         self, equation: CrankEquation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int
     ) -> None:
         self._equation, self._drive, self._samples = equation, drive, samples
-        self._linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
+        self._linkage = single(mechanism, linkage)
         self._parts: list[Array] = []
 
     def add(self, stretch: Stretch, turn: int, solution: Any) -> None:

@@ -53,7 +53,6 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     Without a crank speed, velocity and acceleration are given for one radian per second: per unit of crank speed.
     """
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
-    linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     least = least_transmission_crank_angle(linkage)

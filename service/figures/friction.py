@@ -18,7 +18,6 @@ from .over_cycle import Panel, Panels, Series, draw_panels, turn
 def friction_curves(mechanism: Mechanism, linkage: Linkage) -> Panels:
     """Return the figure's data; at angles where friction locks there is no torque and no force."""
     smooth = replace(mechanism, friction=Friction())
-    linkage = replace(linkage, branch=mechanism.branch)
     found = verdict(mechanism, linkage)
     ends = [end for span in found.locked for end in span]
     theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends)

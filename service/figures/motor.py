@@ -20,7 +20,6 @@ from .over_cycle import Panel, Panels, Series, draw_panels, turn
 
 def motor_curves(mechanism: Mechanism, linkage: Linkage) -> Panels:
     """Return the figure's data; at angles where friction locks there is no torque and no power."""
-    linkage = replace(linkage, branch=mechanism.branch)
     design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage))

@@ -21,7 +21,6 @@ _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is ne
 
 def static_forces_sheet(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> Sheet:
     """Return forces, torque and mechanical advantage over the cycle; load as in the analysis of the same name."""
-    linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
     theta = np.linspace(0.0, 2.0 * math.pi, 721)
     at = static_forces(linkage, theta, load=cycle(massless(mechanism, load), linkage, theta).load)
     degrees = np.degrees(theta)

@@ -25,7 +25,7 @@ from slidercrank.model.peaks import find_peaks
 from slidercrank.model.screening import screens
 from slidercrank.model.signals import Signal
 from tests.model.bodies import bodies
-from tests.model.cases import SMOOTH, Array, random_designs, random_friction, random_machine
+from tests.model.cases import SMOOTH, Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
 from tests.model.virtual_work import path, slider_load
 
@@ -90,8 +90,8 @@ def test_forces_solve_the_nine_equations_of_the_three_bodies() -> None:
         way = path(design, theta, sign)
         inertia = inertia_forces(machine, design, theta)
         load = sign * slider_load(machine, design, theta, way)
-        got = cycle(machine, Linkage(*design), theta)
-        start = cycle(dataclasses.replace(machine, friction=Friction()), Linkage(*design), theta)
+        got = cycle(machine, linkage_of(design, machine.branch), theta)
+        start = cycle(dataclasses.replace(machine, friction=Friction()), linkage_of(design, machine.branch), theta)
         for i, angle in enumerate(theta):
             at: dict[str, Any] = {
                 "crank": [a[i] + b[i] for a, b in zip(inertia["crank"], inertia["weight"], strict=True)],
@@ -144,7 +144,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
     theta = np.linspace(0.0, 2.0 * math.pi, 300) + 1e-3
     for machine, design in zip(machines()[:10], DESIGNS, strict=False):
         plain, rubbed = (dataclasses.replace(machine, friction=friction) for friction in (Friction(), nearly))
-        one, other = (cycle(each, Linkage(*design), theta) for each in (plain, rubbed))
+        one, other = (cycle(each, linkage_of(design, machine.branch), theta) for each in (plain, rubbed))
         for name in FORCES:
             size = np.abs(getattr(one, name)).max()
             np.testing.assert_allclose(getattr(other, name), getattr(one, name), rtol=0, atol=1e-12 * size)
@@ -174,7 +174,7 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
     on_breakpoints = 0
     spacing = 2.0 * math.pi / 20_000
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        linkage = Linkage(*design)
+        linkage = linkage_of(design, machine.branch)
         cuts = breakpoints(machine, linkage)
         for kind, size in SIZES.items():
             peak = find_peaks(machine, kind, design[None], kept=1)
@@ -193,7 +193,7 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
 def test_breakpoints_are_where_the_curves_jump_or_the_guide_force_changes_sides() -> None:
     found = 0
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        linkage = Linkage(*design)
+        linkage = linkage_of(design, machine.branch)
         theta = np.linspace(0.0, 2.0 * math.pi, 40_001)
         guide = cycle(machine, linkage, theta).guide
         changes = theta[:-1][np.sign(guide[1:]) != np.sign(guide[:-1])]
@@ -205,7 +205,7 @@ def test_breakpoints_are_where_the_curves_jump_or_the_guide_force_changes_sides(
 
 def test_input_less_useful_work_is_the_friction_heat() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        e = energies(machine, Linkage(*design))
+        e = energies(machine, linkage_of(design, machine.branch))
         size = max(abs(e.input), abs(e.useful), abs(e.stored), e.heat)
         assert abs(e.input - e.useful - e.stored - e.heat) < 1e-12 * size
         assert min(e.guide_heat, e.crank_pivot_heat, e.crank_pin_heat, e.slider_pin_heat) > 0.0
@@ -231,10 +231,11 @@ def test_efficiency_is_below_one_with_friction_one_without_and_undefined_without
 
 def test_rms_torque_is_that_of_adaptive_quadrature() -> None:
     for machine, design in zip(machines()[:3], DESIGNS, strict=False):
-        cuts = [*breakpoints(machine, Linkage(*design)), breakpoints(machine, Linkage(*design))[0] + 2.0 * math.pi]
+        linkage = linkage_of(design, machine.branch)
+        cuts = [*breakpoints(machine, linkage), breakpoints(machine, linkage)[0] + 2.0 * math.pi]
 
-        def square(theta: float, machine: Mechanism = machine, design: Array = design) -> float:
-            return float(cycle(machine, Linkage(*design), theta).torque[0]) ** 2
+        def square(theta: float, machine: Mechanism = machine, linkage: Linkage = linkage) -> float:
+            return float(cycle(machine, linkage, theta).torque[0]) ** 2
 
         total = sum(quad(square, a, b, limit=200, epsrel=1e-11)[0] for a, b in pairwise(cuts))
         expected = math.sqrt(total / (2.0 * math.pi))

@@ -11,7 +11,6 @@ import pytest
 from slidercrank.model.averages import average
 from slidercrank.model.cycle import cycle
 from slidercrank.model.friction import Friction
-from slidercrank.model.linkage import Linkage
 from slidercrank.model.links import Counterweight, RigidLink
 from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism
@@ -19,7 +18,7 @@ from slidercrank.model.peaks import find_peaks
 from slidercrank.model.shaking import ShakingCurves, shaking_curves
 from slidercrank.model.signals import Signal
 from tests.model.bodies import bodies
-from tests.model.cases import Array, random_designs, random_machine
+from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
 
 DESIGNS = random_designs(30, seed=101, least_margin=0.05)
@@ -32,7 +31,7 @@ def machines() -> list[Mechanism]:
 
 
 def curves(machine: Mechanism, design: Array) -> ShakingCurves:
-    return shaking_curves(machine, Linkage(*design), THETA)
+    return shaking_curves(machine, linkage_of(design, machine.branch), THETA)
 
 
 def test_shaking_is_minus_the_rate_of_change_of_momentum_and_angular_momentum() -> None:
@@ -62,7 +61,7 @@ def test_shaking_force_is_what_pivot_and_guide_give_back_without_gravity_and_loa
     """And the moment what guide and motor give back, about the pivot."""
     for machine, design in zip(machines(), DESIGNS, strict=True):
         free = dataclasses.replace(machine, gravity=(0.0, 0.0), loads=())
-        got, joints = curves(free, design), cycle(free, Linkage(*design), THETA)
+        got, joints = curves(free, design), cycle(free, linkage_of(design, machine.branch), THETA)
         size = np.abs(joints.pivot_x).max() + np.abs(joints.pivot_y).max()
         np.testing.assert_allclose(got.force_x, -joints.pivot_x, rtol=0, atol=1e-12 * size)
         np.testing.assert_allclose(got.force_y, -joints.pivot_y - joints.guide, rtol=0, atol=1e-12 * size)
@@ -82,7 +81,7 @@ def test_gravity_loads_and_friction_do_not_shake_the_frame() -> None:
 
 def test_peaks_and_root_mean_squares_are_those_of_the_curves() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        got = shaking_curves(machine, Linkage(*design), np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
+        got = shaking_curves(machine, linkage_of(design, machine.branch), np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
         for kind, curve in (
             (Signal.SHAKING_FORCE, np.hypot(got.force_x, got.force_y)),
             (Signal.SHAKING_MOMENT, np.abs(got.moment)),
@@ -123,9 +122,10 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed() -> None:
         for part in bodies(machine, design).values():
             x, y, turn = (f(THETA + 1j * step).imag / step for f in (part.x, part.y, part.turn))
             expected += part.mass * (x**2 + y**2) + part.inertia * turn**2
-        got = shaking_curves(machine, Linkage(*design), THETA).reflected_inertia
+        linkage = linkage_of(design, machine.branch)
+        got = shaking_curves(machine, linkage, THETA).reflected_inertia
         np.testing.assert_allclose(got, expected, rtol=1e-12)
-        dense = shaking_curves(machine, Linkage(*design), np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
+        dense = shaking_curves(machine, linkage, np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
         peak = find_peaks(machine, Signal.REFLECTED_INERTIA, design[None], kept=1).values[0, 0]
         assert peak == pytest.approx(dense.reflected_inertia.max(), rel=1e-6)
         mean = average(machine, Signal.REFLECTED_INERTIA, design[None]).mean[0]

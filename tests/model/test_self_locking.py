@@ -85,7 +85,7 @@ def test_forces_are_determined_all_over_the_cycle_exactly_when_the_margin_is_mor
                 else (middle, high)
             )
         for rod, drives in ((low * (1.0 - 1e-6), False), (high * (1.0 + 1e-6), True)):
-            linkage = Linkage(design[0], rod, design[2])
+            linkage = Linkage(design[0], rod, design[2], machine.branch)
             finite = np.isfinite(cycle(machine, linkage, theta).torque)
             assert bool(finite.all()) == drives
             assert verdict(machine, linkage).locks != drives

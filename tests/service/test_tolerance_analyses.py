@@ -93,7 +93,7 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
 def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
     found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
     text = text_of(tolerance_analysis.show, found)
-    assert len(text.splitlines()) <= 20
+    assert len(text.splitlines()) <= 30
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
         assert f"{found[key]:.4g} mm" in text
     assert "crank pin clearance" in text
@@ -153,7 +153,7 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
     in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
-    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 20
+    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 30
     assert "peak torque" in text_of(sensitivity_analysis.show, in_line)
 
 

@@ -34,9 +34,13 @@ BRAKED = Mechanism(
 )
 
 
+def on_branch(machine: Mechanism) -> Linkage:
+    return replace(LINKAGE, branch=machine.branch)
+
+
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_energy_gained_is_the_work_done_over_three_seconds_from_rest_under_constant_torque(machine: Mechanism) -> None:
-    found = simulate(machine, LINKAGE, Drive(motor=ConstantTorque(torque=40.0), flywheel=1.5), duration=3.0)
+    found = simulate(machine, on_branch(machine), Drive(motor=ConstantTorque(torque=40.0), flywheel=1.5), duration=3.0)
     assert found.verdict == "time is up"
     assert found.time[-1] == 3.0
     assert abs(found.turns) > 10.0
@@ -48,7 +52,7 @@ def test_energy_gained_is_the_work_done_over_three_seconds_from_rest_under_const
 
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_acceleration_is_that_of_virtual_work(machine: Mechanism) -> None:
-    found = simulate(machine, LINKAGE, MOTOR, duration=1.0, start=State(angle=0.7, speed=0.0))
+    found = simulate(machine, on_branch(machine), MOTOR, duration=1.0, start=State(angle=0.7, speed=0.0))
     for i in range(1, len(found.time), 7):
         moving = replace(machine, speed=float(found.speed[i]), acceleration=0.0)
         need = drive_torque(moving, DESIGN, found.angle[i])
@@ -131,8 +135,8 @@ def test_a_mirrored_machine_moves_in_the_mirror(machine: Mechanism) -> None:
     one = replace(machine, loads=loads, speed=1.0, counterweight=SMOOTH.counterweight, **links)  # type: ignore[arg-type]
     weight = replace(SMOOTH.counterweight, angle=-SMOOTH.counterweight.angle)
     other = replace(one, speed=-1.0, gravity=gravity, counterweight=weight)
-    found = simulate(one, LINKAGE, MOTOR, duration=0.6, start=State(angle=0.2))
-    mirrored = simulate(other, Linkage(0.05, 0.2, -0.03), MOTOR, duration=0.6, start=State(angle=-0.2))
+    found = simulate(one, on_branch(machine), MOTOR, duration=0.6, start=State(angle=0.2))
+    mirrored = simulate(other, Linkage(0.05, 0.2, -0.03, machine.branch), MOTOR, duration=0.6, start=State(angle=-0.2))
     assert mirrored.angle[-1] == pytest.approx(-found.angle[-1], rel=1e-9)
     assert mirrored.slider_position[-1] == pytest.approx(found.slider_position[-1], rel=1e-9)
     assert mirrored.motor_work[-1] == pytest.approx(found.motor_work[-1], rel=1e-9)
@@ -187,8 +191,10 @@ def test_speed_beyond_the_torque_table_ends_the_simulation() -> None:
 
 
 def test_the_torque_is_that_of_the_inverse_dynamics() -> None:
-    found = simulate(TABLES, LINKAGE, MOTOR, duration=0.5)
-    curves = cycle(TABLES, LINKAGE, found.angle[5:], speed=found.speed[5:], acceleration=found.acceleration[5:])
+    found = simulate(TABLES, on_branch(TABLES), MOTOR, duration=0.5)
+    curves = cycle(
+        TABLES, on_branch(TABLES), found.angle[5:], speed=found.speed[5:], acceleration=found.acceleration[5:]
+    )
     size = np.abs(found.torque).max()
     np.testing.assert_allclose(curves.torque, found.torque[5:], rtol=0, atol=1e-9 * size)
     np.testing.assert_allclose(curves.slider_acceleration, found.slider_acceleration[5:], rtol=1e-9, atol=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,16 +23,17 @@ LINKAGE = Linkage(0.05, 0.2, 0.03)
 
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_constant_acceleration_over_time_is_that_of_the_cycle(machine: Mechanism) -> None:
+    linkage = replace(LINKAGE, branch=machine.branch)
     w, a = machine.speed, math.copysign(abs(machine.acceleration), machine.speed)
     motion = SpeedOverTime(lambda t: w + a * t, lambda t: np.full_like(t, a), lambda t: 0.3 + w * t + 0.5 * a * t * t)
-    found = over_time(machine, LINKAGE, motion, np.linspace(0.0, 0.5, 40))
+    found = over_time(machine, linkage, motion, np.linspace(0.0, 0.5, 40))
     for i in range(0, 40, 13):
         moving = Mechanism(**(vars(machine) | {"speed": found.speed[i], "acceleration": a}))
-        expected = cycle(moving, LINKAGE, found.curves.crank_angle[i])
+        expected = cycle(moving, linkage, found.curves.crank_angle[i])
         for name in ("torque", "load", "guide", "pivot_x", "slider_acceleration"):
             assert getattr(found.curves, name)[i] == pytest.approx(getattr(expected, name)[0], rel=1e-12), name
     # Without the angle it is integrated.
-    again = over_time(machine, LINKAGE, SpeedOverTime(motion.speed, motion.acceleration), found.time)
+    again = over_time(machine, linkage, SpeedOverTime(motion.speed, motion.acceleration), found.time)
     np.testing.assert_allclose(again.curves.crank_angle, found.curves.crank_angle - 0.3, rtol=1e-11, atol=1e-13)
 
 

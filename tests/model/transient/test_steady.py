@@ -18,7 +18,7 @@ from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import State, simulate
 from slidercrank.model.transient.steady import SteadyRunning, constant_torque_running, steady_running
-from tests.model.cases import MACHINES, SMOOTH, STROKES, random_designs
+from tests.model.cases import MACHINES, SMOOTH, STROKES, linkage_of, random_designs
 from tests.model.virtual_work import drive_torque
 
 DESIGN = np.array([0.05, 0.2, 0.03])
@@ -30,6 +30,10 @@ INDUCTION = TorqueTable(
 )
 
 
+def on_branch(machine: Mechanism) -> Linkage:
+    return replace(LINKAGE, branch=machine.branch)
+
+
 def start_of(running: SteadyRunning) -> State:
     return State(angle=float(running.crank_angle[0]), speed=float(running.speed[0]))
 
@@ -37,8 +41,8 @@ def start_of(running: SteadyRunning) -> State:
 @pytest.mark.parametrize("motor", [MOTOR, Drive(motor=INDUCTION, flywheel=0.1)], ids=["line", "table"])
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_a_simulation_started_in_steady_running_repeats_it(machine: Mechanism, motor: Drive) -> None:
-    running = steady_running(machine, LINKAGE, motor)
-    found = simulate(machine, LINKAGE, motor, duration=9.0, turns=1, start=start_of(running))
+    running = steady_running(machine, on_branch(machine), motor)
+    found = simulate(machine, on_branch(machine), motor, duration=9.0, turns=1, start=start_of(running))
     assert found.verdict == "turns done"
     assert found.time[-1] == pytest.approx(running.period, rel=1e-9)
     assert found.speed[-1] == pytest.approx(running.speed[0], rel=1e-9)
@@ -78,7 +82,7 @@ def test_with_a_growing_flywheel_the_torque_tends_to_that_of_constant_speed_with
 def test_the_constant_torque_is_the_mean_torque_of_constant_speed_if_no_load_depends_on_speed() -> None:
     for design in random_designs(5, seed=5, least_margin=0.05):
         machine = replace(STROKES, acceleration=0.0)
-        running = constant_torque_running(machine, Linkage(*design), inertia=8.0)
+        running = constant_torque_running(machine, linkage_of(design, machine.branch), inertia=8.0)
         # Kinks at the dead centres only: off by the square of the step.
         mean = drive_torque(machine, design, np.linspace(0.0, 2.0 * math.pi, 400_000, endpoint=False)).mean()
         assert running.motor_torque[0] == pytest.approx(mean, rel=1e-9)
@@ -116,11 +120,11 @@ def test_of_several_operating_points_the_stable_one_next_to_the_speed_is_taken()
 @pytest.mark.parametrize("motor", [None, MOTOR], ids=["constant torque", "line"])
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_a_flywheel_gives_the_wanted_fluctuation_in_a_simulation(machine: Mechanism, motor: Drive | None) -> None:
-    found = design_flywheel(machine, LINKAGE, 0.05, motor)
+    found = design_flywheel(machine, on_branch(machine), 0.05, motor)
     assert found.needed
     assert found.running.fluctuation == pytest.approx(0.05, rel=1e-10)
     start = start_of(found.running)
-    run = simulate(machine, LINKAGE, found.drive, duration=60.0, turns=1, start=start, samples=3000)
+    run = simulate(machine, on_branch(machine), found.drive, duration=60.0, turns=1, start=start, samples=3000)
     # The extremes of a simulation are those of 3,000 points: off by (w'' / w) (pi / 3000)^2 / 2 of themselves.
     assert run.fluctuation() == pytest.approx(0.05, rel=1e-6)
 
@@ -167,7 +171,7 @@ def test_no_flywheel_is_designed_where_none_is_needed() -> None:
 )
 def test_without_steady_running_it_is_said_why(machine: Mechanism, drive: Drive | None, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        steady_running(machine, LINKAGE, drive)
+        steady_running(machine, on_branch(machine), drive)
 
 
 def test_a_constant_viscous_balance_is_steady_under_constant_torque() -> None:
