@@ -126,7 +126,7 @@ def _newton(phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any
     for i in range(n):
         first += (d[i] - mean) * slope[i]
         second += (slope[i] - one) * (slope[i] - one) + (d[i] - mean) * bend[i]
-    return -first / second if second > 0.0 else 0.0
+    return float(-first / second) if second > 0.0 else 0.0
 
 
 @inlined
@@ -149,7 +149,7 @@ def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any,
         else:
             low, p, at_p = p, q, at_q
             q, left = low + _GOLDEN * (high - low), False
-    return 0.5 * (low + high)
+    return float(0.5 * (low + high))
 
 
 @inlined

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from ..model.errors import InputError
-from ..objectives.registry import QUANTITIES
 from .deliver import deliver, empty, planned
 from .elimination import UNKNOWNS, Sheet, sheets
 from .evaluation import Evaluator
 from .front import ParetoFront
+from .gradients import require_gradients
 from .infeasibility import diagnose
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
@@ -28,6 +28,7 @@ def solve(
     """
     if problem.settings.method != "auto":
         raise InputError(f"the method must be 'auto'; got {problem.settings.method!r}")
+    require_gradients(problem)
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
     run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
     archive = explore(problem, evaluators, run)
@@ -61,7 +62,7 @@ def _best(problem: Problem) -> float | None:
     front = deliver(problem, evaluators, archive, run) if len(archive) else None
     if front is None:
         return None
-    quantity = QUANTITIES[problem.objectives[0].quantity]
+    quantity = problem.quantity(problem.objectives[0].quantity)
     return float(quantity.evaluate(problem.mechanism, front.dimensions[:1]).values[0])
 
 

@@ -1,0 +1,27 @@
+"""Which problems have gradients: a function of your own may have none."""
+
+from __future__ import annotations
+
+from ..model.errors import InputError
+from ..objectives.own.quantity import OwnQuantity
+from .problem import Problem
+
+WITHOUT = ("nsga2", "nsga3", "tpe", "cmaes", "random", "sobol")
+"""Methods that use values only."""
+
+
+def without_gradient(problem: Problem) -> list[str]:
+    """Return the quantities that objectives and constraints name and that have no gradient."""
+    asked = [item.quantity for item in (*problem.objectives, *problem.constraints)]
+    found = [(name, problem.quantity(name)) for name in dict.fromkeys(asked)]
+    return [name for name, quantity in found if isinstance(quantity, OwnQuantity) and quantity.gradient == "none"]
+
+
+def require_gradients(problem: Problem) -> None:
+    """Raise `InputError` if the problem's method needs a gradient that a quantity does not have."""
+    lacking = without_gradient(problem)
+    if lacking and problem.settings.method not in WITHOUT:
+        raise InputError(
+            f"the method {problem.settings.method} needs the gradient of every quantity; got {', '.join(lacking)} with "
+            f'gradient = "none"; use one of {", ".join(WITHOUT)}, or set gradient = "finite differences"'
+        )
