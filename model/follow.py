@@ -67,15 +67,15 @@ def _follow(raw: Any, designs: Any, loads: Any, angles: Any, out: Any, rubbing: 
             m = design_motion(s, c, z)
             load = load_on_slider(m, z, curved, 0, angles[n, k], outward, loads, piece, shift)
             f = joint_forces(s, c, m, z, load, sides)
-            out[0, n, k] = f.torque
-            out[1, n, k] = f.pivot_x
-            out[2, n, k] = f.pivot_y
-            out[3, n, k] = f.crank_pin_x
-            out[4, n, k] = f.crank_pin_y
-            out[5, n, k] = f.slider_pin_x
-            out[6, n, k] = f.slider_pin_y
-            out[7, n, k] = f.guide
-            out[8, n, k] = load
+            out[n, 0, k] = f.torque
+            out[n, 1, k] = f.pivot_x
+            out[n, 2, k] = f.pivot_y
+            out[n, 3, k] = f.crank_pin_x
+            out[n, 4, k] = f.crank_pin_y
+            out[n, 5, k] = f.slider_pin_x
+            out[n, 6, k] = f.slider_pin_y
+            out[n, 7, k] = f.guide
+            out[n, 8, k] = load
 
 
 def follow_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tuple[Forces, Complex]:
@@ -84,11 +84,12 @@ def follow_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tu
     designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
     """
     designs, angles = np.ascontiguousarray(designs, np.complex128), np.ascontiguousarray(angles, np.complex128)
-    out = np.empty((_WIDE, *angles.shape), np.complex128)
+    out = np.empty((len(angles), _WIDE, angles.shape[1]), np.complex128)
     raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
 
     def work(begin: int, end: int) -> None:
-        _follow(raw, designs[begin:end], loads, angles[begin:end], out[:, begin:end], rubbing)
+        _follow(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
 
     in_chunks(len(designs), work, size=64)
-    return Forces(*out[:-1]), out[-1]
+    *found, load = out.swapaxes(0, 1)
+    return Forces(*found), load

@@ -12,9 +12,9 @@ WITHOUT = ("nsga2", "nsga3", "tpe", "cmaes", "random", "sobol")
 
 def without_gradient(problem: Problem) -> list[str]:
     """Return the quantities that objectives and constraints name and that have no gradient."""
-    asked = [item.quantity for item in (*problem.objectives, *problem.constraints)]
-    found = [(name, problem.quantity(name)) for name in dict.fromkeys(asked)]
-    return [name for name, quantity in found if isinstance(quantity, OwnQuantity) and quantity.gradient == "none"]
+    asked = [o.quantity for o in problem.objectives] + [c.quantity for c in problem.constraints]
+    lacking = [own.name for own in problem.own if isinstance(own, OwnQuantity) and own.gradient == "none"]
+    return [name for name in lacking if name in asked]
 
 
 def require_gradients(problem: Problem) -> None:

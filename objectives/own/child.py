@@ -13,6 +13,7 @@ import pickle
 import signal
 import struct
 import sys
+from collections.abc import Callable
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -24,7 +25,7 @@ from .apply import Answer, Function, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 
 HEAD = struct.Struct("<cQ")
-"""Kind of an answer (A numbers, E what is wrong, R ready) and its length."""
+"""Kind of an answer (A numbers, E what is wrong, R ready, W wait: it takes time of its own) and its length."""
 SHAPE = struct.Struct("<QQQ")
 
 
@@ -72,6 +73,7 @@ class Timed(Designs):
     """Designs whose first forces do not count in the time limit: a kernel may have to be compiled for them."""
 
     watch: Watch
+    wait: Callable[[], None]
     compiled: set[bool] = set()  # noqa: RUF012 - of this process, which has one function
 
     def forces(self, angle: Numbers) -> Reactions:
@@ -79,6 +81,7 @@ class Timed(Designs):
         rubs = self.mechanism.friction.acts
         if rubs not in self.compiled:
             self.watch.__exit__()
+            type(self).wait()
             follow_forces(self.mechanism, self._dimensions[:1].astype(complex), np.zeros((1, 1), complex))
             self.compiled.add(rubs)
             self.watch.__enter__()
@@ -116,6 +119,7 @@ def main() -> None:
             answers.write(HEAD.pack(kind, len(content)) + content)
             answers.flush()
 
+        Timed.wait = staticmethod(lambda: send(b"W"))
         try:
             with watch:
                 function = load(name, folders)
