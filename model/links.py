@@ -1,7 +1,7 @@
 """Mass properties of the links: by section, or by mass, inertia and mass centre.
 
 Crank and rod are described along their own axis: origin at the crank pivot (crank) or at the crank pin (rod), length
-between pin centres. Their mass properties follow the length, so that a longer crank is a heavier one.
+between pin centres. Those of a `Bar` follow the length: a longer crank is a heavier one.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def drives(along: Any, across: Any, d: Design) -> Any:
 
 @analytic
 def always_drives(d: Design) -> Any:
-    """Return `drives` where it is least over the cycle: where the crank is normal to the slider line, on e's side."""
+    """Return `drives` where it is least over the cycle: sin(theta) = -sgn(e)."""
     reach = d.r + abs(d.e)
     return drives(root(d.l * d.l - reach * reach), reach, d)
 

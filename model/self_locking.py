@@ -12,7 +12,7 @@ and a wedged state both balance, and which one comes about the forces do not tel
 mass; turning the other way changes the sign of D alone. Without pins it says that the transmission angle is below
 arctan(mu).
 
-|D| is greatest, and |along| least, where the crank is normal to the slider line on the side of the offset; there
+|D| is greatest, and |along| least, where the crank is normal to the slider line and points away from it, sin(theta) = -sgn(e); there
 l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is therefore exactly
 
     least transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).

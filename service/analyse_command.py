@@ -15,7 +15,7 @@ from .result import Row, json_text, rows_of
 from .run_folder import disk
 from .screen import console, give, say, waiting
 from .tables import show_design
-from .topics import ALL, TOPICS, Topic, chosen_topics
+from .topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
 
 if TYPE_CHECKING:
     from ..model.linkage import Linkage
@@ -90,7 +90,9 @@ def analyse(
         give(json_text(row | found))
     else:
         screen = console()
-        show_design(screen, row)
+        show_design(screen, row, only=[key for key in row if key not in TOLD_THERE])
+        if problem is not None and not topics:
+            screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
         for topic in design:
             if topic.name in found:
                 screen.print()

@@ -29,6 +29,17 @@ TOPICS = {
     "clearance": "impacts in the joint that [clearance] makes loose",
 }
 """Names and what they show."""
+TOLD_THERE = (
+    "self_locking_margin_deg",
+    "peak_power_W",
+    "mean_power_W",
+    "peak_reflected_inertia_kg_m2",
+    "peak_shaking_force_N",
+    "rms_shaking_force_N",
+    "peak_shaking_moment_Nm",
+    "rms_shaking_moment_Nm",
+)
+"""Quantities that friction, motor and balance show; the table of a design leaves them out."""
 ALL = "all"
 WITHOUT_JOB = ("polygons",)
 

@@ -10,7 +10,9 @@ import pytest
 
 from slidercrank.model.linkage import Linkage
 from slidercrank.objectives.analysis import analyse
+from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import load_job
+from slidercrank.service.topics import TOLD_THERE
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS
@@ -105,3 +107,16 @@ def test_wrong_values_are_exit_code_2(arguments: tuple[str, ...], words: str, co
     done = command("analyse", *arguments)
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
+
+
+def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Command) -> None:
+    job = str(Path(__file__).parents[2] / "runs" / "sieve.toml")
+    design = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
+    shown = command("analyse", job, *design).stdout
+    row = json.loads(command("analyse", job, *design, "--json").stdout)
+    titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
+    for key in TOLD_THERE:
+        assert titles[key] not in shown
+        assert row[key] is not None
+    assert titles["peak_torque_Nm"] in shown
+    assert "--show: static_forces, friction, motor" in shown

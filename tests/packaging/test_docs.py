@@ -1,0 +1,180 @@
+"""The documentation: its links lead somewhere, its formulas can be shown, its numbers are those of the code."""
+
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from slidercrank.model.linkage import Linkage
+from tests.packaging.feeder import numbers
+
+LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
+MODULE = re.compile(r"`((?:model|objectives|optimise|service|runs|tests|benchmarks|docs)/[\w./]*)`")
+ROW = re.compile(r"^\| ([^|]+) \| (-?\d+\.\d+) \| [^|]*\|$", re.MULTILINE)
+
+
+@pytest.fixture(scope="module")
+def root(pytestconfig: pytest.Config) -> Path:
+    return pytestconfig.rootpath
+
+
+@pytest.fixture(scope="module")
+def pages(root: Path) -> dict[Path, str]:
+    files = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+    return {file: file.read_text(encoding="utf-8") for file in files}
+
+
+@pytest.fixture(scope="module")
+def theory(root: Path) -> str:
+    return (root / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+def prose(page: str) -> str:
+    """Return a page without its fenced blocks."""
+    return re.sub(r"^```.*?^```$", "", page, flags=re.MULTILINE | re.DOTALL)
+
+
+def anchor(heading: str) -> str:
+    """Return the anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def test_relative_links_of_the_pages_lead_to_files(pages: dict[Path, str]) -> None:
+    found, broken = 0, []
+    for file, page in pages.items():
+        for target in LINK.findall(prose(page)):
+            path = target.partition("#")[0]
+            if path and "://" not in target:
+                found += 1
+                broken += [] if (file.parent / path).exists() else [f"{file.name}: {target}"]
+    assert found > 40
+    assert broken == []
+
+
+def test_links_within_a_page_lead_to_headings(pages: dict[Path, str]) -> None:
+    found, broken = 0, []
+    for file, page in pages.items():
+        headings = {anchor(heading) for heading in re.findall(r"^#+ (.+)$", prose(page), re.MULTILINE)}
+        for target in LINK.findall(prose(page)):
+            if target.startswith("#"):
+                found += 1
+                broken += [] if target[1:] in headings else [f"{file.name}: {target}"]
+    assert found > 20
+    assert broken == []
+
+
+def test_files_that_the_pages_name_exist(pages: dict[Path, str], root: Path) -> None:
+    named = {path for page in pages.values() for path in MODULE.findall(prose(page))}
+    assert "model/kinematics.py" in named
+    assert {path for path in named if not (root / path).exists()} == set()
+
+
+def test_every_model_module_with_a_formula_is_named_by_the_theory(theory: str, root: Path) -> None:
+    # `analytic` marks physical formulas.
+    modules = {
+        file.relative_to(root).as_posix()
+        for file in (root / "model").rglob("*.py")
+        if re.search("^@analytic$", file.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert "model/kinematics.py" in modules
+    linked = {target.removeprefix("../") for target in LINK.findall(theory)}
+    assert modules - linked == set(), "derive its equations in docs/theory.md"
+
+
+def test_formulas_use_only_what_github_shows(theory: str) -> None:
+    # In $...$ Markdown takes a backslash before punctuation as its own, and * as emphasis; \operatorname is refused.
+    assert theory.count("```") % 2 == 0
+    text = re.sub(r"`[^`\n]*`", "", prose(theory))
+    for paragraph in text.split("\n\n"):
+        assert paragraph.count("$") % 2 == 0, paragraph
+    inline = re.findall(r"\$([^$]+)\$", text)
+    assert len(inline) > 200
+    assert [formula for formula in inline if re.search(r"\\[^a-zA-Z]|[*<\n]", formula)] == []
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert [row for row in rows if any("|" in formula for formula in re.findall(r"\$([^$]+)\$", row))] == []
+    blocks = re.findall(r"^```math\n(.*?)^```$", theory, re.MULTILINE | re.DOTALL)
+    assert len(blocks) > 50
+    for formula in [*inline, *blocks]:
+        assert "operatorname" not in formula
+        bare = re.sub(r"\\[{}]", "", formula)
+        assert bare.count("{") == bare.count("}"), formula
+        assert formula.count(r"\begin") == formula.count(r"\end"), formula
+
+
+def test_numbers_of_the_worked_example_are_those_of_the_code(theory: str) -> None:
+    printed = dict(ROW.findall(theory))
+    computed = numbers()
+    assert list(printed) == list(computed)
+    wrong = {}
+    for name, text in printed.items():
+        unit = 10.0 ** -len(text.partition(".")[2])
+        # Half a unit of the last digit, and a little for halves that rounding moves.
+        if abs(float(text) - computed[name]) > 0.501 * unit:
+            wrong[name] = (text, computed[name])
+    assert wrong == {}
+
+
+def points(file: Path) -> dict[str, tuple[float, float]]:
+    """Return the circles of a drawing by their names, counted from the crank pivot, y upwards."""
+    circles = [element for element in ElementTree.parse(file).iter() if element.tag.endswith("}circle")]
+    named = {
+        circle.attrib["id"]: (float(circle.attrib["cx"]), float(circle.attrib["cy"]))
+        for circle in circles
+        if "id" in circle.attrib
+    }
+    x, y = named["crank-pivot"]
+    return {name: (at[0] - x, y - at[1]) for name, at in named.items()}
+
+
+def arrow(file: Path, name: str) -> tuple[float, float]:
+    """Return the vector of a named line of a drawing, y upwards."""
+    for element in ElementTree.parse(file).iter():
+        if element.attrib.get("id") == name:
+            x1, y1, x2, y2 = (float(element.attrib[key]) for key in ("x1", "y1", "x2", "y2"))
+            return x2 - x1, y1 - y2
+    raise AssertionError(f"{file.name} has no line called {name}")
+
+
+def drawn(file: Path) -> tuple[Linkage, float]:
+    """Return the linkage of the sketch of signs, with pixels as metres, and its crank angle."""
+    at = points(file)
+    (ax, ay), (bx, by) = at["crank-pin"], at["slider-pin"]
+    return Linkage(math.hypot(ax, ay), math.hypot(bx - ax, by - ay), by), math.atan2(ay, ax)
+
+
+def test_the_sketch_shows_the_signs_of_the_code(root: Path) -> None:
+    file = root / "docs" / "sketch.svg"
+    linkage, angle = drawn(file)
+    at = points(file)
+    pixel = 0.02  # coordinates are given to a hundredth
+    assert linkage.rotates_fully
+    assert 0.0 < angle < 0.5 * math.pi
+    assert linkage.offset > 0.0
+    open_branch, crossed = (
+        Linkage(linkage.crank, linkage.rod, linkage.offset, branch).at(angle) for branch in ("open", "crossed")
+    )
+    assert float(open_branch.slider_position) == pytest.approx(at["slider-pin"][0], abs=pixel)
+    assert float(crossed.slider_position) == pytest.approx(at["slider-pin-crossed"][0], abs=pixel)
+    assert at["slider-pin-crossed"][1] == pytest.approx(linkage.offset, abs=pixel)
+    assert float(open_branch.rod_angle) > 0.0
+    # Outward: where the distance from the crank pivot grows.
+    assert arrow(file, "load")[0] > 0.0
+    assert arrow(file, "outward-open")[0] > 0.0
+    assert arrow(file, "outward-crossed")[0] < 0.0
+    assert arrow(file, "guide") == pytest.approx((0.0, 85.0))
+
+
+def test_the_sketch_of_the_dead_centres_is_to_scale(root: Path) -> None:
+    at = points(root / "docs" / "dead_centres.svg")
+    linkage, _ = drawn(root / "docs" / "sketch.svg")
+    pixel = 0.02
+    inner, outer = linkage.dead_centres
+    assert (float(inner), linkage.offset) == pytest.approx(at["inner"], abs=pixel)
+    assert (float(outer), linkage.offset) == pytest.approx(at["outer"], abs=pixel)
+    for name, angle in zip(("inner", "outer"), linkage.dead_centre_angles, strict=True):
+        pin = at[f"{name}-crank-pin"]
+        assert pin == pytest.approx((linkage.crank * math.cos(angle), linkage.crank * math.sin(angle)), abs=pixel)
+    # Counter-clockwise the inward stroke, from the outer to the inner dead centre, takes pi + b: the slow one.
+    assert linkage.slow_stroke(direction=1.0) == "inward"
