@@ -165,13 +165,15 @@ class OwnQuantity:
         gradients = np.stack([np.asarray(answer.slopes) for answer in answers], axis=2)
         angles = answers[0].angles
         labels = np.tile(np.arange(float(values.shape[1])), (len(values), 1)) if angles is None else angles
+        # Peaks that a curve does not have repeat its highest one.
+        top = np.argmax(values, axis=1)[:, None]
+        same = (values == np.take_along_axis(values, top, axis=1)) & (labels == np.take_along_axis(labels, top, axis=1))
+        again = same & (np.arange(values.shape[1]) != top)
+        values = np.where(again, -np.inf, values)
+        gradients = np.where(again[:, :, None], 0.0, gradients)
         order = np.argsort(-values, axis=1, kind="stable")
         values, labels = np.take_along_axis(values, order, axis=1), np.take_along_axis(labels, order, axis=1)
         gradients = np.take_along_axis(gradients, order[:, :, None], axis=1)
-        # Peaks that a curve does not have repeat its highest one.
-        again = (values[:, 1:] == values[:, :1]) & (labels[:, 1:] == labels[:, :1])
-        values[:, 1:][again] = -np.inf
-        gradients[:, 1:][again] = 0.0
         return Pieces(values, gradients, labels)
 
     def _plain(self, mechanism: Mechanism, dimensions: Array) -> Pieces:

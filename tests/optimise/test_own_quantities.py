@@ -107,7 +107,7 @@ BROKEN = {
     "exits": ("import sys\ndef judge(d):\n    sys.exit(0)\n", r"SystemExit: 0 \(judges.py:3\)"),
     "nan": ("def judge(d):\n    return d.crank * float('nan')\n", "got nan for crank"),
     "not there": ("def other(d):\n    return d.crank\n", "function in a module beside the job file .* AttributeError"),
-    "no function": ("judge = 3\n", "must be a function; got int"),
+    "no function": ("judge = 3\n", "be a function; got int"),
     "syntax": ("def judge(d:\n", "SyntaxError"),
 }
 
