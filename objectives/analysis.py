@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -10,15 +12,17 @@ from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
 from ..model.peaks import find_peaks
 from ..model.signals import Signal
-from .quantity import Array
+from .motion_deviation import MotionDeviation
+from .quantity import Array, Quantity
 from .registry import QUANTITIES
 
 
-def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
+def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> pd.DataFrame:
     """Return a table with every quantity of designs (n, 3): crank, rod, offset, m, each turning fully.
 
-    Columns carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction
-    of rotation. Raises `AssemblyError` for a linkage that does not turn fully.
+    own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. Columns
+    carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
+    rotation. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
@@ -41,7 +45,10 @@ def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
         "rms_torque_Nm": averages.rms,
         "mean_torque_Nm": averages.mean,
     }
-    for quantity in QUANTITIES.values():
+    for quantity in (*QUANTITIES.values(), *own):
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
+    for quantity in own:
+        if isinstance(quantity, MotionDeviation):
+            columns |= quantity.settings(mechanism, dimensions)
     return pd.DataFrame(columns)

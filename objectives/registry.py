@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable
 
 from ..model.errors import InputError
 from .average_torque import MEAN_TORQUE, RMS_TORQUE
@@ -52,8 +53,14 @@ QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
 
 def quantity(name: str) -> Quantity:
     """Return the quantity of a name; raise `InputError` with the nearest names otherwise."""
-    if name not in QUANTITIES:
-        near = difflib.get_close_matches(name, QUANTITIES, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(QUANTITIES)}"
-        raise InputError(f"no quantity is called {name!r}; {hint}")
+    require_known(name)
     return QUANTITIES[name]
+
+
+def require_known(name: str, *, also: Iterable[str] = ()) -> None:
+    """Raise `InputError` with the nearest names if neither a quantity nor one of `also` is called so."""
+    known = (*QUANTITIES, *also)
+    if name not in known:
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(known)}"
+        raise InputError(f"no quantity is called {name!r}; {hint}")

@@ -10,10 +10,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ..objectives.analysis import analyse
-from ..objectives.registry import QUANTITIES
 from .challenge import by_sheet, challengers
 from .evaluation import Evaluator, constraints_of
 from .front import ParetoFront, Status
+from .gradients import without_gradient
 from .hypervolume import choose, hypervolume, scaling
 from .pile import STATIONARY, Pile
 from .polish import polish, project
@@ -144,7 +144,11 @@ def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Ru
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
-    table = analyse(problem.mechanism, dimensions)
+    if without_gradient(problem):  # nothing is known of slopes: neither whether a design is optimal nor its rates
+        residual[:] = np.inf
+        goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
+        active = [edges[:, :0] for edges in active]
+    table = analyse(problem.mechanism, dimensions, own=problem.own)
     _slacks(table, problem, dimensions)
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
@@ -173,7 +177,7 @@ def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Ru
 
 def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
     for constraint in constraints_of(problem):
-        quantity = QUANTITIES[constraint.quantity]
+        quantity = problem.quantity(constraint.quantity)
         values = quantity.evaluate(problem.mechanism, dimensions).values
         slack = np.full(len(values), np.inf)
         if constraint.equality:

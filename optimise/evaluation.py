@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ..objectives.cycle_peak import CyclePeak, screen_peaks
 from ..objectives.quantity import Array, Quantity
-from ..objectives.registry import QUANTITIES
 from .elimination import UNKNOWNS, Sheet
 from .problem import Constraint, Objective, Problem
 
@@ -82,7 +81,7 @@ class Evaluator:
         self.mechanism = problem.mechanism
         self.dimension = len(sheet.free)
         remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
-        self.constraints = tuple(sorted(remaining, key=lambda c: _costly(QUANTITIES[c.quantity])))
+        self.constraints = tuple(sorted(remaining, key=lambda c: _costly(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
@@ -100,7 +99,7 @@ class Evaluator:
         self.evaluations += len(u)
         # What is out of reach already needs no cycle computed.
         for costly in (False, True):
-            constraints = [c for c in self.constraints if _costly(QUANTITIES[c.quantity]) == costly]
+            constraints = [c for c in self.constraints if _costly(self.problem.quantity(c.quantity)) == costly]
             rows = np.flatnonzero(violation <= band + FEASIBLE if costly else np.isfinite(violation))
             if constraints and len(rows):
                 found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
@@ -118,7 +117,7 @@ class Evaluator:
         return dimensions, objectives, violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
-        quantities = [QUANTITIES[name] for name in names]
+        quantities = [self.problem.quantity(name) for name in names]
         peaks = [quantity for quantity in quantities if isinstance(quantity, CyclePeak)]
         screened = dict(
             zip((peak.name for peak in peaks), screen_peaks(peaks, self.mechanism, dimensions), strict=True)
@@ -146,7 +145,7 @@ class Evaluator:
         rows = np.flatnonzero(turns)
         for constraint in self.problem.constraints:
             if constraint.quantity in self.sheet.eliminated and len(rows):
-                values = QUANTITIES[constraint.quantity].evaluate(self.mechanism, dimensions[rows]).values
+                values = self.problem.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
                 spurious = _violation(constraint, values) > FEASIBLE
                 violation[rows[spurious]] = np.inf
         return violation
@@ -166,7 +165,7 @@ class Evaluator:
 
         def pieces(name: str) -> tuple[Array, Array, Array]:
             if name not in cache:
-                found = QUANTITIES[name].pieces(self.mechanism, dimensions)
+                found = self.problem.quantity(name).pieces(self.mechanism, dimensions)
                 # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
                 bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
                 values = np.where(bounded, found.values, np.copysign(np.inf, found.values))

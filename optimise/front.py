@@ -10,7 +10,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ..model.errors import InputError
-from ..objectives.registry import quantity
 from .pile import STATIONARY
 from .problem import Objective, Problem
 from .stationarity import multipliers
@@ -119,7 +118,7 @@ class ParetoFront:
         """
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
-        units = np.array([quantity(objective.quantity).unit.factor for objective in self.objectives])
+        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
         spans = units * np.where(np.ptp(self.values, axis=0) > 0.0, np.ptp(self.values, axis=0), 1.0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
@@ -140,13 +139,22 @@ class ParetoFront:
         rates = self.rates(row)
         sentences = []
         for b, gain in enumerate(self.objectives):
-            span = np.ptp(self.values[:, b]) * quantity(gain.quantity).unit.factor
+            span = np.ptp(self.values[:, b]) * self.problem.quantity(gain.quantity).unit.factor
             step = 10.0 ** np.floor(np.log10(0.1 * span)) if span > 0.0 else 1.0  # a readable step within the range
             payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
             if payers:
-                costs = " and ".join(_change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)
-                sentences.append(f"{_change(gain, step, gain=True)} costs {costs}")
+                costs = " and ".join(self._change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)
+                sentences.append(f"{self._change(gain, step, gain=True)} costs {costs}")
         return sentences
+
+    def _change(self, objective: Objective, amount: float, *, gain: bool) -> str:
+        """Return a change of an objective in words."""
+        shown = self.problem.quantity(objective.quantity)
+        size = f"{amount:.3g} {shown.unit.symbol}".strip()
+        if objective.sense == "target":
+            return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
+        more = (objective.sense == "maximise") == gain
+        return f"{size} {'more' if more else 'less'} {shown.title}"
 
     def _scaled(self) -> Array:
         if not len(self):
@@ -168,13 +176,3 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
     bounds = [(None, None)] * k + [(0.0, None)] * m
     found = linprog(cost, rows / size[:, None], limits / size, bounds=bounds, method="highs")
     return np.asarray(found.x[k:]) if found.status == 0 and found.x is not None else None
-
-
-def _change(objective: Objective, amount: float, *, gain: bool) -> str:
-    """Return a change of an objective in words."""
-    shown = quantity(objective.quantity)
-    size = f"{amount:.3g} {shown.unit.symbol}".strip()
-    if objective.sense == "target":
-        return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
-    more = (objective.sense == "maximise") == gain
-    return f"{size} {'more' if more else 'less'} {shown.title}"

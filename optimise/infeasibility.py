@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objectives.registry import QUANTITIES
 from .elimination import sheets
 from .evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from .polish import polish
@@ -30,13 +29,14 @@ class Relaxation:
     asked: float
     reachable: float
     unit: str
+    title: str
 
     def sentence(self) -> str:
         """Return the relaxation in words."""
         unit = f" {self.unit}" if self.unit else ""
         reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
         return (
-            f"{QUANTITIES[self.quantity].title} {self.relation} {self.asked:.6g}{unit} is asked, "
+            f"{self.title} {self.relation} {self.asked:.6g}{unit} is asked, "
             f"{reach} {self.reachable:.6g}{unit} can be had with all else kept"
         )
 
@@ -98,10 +98,13 @@ def diagnose(problem: Problem, best: Callable[[Problem], float | None]) -> Diagn
                     settings=Settings(designs=1, seed=problem.settings.seed),
                 )
             )
-            unit = QUANTITIES[constraint.quantity].unit
+            of = problem.quantity(constraint.quantity)
+            unit = of.unit
             if reached is not None and not _meets(relation, reached, bound):
                 relaxations.append(
-                    Relaxation(constraint.quantity, relation, bound * unit.factor, reached * unit.factor, unit.symbol)
+                    Relaxation(
+                        constraint.quantity, relation, bound * unit.factor, reached * unit.factor, unit.symbol, of.title
+                    )
                 )
     if relaxations:
         message = "no design meets all requirements: " + "; ".join(item.sentence() for item in relaxations)

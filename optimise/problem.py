@@ -8,9 +8,10 @@ from typing import Literal
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
-from ..objectives.registry import QUANTITIES, quantity
+from ..objectives.quantity import Quantity
+from ..objectives.registry import QUANTITIES, require_known
 from .convex.costs import Costs
-from .methods.registry import require_known
+from .methods.registry import require_known as require_known_method
 
 Sense = Literal["minimise", "maximise", "target"]
 
@@ -41,7 +42,6 @@ class Constraint:
     upper: float | None = None
 
     def __post_init__(self) -> None:
-        quantity(self.quantity)
         if self.lower is None and self.upper is None:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
@@ -67,7 +67,6 @@ class Objective:
     target: float | None = None
 
     def __post_init__(self) -> None:
-        quantity(self.quantity)
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not math.isfinite(self.target):
@@ -90,7 +89,7 @@ class Settings:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        require_known(self.method)
+        require_known_method(self.method)
         for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
             value = getattr(self, name)
             if value is not None and value < least:
@@ -105,7 +104,8 @@ class Settings:
 class Problem:
     """A complete optimisation problem.
 
-    crank, rod, offset: where the three dimensions may lie, m. costs: of the tolerances, for their allocation.
+    crank, rod, offset: where the three dimensions may lie, m. costs: of the tolerances, for their allocation. own:
+    quantities beside those that every problem has; objectives and constraints may name them too.
     """
 
     name: str
@@ -117,11 +117,14 @@ class Problem:
     constraints: tuple[Constraint, ...] = ()
     settings: Settings = Settings()
     costs: Costs | None = None
+    own: tuple[Quantity, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.objectives:
             raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
+        for name in (*names, *(constraint.quantity for constraint in self.constraints)):
+            self.quantity(name)
         for name in names:
             if names.count(name) > 1:
                 raise InputError(f"the objective {name} is given twice; keep one")
@@ -138,3 +141,9 @@ class Problem:
                     )
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
+        own = {quantity.name: quantity for quantity in self.own}
+        require_known(name, also=own)
+        return own[name] if name in own else QUANTITIES[name]

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..objectives.registry import QUANTITIES
 from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, empty, planned
 from .elimination import UNKNOWNS, Sheet, sheets
 from .evaluation import Evaluator
 from .front import ParetoFront
+from .gradients import require_gradients
 from .infeasibility import diagnose
 from .methods.registry import require_eliminated, require_fit, search_of
 from .problem import Problem
@@ -29,6 +29,7 @@ def solve(
     """
     require_fit(problem)
     method = problem.settings.method
+    require_gradients(problem)
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
     if method == "auto":
         run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
@@ -78,7 +79,7 @@ def _best(problem: Problem) -> float | None:
     front = deliver(problem, evaluators, archive, run) if len(archive) else None
     if front is None:
         return None
-    quantity = QUANTITIES[problem.objectives[0].quantity]
+    quantity = problem.quantity(problem.objectives[0].quantity)
     return float(quantity.evaluate(problem.mechanism, front.dimensions[:1]).values[0])
 
 

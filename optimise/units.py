@@ -63,8 +63,9 @@ KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
     *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO),
 )
+TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9)
 _OTHERS = (
-    Kind(name="a time", unit="s", example="1 s", limit=math.inf),
+    TIME,
     Kind(name="a frequency, not saying of turns or of radians", unit="s^-1", example="", limit=0.0),
 )
 
@@ -107,6 +108,7 @@ pound_force = 4.4482216152605 * newton = lbf
 kilogram_force = 9.80665 * newton = kgf
 """
 
+_BASES = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[angle]": "rad"}
 _COMMON = (
     *(
         "mm",
@@ -161,6 +163,23 @@ def kind_of(symbol: str) -> Kind:
         if _unit(kind.unit)[1] == dimension:
             return kind
     raise InputError(f"no kind of value has the unit {shown(symbol)}; add one to the list of kinds")
+
+
+def kind_for(symbol: str) -> Kind:
+    """Return the kind of value of any unit, one of `KINDS` or a new one; raises InputError for what is no unit."""
+    dimension = _unit(symbol)[1]
+    for kind in KINDS:
+        if _unit(kind.unit)[1] == dimension:
+            return kind
+    powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
+    si = " ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers)
+    plain = symbol if _unit(symbol)[0] == 1 else si
+    return Kind(name=f"a value in {plain}", unit=plain, example=f"1 {symbol}", limit=1e30)
+
+
+def per_si(symbol: str) -> float:
+    """Return what one SI unit is in a unit: 1000 for "mm". Raises InputError for what is no unit."""
+    return float(1 / _unit(symbol)[0])
 
 
 def to_si(value: object, kind: Kind, *, sign: Sign = "any") -> float:

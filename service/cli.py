@@ -107,7 +107,18 @@ def slidercrank(
 
 
 COMMANDS = (
-    optimise, analyse, sweep, allocate, balance, sections, certify, check, schema, front, export, cases,
+    optimise,
+    analyse,
+    sweep,
+    allocate,
+    balance,
+    sections,
+    certify,
+    check,
+    schema,
+    front,
+    export,
+    cases,
 )
 for command in COMMANDS:
     app.command()(command)

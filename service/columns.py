@@ -10,6 +10,7 @@ from ..model.errors import InputError
 
 # How a column's name ends, and its unit. The factors are what one SI unit is in it.
 _SUFFIXES = (
+    ("_m_s3", "m/s^3", 1.0),
     ("_m_s2", "m/s^2", 1.0),
     ("_m_s", "m/s", 1.0),
     ("_kg_m2", "kg m^2", 1.0),
@@ -19,6 +20,7 @@ _SUFFIXES = (
     ("_deg", "deg", 57.29577951308232),
     ("_N", "N", 1.0),
     ("_W", "W", 1.0),
+    ("_MPa", "MPa", 1e-6),
 )
 DIMENSIONS = ("crank", "rod", "offset")
 
@@ -47,6 +49,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     name = name.strip()
     aliases = {dimension: f"{dimension}_mm" for dimension in DIMENSIONS}
     aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
+    aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
     key = name if name in keys else aliases.get(name, "")
     if key not in keys:

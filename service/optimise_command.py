@@ -42,10 +42,12 @@ def optimise(
     Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops after the round that is
     under way and keeps what was found.
     """
+    from ..optimise.job import files_beside
+
     problem = _problem(job, designs, seed)
     with Interruption() as interruption, RunFolder(runs_place(runs), problem.name) as run:
         run.log(f"command: {' '.join(sys.argv[1:])}")
-        run.keep_job(job)
+        run.keep_job(job, files_beside(job))
         front = _solve(problem, run, interruption)
         result = result_of(front, str(run.path))
         run.keep_result(result, _versions(front))

@@ -82,12 +82,10 @@ class Result:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return what a run found from its front."""
-    from ..objectives.registry import quantity
-
     found = len(front) > 0
     wanted = []
     for objective in front.objectives:
-        of = quantity(objective.quantity)
+        of = front.problem.quantity(objective.quantity)
         target = None if objective.target is None else objective.target * of.unit.factor
         wanted.append(
             Wanted(

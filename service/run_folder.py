@@ -1,7 +1,7 @@
 """Writing a run: a folder that is whole, or marked unfinished, whenever the machine stops.
 
     runs/20260131-142501-feeder/
-        job.toml        the job, byte for byte (job.json if it was JSON)
+        job.toml        the job, byte for byte (job.json if it was JSON), and the files beside it that it names
         front.csv       every design with all its quantities, full precision
         front.json      the same with how it was found: what `slidercrank optimise --json` prints
         figures/        PNG files
@@ -22,7 +22,7 @@ import shutil
 import time
 import traceback
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -80,10 +80,14 @@ class RunFolder:
         with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
             file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {line}\n")
 
-    def keep_job(self, job: Path) -> None:
-        """Copy the job file."""
+    def keep_job(self, job: Path, beside: Sequence[Path] = ()) -> None:
+        """Copy the job file, and the files beside it that it names, under their own names."""
         with disk(self.path):
             _write(self.path / f"job{job.suffix.lower()}", job.read_bytes())
+            for file in beside:
+                kept = self.path / file.relative_to(job.parent)
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                _write(kept, file.read_bytes())
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""

@@ -9,7 +9,6 @@ from ..model.friction import Friction
 from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
-from ..objectives.registry import quantity
 from ..optimise.convex.costs import Cost
 from ..optimise.elimination import UNKNOWNS, sheets
 from ..optimise.evaluation import constraints_of
@@ -29,7 +28,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [f"{name} {_range(getattr(problem, name))}" for name in UNKNOWNS],
         "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
-        "objectives": [_objective(objective) for objective in problem.objectives],
+        "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
         "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
@@ -156,7 +155,7 @@ def _range(bounds: Range) -> str:
 
 
 def _rule(constraint: Constraint, problem: Problem) -> str:
-    of = quantity(constraint.quantity)
+    of = problem.quantity(constraint.quantity)
     own = constraint in problem.constraints
 
     def shown(value: float) -> str:
@@ -172,8 +171,8 @@ def _rule(constraint: Constraint, problem: Problem) -> str:
     return " ".join(parts) + ("" if own else " (not in the job: a floor that is always kept)")
 
 
-def _objective(objective: Objective) -> str:
-    of = quantity(objective.quantity)
+def _objective(objective: Objective, problem: Problem) -> str:
+    of = problem.quantity(objective.quantity)
     if objective.target is None:
         return f"{objective.sense} {of.title}"
     return f"bring {of.title} to {objective.target * of.unit.factor:.6g} {of.unit.symbol}".rstrip()

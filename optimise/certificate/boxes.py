@@ -14,7 +14,6 @@ from ...model.closed_forms import ClosedForm, closed_form
 from ...model.errors import InputError
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
-from ...objectives.registry import QUANTITIES
 from ..elimination import UNKNOWNS
 from ..evaluation import Evaluator, constraints_of
 from ..problem import Constraint, Objective, Problem, Range
@@ -40,7 +39,7 @@ def covered(problem: Problem, objective: Objective) -> str:
 
     Bounded are all closed forms, and from below the peaks over the cycle of machines without friction.
     """
-    quantity = QUANTITIES[objective.quantity]
+    quantity = problem.quantity(objective.quantity)
     if isinstance(quantity, ClosedFormQuantity):
         return ""
     if not isinstance(quantity, CyclePeak):
@@ -54,7 +53,7 @@ def covered(problem: Problem, objective: Objective) -> str:
 
 def usable(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
-    quantity = QUANTITIES[constraint.quantity]
+    quantity = problem.quantity(constraint.quantity)
     if isinstance(quantity, ClosedFormQuantity):
         return True
     wanted = Objective(quantity=constraint.quantity, sense="minimise")
@@ -105,10 +104,10 @@ class Boxes:
         least = next(c.lower for c in constraints_of(problem) if c.quantity == "transmission_angle")
         self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
         used = [c for c in constraints_of(problem) if usable(problem, c)]
-        self.cheap = [c for c in used if isinstance(QUANTITIES[c.quantity], ClosedFormQuantity)]
+        self.cheap = [c for c in used if isinstance(problem.quantity(c.quantity), ClosedFormQuantity)]
         self.costly = [c for c in used if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
-        peaks = [QUANTITIES[name] for name in names]
+        peaks = [problem.quantity(name) for name in names]
         self.curves = {peak.name: Curve(problem.mechanism, peak) for peak in peaks if isinstance(peak, CyclePeak)}
 
     def bound(self, lower: Array, upper: Array) -> Bounded:
@@ -181,7 +180,7 @@ class Boxes:
         self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
     ) -> tuple[Enclosure, Array | None, Array | None]:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
-        quantity = QUANTITIES[name]
+        quantity = self.problem.quantity(name)
         assert isinstance(quantity, ClosedFormQuantity)
         value = reduce(beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
         most = value.ends()[1].max(axis=1)

@@ -10,7 +10,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ...objectives.cycle_peak import CyclePeak
-from ...objectives.registry import QUANTITIES
 from ..deliver import span_of
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator, constraints_of, minimised
@@ -32,7 +31,7 @@ _THIN = 50_000_000  # pairs of added designs and corners that are looked through
 def _objectives(problem: Problem, dimensions: Array) -> Array:
     """Return the minimised objectives (n, m) of designs, exact over continuous crank angle."""
     columns = [
-        minimised(wish, QUANTITIES[wish.quantity].evaluate(problem.mechanism, dimensions).values)
+        minimised(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
         for wish in problem.objectives
     ]
     return np.stack(columns, axis=1)
@@ -229,7 +228,7 @@ class Search:
     def _notes(self) -> tuple[str, ...]:
         found = []
         for constraint in constraints_of(self.problem):
-            quantity = QUANTITIES[constraint.quantity]
+            quantity = self.problem.quantity(constraint.quantity)
             if not usable(self.problem, constraint):
                 found.append(f"the bounds do not use the requirement on {quantity.title}")
             elif isinstance(quantity, CyclePeak) and constraint.lower is not None:

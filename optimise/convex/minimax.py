@@ -30,7 +30,6 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...objectives.cycle_peak import CyclePeak
-from ...objectives.registry import QUANTITIES
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator
 from ..methods.registry import budget
@@ -196,7 +195,7 @@ def _result(
     evaluator: Evaluator, point: Point, scale: float, found: list[tuple[int, Point]], evaluations: int
 ) -> MinimaxResult:
     objective = evaluator.problem.objectives[0]
-    peaks = isinstance(QUANTITIES[objective.quantity], CyclePeak)
+    peaks = isinstance(problem.quantity(objective.quantity), CyclePeak)
     weights = point.step.goals if point.step is not None else (point.goals.values == point.top).astype(np.float64)
     pieces = [
         ActivePiece(

@@ -20,31 +20,49 @@ from ..problem import Problem
 from ..units import shown
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
-from .model import Job
+from .model import Job, job_with
+from .own import declared, modules_beside
+from .target_motion import points_file, with_points
 
-__all__ = ["Job", "job_schema", "load_job", "load_sections", "parse_job"]
+__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job"]
 
 
-def load_job(path: str | PathLike[str]) -> Problem:
+def load_job(path: str | PathLike[str], *, allow_user_code: bool = True) -> Problem:
     """Return the problem that a job file states, .toml or .json.
+
+    allow_user_code: whether a job may name functions of its own ([quantity]); they run when the problem is solved, with
+    all that the user may do. Refuse them in jobs of others.
 
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
     schema, or contradicts itself.
     """
     try:
-        return parse_job(read(Path(path)))
+        folder = Path(path).parent
+        return parse_job(with_points(read(Path(path)), folder), folder=folder, allow_user_code=allow_user_code)
     except JobError as error:
         name = str(path)
         raise JobError(f"{name if name.isprintable() else shown(name)}: {error}") from None
 
 
-def parse_job(data: Mapping[str, Any]) -> Problem:
-    """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`."""
+def files_beside(path: str | PathLike[str]) -> list[Path]:
+    """Return the files beside a job file that it needs: points of a target motion, modules of its own functions."""
+    data, folder = read(Path(path)), Path(path).parent
+    points = points_file(data)
+    return [*([folder / points] if points else []), *modules_beside(data, folder)]
+
+
+def parse_job(data: Mapping[str, Any], *, folder: Path | None = None, allow_user_code: bool = True) -> Problem:
+    """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`.
+
+    folder: where the modules of its own functions lie, beside the working directory.
+    """
     require_plain(data)
+    own = declared(data, allowed=allow_user_code)
+    job = job_with(own)
     try:
-        return Job.model_validate(data).problem()
+        return job.model_validate(data).problem(folder=folder, installed=own.installed)
     except ValidationError as error:
-        found = explain(error, _schema())
+        found = explain(error, _schema() if job is Job else _schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []
@@ -71,7 +89,11 @@ def job_schema() -> dict[str, Any]:
 
 @cache
 def _schema() -> dict[str, Any]:
-    schema = Job.model_json_schema(mode="validation")
+    return _schema_of(Job)
+
+
+def _schema_of(job: type[Job]) -> dict[str, Any]:
+    schema = job.model_json_schema(mode="validation")
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from ...model.errors import JobError
 from ...model.links import Bar, Link
 from ...model.mechanism import Clearances
+from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
 from .box import require_reachable
@@ -37,7 +38,7 @@ _FORCES = (
 def require_consistent(problem: Problem) -> None:
     """Raise JobError, naming key, rule, value and remedy, if the problem contradicts itself."""
     for key, quantity, word, value in _asked(problem):
-        _require_possible(key, quantity, word, value)
+        _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
     _require_causes(problem)
@@ -57,9 +58,9 @@ def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
             yield f"objectives.{objective.quantity}", objective.quantity, "target", objective.target
 
 
-def _require_possible(key: str, name: str, word: str, value: float) -> None:
+def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:
     """Refuse a value that a quantity has for no linkage at all."""
-    unit = QUANTITIES[name].unit
+    unit = problem.quantity(name).unit
     got = f"got {word} {value * unit.factor:.6g} {unit.symbol}".rstrip()
     if name == "time_ratio" and value < 1.0:
         raise JobError(
@@ -80,7 +81,7 @@ def _require_possible(key: str, name: str, word: str, value: float) -> None:
         raise JobError(
             f"{key}: the rod exceeds crank + |offset| for full rotation, so this is above 1; {got}; raise it"
         )
-    if name not in _SIGNED and value < 0.0:
+    if name in (*QUANTITIES, *DEVIATIONS) and name not in _SIGNED and value < 0.0:
         raise JobError(f"{key}: {name} is never negative; {got}; give its size")
 
 

@@ -37,7 +37,7 @@ _FORCES: Any = Field(
 )
 
 
-def _increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return the points of a table in SI, refusing any that is not above the one before."""
     points: tuple[float, ...] = handler(given)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
@@ -106,7 +106,7 @@ class ViscousLoad(Part):
 class PositionLoad(Part):
     """A force tabulated over the slider position: linear between the points, constant beyond them."""
 
-    positions: Annotated[tuple[Length, ...], WrapValidator(_increasing)] = Field(
+    positions: Annotated[tuple[Length, ...], WrapValidator(increasing)] = Field(
         min_length=2,
         max_length=1000,
         description="slider positions, increasing",
@@ -134,7 +134,7 @@ class PositionLoad(Part):
 class AngleLoad(Part):
     """A force tabulated over the crank angle: linear between the points, periodic."""
 
-    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(_increasing)] = Field(
+    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] = Field(
         min_length=2,
         max_length=1000,
         description="crank angles, increasing, spanning less than 360 deg",

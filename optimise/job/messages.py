@@ -162,6 +162,8 @@ def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
         for node in nodes:
             inner = node.get("items") if isinstance(part, int) else None
             inner = inner or node.get("properties", {}).get(part)
+            if inner is None and isinstance(node.get("additionalProperties"), dict):
+                inner = node["additionalProperties"]
             if inner:
                 below += _alternatives(schema, inner)
         nodes = below

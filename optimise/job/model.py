@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Any, cast
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, create_model
 
 from ...model.errors import InputError
+from ...objectives.motion_deviation import motion_deviations
+from ...objectives.quantity import Quantity
 from ..methods.registry import Name, require_fit
 from ..problem import Problem, Range, Settings
 from ..units import shown
@@ -17,8 +20,10 @@ from .drive import DrivePart
 from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
-from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of
+from .own import Declared, QuantityPart, folders_of, named
+from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
 from .sections import SectionsPart
+from .target_motion import TargetMotionPart, require_target
 from .values import AnyRange, Part, PositiveRange
 
 
@@ -126,6 +131,16 @@ class Job(Part):
         description="what tolerances cost, for their allocation",
         examples=[{"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}}],
     )
+    target_motion: TargetMotionPart | None = Field(
+        None,
+        description="a wanted slider motion, from which motion_deviation and motion_deviation_rms are counted",
+        examples=[{"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]}],
+    )
+    quantity: Annotated[dict[str, QuantityPart], Field(max_length=20), AfterValidator(named)] = Field(
+        {},
+        description="functions of your own as quantities, by name",
+        examples=[{"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}}],
+    )
     variables: VariablesPart = Field(
         description="where the three dimensions may lie",
         examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
@@ -160,9 +175,13 @@ class Job(Part):
         OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]
     )
 
-    def problem(self) -> Problem:
-        """Return the problem that the job states. Raises JobError if it contradicts itself."""
+    def problem(self, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
+        """Return the problem that the job states. Raises JobError if it contradicts itself.
+
+        folder: where the modules of its functions lie. installed: quantities of packages that it names.
+        """
         variables = self.variables
+        require_target(self.target_motion, self.objectives, self.constraints)
         problem = Problem(
             name=self.name,
             mechanism=self.mechanism.build(
@@ -181,7 +200,24 @@ class Job(Part):
                 evaluations=self.optimiser.evaluations,
                 seed=self.optimiser.seed,
             ),
+            own=(
+                *(() if self.target_motion is None else motion_deviations(self.target_motion.build())),
+                *(part.build(name, folders_of(folder)) for name, part in self.quantity.items()),
+                *installed,
+            ),
         )
         require_consistent(problem)
         require_fit(problem)
         return problem
+
+
+def job_with(declared: Declared) -> type[Job]:
+    """Return the job whose [objectives] and [constraints] may name quantities of its own too."""
+    if not declared.tables:
+        return Job
+    constraints, objectives = tables(declared.tables)
+    fields: dict[str, Any] = {
+        "constraints": (constraints, Job.model_fields["constraints"]),
+        "objectives": (Annotated[objectives, AfterValidator(_some)], Job.model_fields["objectives"]),
+    }
+    return cast(type[Job], create_model("Job", __base__=Job, **fields))

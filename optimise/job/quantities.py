@@ -16,6 +16,7 @@ from pydantic import (
 )
 
 from ...model.errors import InputError
+from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Constraint, Objective
 from ..units import Kind, closest, kind_of, shown
@@ -54,6 +55,8 @@ _EXAMPLES: dict[str, Any] = {
     "self_locking_margin": "10 deg",
     "stroke": "280 mm",
     "position_error": "0.3 mm",
+    "motion_deviation": "0.3 mm",
+    "motion_deviation_rms": "0.2 mm",
     "position_error_rss": "0.2 mm",
     "rod_to_crank": 2.5,
 }
@@ -83,24 +86,28 @@ def _form(value: object) -> str:
     return "(word)" if isinstance(value, str) else "(target)"
 
 
-def _per_quantity() -> tuple[type[Part], type[Part]]:
-    """Return the tables [constraints] and [objectives]: one optional key for each quantity."""
+def tables(own: Mapping[str, tuple[str, Kind]]) -> tuple[type[Part], type[Part]]:
+    """Return the tables [constraints] and [objectives]: one optional key for each quantity.
+
+    own: title and kind of the quantities that a job has beside those that every job has.
+    """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}
     made: dict[Kind, tuple[Any, Any]] = {}
-    for name, quantity in QUANTITIES.items():
-        kind = kind_of(quantity.unit.symbol)
+    known = {name: (quantity.title, kind_of(quantity.unit.symbol)) for name, quantity in QUANTITIES.items()}
+    deviations = {name: (title, kind_of("mm")) for name, (title, _) in DEVIATIONS.items()}
+    for name, (title, kind) in (known | deviations | dict(own)).items():
         if kind not in made:
             made[kind] = _forms(kind)
         bounds, wish = made[kind]
         example = _EXAMPLES.get(name, kind.example if kind.unit else float(kind.example))
         limits[name] = (
             bounds | None,
-            Field(None, description=quantity.title, examples=[{"min": example}]),
+            Field(None, description=title, examples=[{"min": example}]),
         )
         wishes[name] = (
             wish | None,
-            Field(None, description=quantity.title, examples=["minimise", {"target": example}]),
+            Field(None, description=title, examples=["minimise", {"target": example}]),
         )
     constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))
@@ -136,7 +143,7 @@ if TYPE_CHECKING:  # a type checker cannot follow fields that are made from the 
     ConstraintsPart: TypeAlias = Part
     ObjectivesPart: TypeAlias = Part
 else:
-    ConstraintsPart, ObjectivesPart = _per_quantity()
+    ConstraintsPart, ObjectivesPart = tables({})
 
 
 def constraints_of(part: ConstraintsPart) -> Iterator[Constraint]:

@@ -9,7 +9,6 @@ from typing import Any
 
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
-from ...objectives.registry import quantity
 from ...optimise.front import ParetoFront
 from .marks import marks
 from .parallel import parallel_coordinates
@@ -34,7 +33,7 @@ def draw_front(front: ParetoFront, folder: Path) -> Iterator[Path]:
         save(parallel_coordinates(front), folder / "parallel_coordinates.png")
         yield folder / "parallel_coordinates.png"
     mechanism = front.problem.mechanism
-    bold = [quantity(objective.quantity).field for objective in front.objectives]
+    bold = [front.problem.quantity(objective.quantity).field for objective in front.objectives]
     for mark in marks(front):
         crank, rod, offset = front.dimensions[mark.row]
         figure = design_sheet(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.registry import quantity
+from ...objectives.quantity import Quantity
 from ...optimise.front import ParetoFront
 from ...optimise.problem import Objective
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
@@ -66,7 +66,7 @@ def marks(front: ParetoFront) -> list[Mark]:
     """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
-        labels.setdefault(row, []).append((f"best_{name}", f"best {short_title(name)}"))
+        labels.setdefault(row, []).append((f"best_{name}", f"best {short_title(front.problem.quantity(name))}"))
     if len(front.objectives) > 1:
         labels.setdefault(front.knee(), []).append(("knee", "knee"))
     found = []
@@ -82,10 +82,10 @@ def marks(front: ParetoFront) -> list[Mark]:
 
 def objective_axis(front: ParetoFront, objective: Objective) -> Axis:
     """Return the axis of an objective."""
-    of = quantity(objective.quantity)
+    of = front.problem.quantity(objective.quantity)
     better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
     values = front.designs[of.field].to_numpy(dtype=np.float64)
-    title = with_unit(short_title(objective.quantity), of.unit.symbol)
+    title = with_unit(short_title(of), of.unit.symbol)
     if objective.target is not None:
         unit = f" {unit_text(of.unit.symbol)}" if of.unit.symbol else ""
         title += f" (target {objective.target * of.unit.factor:g}{unit})"
@@ -98,6 +98,6 @@ def dimension_axes(front: ParetoFront) -> list[Axis]:
     return [Axis(f"{name}, mm", "mm", 1e3 * front.dimensions[:, index], 0) for index, name in enumerate(columns)]
 
 
-def short_title(name: str) -> str:
+def short_title(of: Quantity) -> str:
     """Return a quantity's title without what follows a comma where no other quantity shares the rest."""
-    return quantity(name).title.removesuffix(", worst case")
+    return of.title.removesuffix(", worst case")

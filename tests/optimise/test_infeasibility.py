@@ -121,11 +121,11 @@ def test_the_floor_of_the_transmission_angle_that_nobody_asked_for_is_not_blamed
 
 
 def test_relaxations_are_sentences() -> None:
-    lower = Relaxation("transmission_angle", "at least", 40.0, 27.4576, "deg")
+    lower = Relaxation("transmission_angle", "at least", 40.0, 27.4576, "deg", "least transmission angle")
     assert lower.sentence() == (
         "least transmission angle at least 40 deg is asked, at most 27.4576 deg can be had with all else kept"
     )
-    upper = Relaxation("peak_torque", "at most", 5.0, 20.25, "N m")
+    upper = Relaxation("peak_torque", "at most", 5.0, 20.25, "N m", "peak torque")
     assert upper.sentence() == "peak torque at most 5 N m is asked, at least 20.25 N m can be had with all else kept"
-    value = Relaxation("time_ratio", "exactly", 1.5, 1.3, "")
+    value = Relaxation("time_ratio", "exactly", 1.5, 1.3, "", "time ratio")
     assert value.sentence() == "time ratio exactly 1.5 is asked, at the nearest 1.3 can be had with all else kept"

@@ -35,6 +35,9 @@ SMALL: dict[str, Any] = {
 }
 
 
+TARGET = {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["140 mm", "120 mm", "100 mm"]}
+
+
 def small(**parts: Any) -> dict[str, Any]:
     return deepcopy(SMALL) | parts
 
@@ -284,7 +287,8 @@ def test_the_examples_of_the_schema_are_valid() -> None:
             parse_job(small(tolerances={"crank": "0.05 mm"}) | {key: example})
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
-            parse_job(small(tolerances={"crank": "0.05 mm"}, friction={"guide": 0.1}, objectives={name: example}))
+            given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
+            parse_job(small(**given, objectives={name: example}))
 
 
 def test_the_schema_cannot_be_changed_from_outside() -> None:

@@ -37,9 +37,9 @@ def test_a_constraint_needs_a_finite_bound_in_order() -> None:
 
 def test_an_unknown_quantity_is_named_with_the_nearest_one() -> None:
     with pytest.raises(InputError, match="did you mean peak_torque"):
-        Objective(quantity="peak_torqe", sense="minimise")
+        problem({"peak_torqe": "minimise"})
     with pytest.raises(InputError, match="no quantity is called"):
-        Constraint(quantity="strok", lower=1.0)
+        problem({"peak_torque": "minimise"}, {"strok": (1.0, None)})
 
 
 def test_a_target_belongs_to_the_sense_target_only() -> None:

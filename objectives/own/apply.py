@@ -1,0 +1,113 @@
+"""Calling a function of your own on designs, and checking what it returns."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.arithmetic import STEP
+from ...model.mechanism import Mechanism
+from .designs import Designs, Peaks
+
+Array = NDArray[np.float64]
+Function = Callable[[Designs], Any]
+
+PIECES = 32
+"""Columns that a function may return."""
+
+
+class Refused(Exception):
+    """What a function did wrong, in words: rule, value, place and remedy."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a function returned for n designs, as the greatest of k pieces.
+
+    values: (n, k), SI. slopes: their derivatives by the dimension that was stepped, or None. angles: of peaks, or None.
+    """
+
+    values: Array
+    slopes: Array | None
+    angles: Array | None
+
+
+def apply(
+    function: Function,
+    mechanism: Mechanism,
+    dimensions: Array,
+    column: int | None,
+    *,
+    make: Callable[[Mechanism, NDArray[Any]], Designs] = Designs,
+) -> Answer:
+    """Return the answer for designs (n, 3); column: the dimension that carries a complex step, or None.
+
+    Raises `Refused` for a function that raises, or returns anything but finite numbers of the right shape and kind.
+    """
+    given: NDArray[Any] = dimensions.copy()
+    if column is not None:
+        given = given.astype(np.complex128)
+        given[:, column] += STEP * 1j
+    try:
+        with np.errstate(all="ignore"):
+            found = np.asanyarray(function(make(mechanism, given)))
+    except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
+        kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
+        remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"
+        said = f"{kind or type(error).__name__}: {error}".rstrip(": ")
+        raise Refused(f"must not raise; got {said}{place(error, function)}; {remedy}") from None
+    return _checked(found, dimensions, column)
+
+
+_NOT_COMPLEX = (
+    "write it with functions that take complex numbers (magnitude in place of abs, no comparisons), "
+    'or set gradient = "finite differences"'
+)
+
+
+def place(error: BaseException, function: Callable[..., Any]) -> str:
+    """Return where an error was raised: the last line of the function's own file, else the last line of all."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = getattr(getattr(function, "__code__", None), "co_filename", "")
+    there = [frame for frame in frames if frame.filename == own] or list(frames)[-1:]
+    return f" ({Path(there[-1].filename).name}:{there[-1].lineno})" if there else ""
+
+
+def _checked(found: NDArray[Any], dimensions: Array, column: int | None) -> Answer:
+    n = len(dimensions)
+    if found.dtype.kind not in "fiuc":
+        raise Refused(f"must return an array of numbers; got one of {found.dtype}; return one number for each design")
+    angles = found.angles if isinstance(found, Peaks) else None
+    angles = angles if angles is not None and angles.shape == found.shape else None
+    if found.ndim == 1:
+        found = found[:, None]
+    if found.ndim != 2 or len(found) != n or not 1 <= found.shape[1] <= PIECES:
+        raise Refused(
+            f"must return one number for each design, or up to {PIECES} of which the greatest counts, "
+            f"shape ({n},) or ({n}, k); got shape {found.shape}; a curve over the cycle goes through peaks, greatest "
+            "or mean"
+        )
+    if (column is not None) != np.iscomplexobj(found):
+        lost = "must keep the complex numbers that carry the gradient; got real ones; " + _NOT_COMPLEX
+        raise Refused(lost if column is not None else "must return real numbers for real designs; got complex ones")
+    values = np.array(found.real, dtype=np.float64)
+    slopes = None if column is None else np.array(found.imag / STEP, dtype=np.float64)
+    bad = ~np.isfinite(values).all(axis=1)
+    if slopes is not None:
+        bad |= ~np.isfinite(slopes).all(axis=1)
+    if bad.any():
+        row = int(np.flatnonzero(bad)[0])
+        wrong = values[row][~np.isfinite(values[row])]
+        what = f"{wrong[0]:g}" if len(wrong) else "a gradient that is not finite"
+        crank, rod, offset = 1e3 * dimensions[row]
+        raise Refused(
+            f"must return a finite number for every design; got {what} for crank {crank:.6g} mm, rod {rod:.6g} mm, "
+            f"offset {offset:.6g} mm; correct the function"
+        )
+    return Answer(values, slopes, None if angles is None else np.array(angles, dtype=np.float64))

@@ -1,0 +1,148 @@
+"""The process that runs a function of your own: it may end, hang or print as it likes, and nothing else is hurt.
+
+Requests come pickled on standard input; answers go out as length, kind and raw numbers, so that nothing which the
+function makes is ever unpickled. What the function prints goes to standard error.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import importlib
+import os
+import pickle
+import signal
+import struct
+import sys
+from collections.abc import Callable
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.follow import follow_forces
+from ...model.mechanism import Mechanism
+from .apply import Answer, Function, Refused, apply, place
+from .designs import Designs, Numbers, Reactions
+
+HEAD = struct.Struct("<cQ")
+"""Kind of an answer (A numbers, E what is wrong, R ready, W wait: it takes time of its own) and its length."""
+SHAPE = struct.Struct("<QQQ")
+
+
+def load(function: str, folders: list[str]) -> Function:
+    """Return the function that "module:name" says, of a module in one of the folders or installed.
+
+    Raises `Refused`. The folders come first for the import itself, so that a module beside the job is found, and last
+    from then on, so that none of them hides a library.
+    """
+    module, _, name = function.partition(":")
+    before = list(sys.path)
+    sys.path[:0] = folders
+    try:
+        found: Any = importlib.import_module(module)
+        for part in name.split("."):
+            found = getattr(found, part)
+    except BaseException as error:  # noqa: BLE001 - whatever the module does when imported
+        said = f"{type(error).__name__}: {error}".rstrip(": ")
+        raise Refused(
+            f"must be a function in a module beside the job file or installed; got {said}{place(error, load)}; "
+            "correct module:function"
+        ) from None
+    finally:
+        sys.path[:] = [*before, *folders]
+    if not callable(found):
+        raise Refused(f"must be a function; got {type(found).__name__}; name a function after the colon")
+    return found  # type: ignore[no-any-return]
+
+
+class Watch:
+    """The time limit of a call: beyond it the process ends, even within a loop that never returns to Python."""
+
+    def __init__(self, limit: float, log: BinaryIO) -> None:
+        """Take the limit, s, and the file that gets the line where the function was."""
+        self.limit, self.log = limit, log
+
+    def __enter__(self) -> None:
+        faulthandler.dump_traceback_later(self.limit, exit=True, file=self.log)
+
+    def __exit__(self, *_: object) -> None:
+        faulthandler.cancel_dump_traceback_later()
+
+
+class Timed(Designs):
+    """Designs whose first forces do not count in the time limit: a kernel may have to be compiled for them."""
+
+    watch: Watch
+    wait: Callable[[], None]
+    compiled: set[bool] = set()  # noqa: RUF012 - of this process, which has one function
+
+    def forces(self, angle: Numbers) -> Reactions:
+        """Return drive torque and joint forces; see `Designs`."""
+        rubs = self.mechanism.friction.acts
+        if rubs not in self.compiled:
+            self.watch.__exit__()
+            type(self).wait()
+            follow_forces(self.mechanism, self._dimensions[:1].astype(complex), np.zeros((1, 1), complex))
+            self.compiled.add(rubs)
+            self.watch.__enter__()
+        return super().forces(angle)
+
+
+def packed(answer: Answer) -> bytes:
+    """Return an answer as bytes: shape, then values, slopes and angles, NaN where there are none."""
+    none = np.full(answer.values.shape, np.nan)
+    parts = [none if part is None else part for part in (answer.values, answer.slopes, answer.angles)]
+    return SHAPE.pack(3, *answer.values.shape) + np.stack(parts).tobytes()
+
+
+def unpacked(data: bytes) -> Answer:
+    """Return the answer that `packed` wrote."""
+    shape = SHAPE.unpack_from(data)
+    values, slopes, angles = np.frombuffer(data, offset=SHAPE.size).reshape(shape).copy()
+    return Answer(values, *(None if np.isnan(part).all() else part for part in (slopes, angles)))
+
+
+def main() -> None:
+    """Answer requests until standard input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+    path, limit, name, folders = pickle.load(requests)
+    with open(path, "wb", buffering=0) as log:  # noqa: PTH123 - its descriptor is what faulthandler needs
+        faulthandler.enable(file=log)
+        watch = Watch(limit, log)
+        Timed.watch = watch
+
+        def send(kind: bytes, content: bytes = b"") -> None:
+            answers.write(HEAD.pack(kind, len(content)) + content)
+            answers.flush()
+
+        Timed.wait = staticmethod(lambda: send(b"W"))
+        try:
+            with watch:
+                function = load(name, folders)
+            send(b"R")
+        except Refused as error:
+            send(b"E", str(error).encode())
+            return
+        mechanism = Mechanism()
+        while True:
+            try:
+                machine, data, column = pickle.load(requests)
+            except EOFError:
+                return
+            mechanism = machine or mechanism
+            dimensions: NDArray[np.float64] = np.frombuffer(data).reshape(-1, 3)
+            try:
+                with watch:
+                    answer = apply(function, mechanism, dimensions, column, make=Timed)
+            except Refused as error:
+                send(b"E", str(error).encode())
+            else:
+                send(b"A", packed(answer))
+
+
+if __name__ == "__main__":
+    main()

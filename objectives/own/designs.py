@@ -1,0 +1,245 @@
+"""What a function of your own is given: designs, and everything that they do over the cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model import geometry
+from ...model.arithmetic import magnitude as _magnitude
+from ...model.follow import follow_forces, third_derivative
+from ...model.kinematics import Motion, motion
+from ...model.mechanism import Mechanism
+
+Numbers = NDArray[Any]
+Curve = Callable[[Numbers], Numbers]
+
+_GRID = 128  # crank angles a turn, crowded where the linkage comes close to locking
+_MEAN = 192
+_ZOOMS = 4
+_WITHIN = 9  # angles of a zoom
+_PEAKS = 3
+_TURN = 2.0 * np.pi
+_BESIDE = 1e-9  # rad, from a dead centre to the side that counts
+_FIFTH = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0  # first and second derivative from five points
+_SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
+
+
+class Peaks(np.ndarray[Any, np.dtype[Any]]):
+    """Local peaks (n, k) with their crank angles, which arithmetic keeps: the search follows peaks by them."""
+
+    angles: NDArray[np.float64] | None = None
+
+    def __array_finalize__(self, of: object) -> None:
+        """Take over the angles of what this was made of."""
+        self.angles = getattr(of, "angles", None)
+
+
+class PinForce(NamedTuple):
+    """A force at a joint, (n, k), N: its components along x and y, and its size."""
+
+    x: Numbers
+    y: Numbers
+
+    @property
+    def size(self) -> Numbers:
+        """Return the size, N."""
+        return cast(Numbers, np.sqrt(self.x * self.x + self.y * self.y))
+
+
+class Reactions(NamedTuple):
+    """Drive torque (N m) and forces (N) over crank angles, each (n, k); signs as in `model.dynamics`.
+
+    load: on the slider, positive outward. guide: of the guide on the slider, along +y.
+    """
+
+    torque: Numbers
+    pivot: PinForce
+    crank_pin: PinForce
+    slider_pin: PinForce
+    guide: Numbers
+    load: Numbers
+
+
+class Designs:
+    """Designs of one machine: n of them at once, in real or in complex numbers.
+
+    crank, rod, offset: (n, 1), m. mechanism: speed, masses, loads. What depends on the crank angle is a method; it
+    takes angles (k,) or (n, k), rad, and gives (n, k). SI throughout. In complex numbers the imaginary part carries a
+    derivative: write formulas with operators and numpy's sqrt, sin, exp ..., and `magnitude` in place of abs.
+    """
+
+    def __init__(self, mechanism: Mechanism, dimensions: Numbers) -> None:
+        """Take designs (n, 3)."""
+        self.mechanism = mechanism
+        self.crank, self.rod, self.offset = (dimensions[:, v, None] for v in range(3))
+        self._dimensions = dimensions
+        self._branch = 1.0 if mechanism.branch == "open" else -1.0
+
+    def __len__(self) -> int:
+        return len(self._dimensions)
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Crank angles (n, 128) around the cycle, closer together where the linkage comes close to locking."""
+        return self._uncrowded(np.linspace(-np.pi, np.pi, _GRID, endpoint=False))[0]
+
+    # ---- closed forms ---------------------------------------------------------------------------------------------
+
+    @property
+    def stroke(self) -> Numbers:
+        """Distance between the dead centres, m, (n, 1)."""
+        return cast(Numbers, geometry.stroke(self.crank, self.rod, self.offset))
+
+    @property
+    def time_ratio(self) -> Numbers:
+        """Duration of the slower stroke over the faster, (n, 1)."""
+        return cast(Numbers, geometry.time_ratio(self.crank, self.rod, magnitude(self.offset)))
+
+    @property
+    def least_transmission_angle(self) -> Numbers:
+        """Least transmission angle over the cycle, rad, (n, 1)."""
+        return cast(Numbers, geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset)))
+
+    # ---- over the crank angle -------------------------------------------------------------------------------------
+
+    def position(self, angle: Numbers) -> Numbers:
+        """Return the slider position x, m."""
+        return cast(Numbers, self._motion(angle).x)
+
+    def velocity(self, angle: Numbers) -> Numbers:
+        """Return the slider velocity along x, m/s."""
+        return cast(Numbers, self._motion(angle).x_1 * self.mechanism.speed)
+
+    def acceleration(self, angle: Numbers) -> Numbers:
+        """Return the slider acceleration along x, m/s^2."""
+        m, speed = self._motion(angle), self.mechanism.speed
+        return cast(Numbers, m.x_2 * speed**2 + m.x_1 * self.mechanism.acceleration)
+
+    def jerk(self, angle: Numbers) -> Numbers:
+        """Return the slider jerk along x, m/s^3; the crank's acceleration is the same at every angle."""
+        m, speed = self._motion(angle), self.mechanism.speed
+        third = third_derivative(np.sin(angle), np.cos(angle), m, self.crank)
+        return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * self.mechanism.acceleration)
+
+    def rod_angle(self, angle: Numbers) -> Numbers:
+        """Return the angle between rod and slider line, rad, positive where the rod rises outward."""
+        m = self._motion(angle)
+        return cast(Numbers, np.arcsin(m.across / self.rod))
+
+    def transmission_angle(self, angle: Numbers) -> Numbers:
+        """Return the angle between rod and the normal of the slider line, rad."""
+        return cast(Numbers, 0.5 * np.pi - magnitude(self.rod_angle(angle)))
+
+    def forces(self, angle: Numbers) -> Reactions:
+        """Return drive torque and joint forces, friction included; NaN where friction locks."""
+        shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
+        found, load = follow_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
+        parts: list[Numbers] = [*found, load]
+        if not (np.iscomplexobj(self._dimensions) or np.iscomplexobj(angle)):
+            parts = [part.real for part in parts]
+        torque, pivot_x, pivot_y, pin_x, pin_y, end_x, end_y, guide, force = parts
+        pins = PinForce(pivot_x, pivot_y), PinForce(pin_x, pin_y), PinForce(end_x, end_y)
+        return Reactions(torque, *pins, guide, force)
+
+    # ---- over the cycle -------------------------------------------------------------------------------------------
+
+    def greatest(self, curve: Curve) -> Numbers:
+        """Return the greatest value of a curve over the cycle, (n, 1): the first of `peaks`."""
+        return self.peaks(curve).view(np.ndarray)[:, :1]
+
+    def mean(self, curve: Curve) -> Numbers:
+        """Return the mean of a curve over crank angle, (n, 1); exact to rounding for smooth curves."""
+        angle, share = self._uncrowded(np.linspace(-np.pi, np.pi, _MEAN, endpoint=False))
+        return cast(Numbers, np.mean(curve(angle) * share, axis=1, keepdims=True))
+
+    def peaks(self, curve: Curve) -> Peaks:
+        """Return the three highest local peaks of a curve over the cycle, (n, 3), highest first.
+
+        Return them from your function as they are, or times and plus what does not depend on the crank angle: the
+        quantity is the greatest, and the search knows of the others when two of them tie. curve: takes angles (n, k)
+        and gives (n, k). Located to rounding where the curve is smooth and on jumps at the dead centres; to about 1e-5
+        of a turn on other jumps and kinks.
+        """
+        tau = np.broadcast_to(np.linspace(-np.pi, np.pi, _GRID, endpoint=False), (len(self), _GRID))
+        spacing = _TURN / _GRID
+        found = self._sampled(curve, tau)
+        local = (found >= np.roll(found, 1, axis=1)) & (found >= np.roll(found, -1, axis=1))
+        order = np.argsort(np.where(local, -found, np.inf), axis=1, kind="stable")[:, :_PEAKS]
+        there = np.take_along_axis(local, order, axis=1)
+        order = np.where(there, order, order[:, :1])  # fewer peaks: the highest again
+        centre, half = np.take_along_axis(tau, order, axis=1), spacing
+        for _ in range(_ZOOMS):
+            centre = self._best(curve, centre, np.linspace(-half, half, _WITHIN))
+            half *= 2.0 / (_WITHIN - 1)
+        centre = self._vertex(curve, centre, half)
+        angle = self._uncrowded(centre)[0]
+        values = np.array(curve(angle))
+        values, angle = self._dead_centres(curve, values, angle)
+        order = np.argsort(-values.real, axis=1, kind="stable")
+        result = np.take_along_axis(values, order, axis=1).view(Peaks)
+        result.angles = np.take_along_axis(angle, order, axis=1)
+        return result
+
+    def _motion(self, angle: Numbers) -> Motion:
+        sine, cosine = np.sin(angle), np.cos(angle)
+        return motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
+
+    def _uncrowded(self, tau: Numbers) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return crank angles (n, k) of crowded ones, and their derivative by them; see `segments.crowding`."""
+        q = (self.crank / (self.rod - magnitude(self.offset))).real
+        kappa = np.sqrt(np.sqrt(np.maximum(1.0 - q * q, 1e-12)))
+        sine, cosine = np.sin(tau), np.cos(tau)
+        turn = np.arctan2(kappa * sine, cosine) - tau
+        angle = 0.5 * np.pi + tau + turn - _TURN * np.round(turn / _TURN)
+        return angle, kappa / (cosine**2 + (kappa * sine) ** 2)
+
+    def _sampled(self, curve: Curve, tau: Numbers) -> NDArray[np.float64]:
+        values = np.asarray(curve(self._uncrowded(tau)[0]))
+        if values.shape != tau.shape:
+            raise ValueError(
+                f"a curve must give as many values as it gets crank angles, {tau.shape}; got {values.shape}; "
+                "use the angles that it gets, and sums over them nowhere"
+            )
+        return cast(NDArray[np.float64], values.real)
+
+    def _around(self, curve: Curve, centre: Numbers, steps: Numbers) -> NDArray[np.float64]:
+        """Return the curve (n, p, s) at steps (s,) from crowded angles (n, p)."""
+        tau = centre[:, :, None] + steps
+        return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
+
+    def _best(self, curve: Curve, centre: Numbers, steps: Numbers) -> Numbers:
+        return np.asarray(centre + steps[np.argmax(self._around(curve, centre, steps), axis=2)])
+
+    def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
+        """Return where the derivative vanishes, by one step of Newton's; as before where no smooth peak is seen."""
+        found = self._around(curve, centre, np.arange(-2.0, 3.0) * half)
+        first, second = found @ _FIFTH, found @ _SECOND
+        smooth = second < 0.0
+        step = np.where(smooth, -first / np.where(smooth, second, 1.0), 0.0)
+        return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
+
+    def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, NDArray[np.float64]]:
+        """Return peaks and angles with those at a jump moved onto it: dead centres move with the design."""
+        dimensions = (self.crank, self.rod, self.offset)
+        outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)
+        ends = np.concatenate([outer, inner], axis=1)
+        ends = ends if self._branch > 0.0 else np.pi - ends
+        sides = np.concatenate([ends - _BESIDE, ends + _BESIDE], axis=1)
+        jumps = curve(sides)
+        for k in range(angle.shape[1]):
+            apart = np.abs(np.angle(np.exp(1j * (sides.real - angle[:, k : k + 1]))))
+            near = np.where((apart < 1e-2) & (jumps.real > values[:, k : k + 1].real), jumps.real, -np.inf)
+            at = np.argmax(near, axis=1)[:, None]
+            onto = np.isfinite(np.take_along_axis(near, at, axis=1))[:, 0]
+            values[onto, k] = np.take_along_axis(jumps, at, axis=1)[onto, 0]
+            angle[onto, k] = np.take_along_axis(sides.real, at, axis=1)[onto, 0]
+        return values, angle
+
+
+def magnitude(values: Numbers) -> Numbers:
+    """Return the sizes of numbers: `abs` that keeps the derivative that complex numbers carry."""
+    return cast(Numbers, _magnitude(values))

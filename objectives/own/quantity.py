@@ -1,0 +1,248 @@
+"""A quantity of your own: a Python function that judges designs, named in a job file or given from Python."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Literal, NoReturn, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.batches import turning
+from ...model.errors import InputError
+from ...model.mechanism import Mechanism
+from ...model.self_locking import locking_margin
+from ..quantity import Array, Pieces, Unit, Values
+from .apply import Answer, Function, Refused, apply
+from .worker import Worker
+
+Gradient = Literal["complex step", "finite differences", "none"]
+GROUP = "slidercrank.quantities"
+"""Entry points that give quantities: each a `OwnQuantity`."""
+LIMIT = 30.0
+"""s; what a call of at most `_BATCH` designs may take unless the job says otherwise."""
+_BATCH = 256
+_STEP = 2e-5  # of the nearest of locking and a crank of zero: truncation 4e-10 beside rounding 5e-12
+_WITNESSES = 3  # designs on which a complex step is compared with differences
+_AGREE = 1e-4  # of the gradient's size
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
+FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*", re.ASCII)
+
+Call = Callable[[Mechanism, Array, int | None], Answer]
+
+
+class _Session:
+    """What is kept between calls: the process, and for which machines the gradient has been checked."""
+
+    def __init__(self) -> None:
+        self.call: Call | None = None
+        self.checked: list[Mechanism] = []
+
+    def __reduce__(self) -> tuple[type[_Session], tuple[()]]:
+        return _Session, ()
+
+    def __deepcopy__(self, _: object) -> _Session:
+        return _Session()
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnQuantity:
+    """A function of designs as a quantity.
+
+    function: takes `Designs`, returns (n,), or (n, k) of which the greatest counts, SI. "module:function" runs in a
+    process of its own, within the limit; a Python function runs in this one, without. unit: as it is shown.
+    gradient: "complex step" for a function that runs on complex numbers, else "finite differences"; "none" for methods
+    that need no gradient. folders: where the module may lie. limit: s, of a call for up to 256 designs.
+
+    Every method raises `InputError` naming the quantity for a function that raises, returns anything but finite numbers
+    of the right shape, does not return in time, ends the process, or has no such gradient.
+    """
+
+    name: str
+    function: str | Function
+    title: str
+    unit: Unit
+    gradient: Gradient = "complex step"
+    folders: tuple[str, ...] = ()
+    limit: float = LIMIT
+    _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not _NAME.fullmatch(self.name):
+            raise InputError(
+                f"the name of a quantity has small letters, digits and underscores, a letter first; got {self.name!r}"
+            )
+        if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
+            raise InputError(f'a function is named "module:function"; got {self.function!r}; write it so')
+        if self.gradient not in get_args(Gradient):
+            raise InputError(f"gradient must be {' or '.join(map(repr, get_args(Gradient)))}; got {self.gradient!r}")
+        if not 0.0 < self.limit < float("inf"):
+            raise InputError(f"the time limit must be more than zero and finite; got {self.limit:g} s")
+
+    @property
+    def field(self) -> str:
+        """The name with the unit, as tables and JSON have it: "least_jerk_m_s3"."""
+        symbol = self.unit.symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
+        suffix = re.sub(r"[^A-Za-z0-9]+", "_", symbol).strip("_")
+        return f"{self.name}_{suffix}" if suffix else self.name
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3); see `Quantity`."""
+        if gradients:
+            found = self.pieces(mechanism, dimensions)
+            return Values(found.values[:, 0], found.gradients[:, 0])
+        dimensions = self._turning(dimensions)
+        self._check(mechanism, dimensions)
+        values = np.full(len(dimensions), np.inf)
+        for rows in self._batches(mechanism, dimensions):
+            values[rows] = self._ask(mechanism, dimensions[rows], None).values.max(axis=1)
+        return Values(values, None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as the greatest of its pieces; see `Quantity`.
+
+        One piece with finite differences. Gradients are zero where the quantity has none.
+        """
+        dimensions = self._turning(dimensions)
+        self._check(mechanism, dimensions)
+        parts = []
+        for rows in self._batches(mechanism, dimensions):
+            piece = self._complex if self.gradient == "complex step" else self._plain
+            parts.append((rows, piece(mechanism, dimensions[rows])))
+        n, k = len(dimensions), max((part.values.shape[1] for _, part in parts), default=1)
+        values, labels = np.full((n, k), -np.inf), np.zeros((n, k))
+        values[:, 0] = np.inf  # where friction locks
+        gradients = np.zeros((n, k, 3))
+        for rows, part in parts:
+            count = part.values.shape[1]
+            values[rows, :count], labels[rows, :count] = part.values, part.labels
+            gradients[rows, :count] = part.gradients
+        return Pieces(values, gradients, labels)
+
+    # ---- how it is asked ------------------------------------------------------------------------------------------
+
+    def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+        session = self._session
+        if session.call is None:
+            session.call = self._call()
+        try:
+            return session.call(mechanism, dimensions, column)
+        except Refused as error:
+            self._refuse(str(error))
+
+    def _call(self) -> Call:
+        if isinstance(self.function, str):
+            return Worker(self.function, list(self.folders), self.limit)
+        function = self.function
+        return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
+
+    def _refuse(self, reason: str) -> NoReturn:
+        known = self.function if isinstance(self.function, str) else getattr(self.function, "__qualname__", "function")
+        raise InputError(f"the quantity {self.name} ({known}) {reason}") from None
+
+    def _turning(self, dimensions: Array) -> Array:
+        if dimensions.shape[1] != 3:
+            self._refuse(
+                "is a function of crank, rod and offset alone; got more variables; fix them, or use other quantities"
+            )
+        return turning(dimensions)
+
+    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[NDArray[np.int64]]:
+        """Yield the rows of designs that friction does not lock: of the others the forces are not determined."""
+        rows = np.arange(len(dimensions))
+        if mechanism.friction.acts:
+            rows = rows[locking_margin(mechanism.friction, dimensions)[0] > 0.0]
+        for begin in range(0, len(rows), _BATCH):
+            yield rows[begin : begin + _BATCH]
+
+    # ---- gradients ------------------------------------------------------------------------------------------------
+
+    def _complex(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        answers = [self._ask(mechanism, dimensions, column) for column in range(3)]
+        values = answers[0].values
+        gradients = np.stack([np.asarray(answer.slopes) for answer in answers], axis=2)
+        angles = answers[0].angles
+        labels = np.tile(np.arange(float(values.shape[1])), (len(values), 1)) if angles is None else angles
+        # Peaks that a curve does not have repeat its highest one.
+        top = np.argmax(values, axis=1)[:, None]
+        same = (values == np.take_along_axis(values, top, axis=1)) & (labels == np.take_along_axis(labels, top, axis=1))
+        again = same & (np.arange(values.shape[1]) != top)
+        values = np.where(again, -np.inf, values)
+        gradients = np.where(again[:, :, None], 0.0, gradients)
+        order = np.argsort(-values, axis=1, kind="stable")
+        values, labels = np.take_along_axis(values, order, axis=1), np.take_along_axis(labels, order, axis=1)
+        gradients = np.take_along_axis(gradients, order[:, :, None], axis=1)
+        return Pieces(values, gradients, labels)
+
+    def _plain(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        values = self._ask(mechanism, dimensions, None).values.max(axis=1)[:, None]
+        slopes = np.zeros((len(dimensions), 3))
+        if self.gradient == "finite differences":
+            slopes = self._differences(mechanism, dimensions, _STEP)
+        return Pieces(values, slopes[:, None], np.zeros_like(values))
+
+    def _differences(self, mechanism: Mechanism, dimensions: Array, share: float) -> Array:
+        """Return central differences (n, 3) with steps of a share of what is left to locking and of the crank."""
+        crank, rod, offset = dimensions.T
+        step = share * np.minimum(rod - crank - np.abs(offset), crank)
+        found = np.empty((len(dimensions), 3))
+        for column in range(3):
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = dimensions.copy()
+                moved[:, column] += sign * step
+                ends.append((moved[:, column], self._ask(mechanism, moved, None).values.max(axis=1)))
+            (ahead, high), (behind, low) = ends
+            found[:, column] = (high - low) / (ahead - behind)
+        return found
+
+    def _check(self, mechanism: Mechanism, dimensions: Array) -> None:
+        """Refuse a complex step that is no derivative, before anything is searched with it.
+
+        On three designs, against differences. One of them may lie on a kink; two hardly do.
+        """
+        if self.gradient != "complex step" or mechanism in self._session.checked:
+            return
+        rows = np.concatenate([np.zeros(0, np.int64), *self._batches(mechanism, dimensions)])
+        if not len(rows):
+            return
+        some = dimensions[np.unique(rows[np.linspace(0, len(rows) - 1, _WITNESSES).astype(int)])]
+        found = self._complex(mechanism, some)
+        coarse, fine = (self._differences(mechanism, some, share) for share in (2.0 * _STEP, _STEP))
+        size = np.abs(fine).max(axis=1)
+        doubt = np.abs(fine - coarse).max(axis=1) + 1e-9 * np.abs(found.values[:, 0]) / some[:, 0]
+        apart = np.abs(found.gradients[:, 0] - fine)
+        wrong = apart.max(axis=1) > _AGREE * size + 10.0 * doubt
+        if 2 * wrong.sum() > len(some):
+            row = int(np.flatnonzero(wrong)[0])
+            column = int(np.argmax(apart[row]))
+            crank, rod, offset = 1e3 * some[row]
+            self._refuse(
+                "must have a gradient by complex step that agrees with differences; got "
+                f"{found.gradients[row, 0, column]:.6g} and {fine[row, column]:.6g} by the "
+                f"{('crank', 'rod', 'offset')[column]} for crank {crank:.6g} mm, rod {rod:.6g} mm, offset "
+                f"{offset:.6g} mm; write magnitude in place of abs and leave the imaginary parts as they are, "
+                'or set gradient = "finite differences"'
+            )
+        self._session.checked.append(mechanism)
+
+
+def own_quantities() -> dict[str, Any]:
+    """Return the entry points of installed packages that give quantities, by name; none is loaded yet."""
+    from importlib.metadata import entry_points
+
+    return {entry.name: entry for entry in entry_points(group=GROUP)}
+
+
+def installed(name: str) -> OwnQuantity:
+    """Return the quantity that an installed package gives under a name. Raises `InputError` if it is none."""
+    entry = own_quantities()[name]
+    found = entry.load()
+    if not isinstance(found, OwnQuantity) or found.name != name:
+        raise InputError(
+            f"the entry point {name} of {GROUP} must be an OwnQuantity of that name; got {found!r}; "
+            f"correct {entry.value}"
+        )
+    return found

@@ -1,0 +1,139 @@
+"""The tables [quantity.NAME] of a job file: functions of your own as quantities; and those that packages install."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+
+from ...model.errors import InputError, JobError
+from ...objectives.motion_deviation import DEVIATIONS
+from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, installed, own_quantities
+from ...objectives.quantity import Unit
+from ...objectives.registry import QUANTITIES
+from ..units import TIME, Kind, kind_for, per_si, shown
+from .values import Part, Physical
+
+
+def _function(text: str) -> str:
+    if not FUNCTION.fullmatch(text):
+        raise InputError(
+            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction"'
+        )
+    return text
+
+
+def _unit(text: str) -> str:
+    kind_for(text)
+    return text
+
+
+def _one_line(text: str) -> str:
+    if not text.strip() or not text.isprintable():
+        raise InputError(f"must be one line of text, not empty; got {shown(text)}")
+    return text
+
+
+class QuantityPart(Part):
+    """A Python function as a quantity; its name then stands in [objectives] and [constraints] like any other."""
+
+    function: Annotated[str, Field(max_length=200), AfterValidator(_function)] = Field(
+        description="module:function; the module lies beside the job file or is installed",
+        examples=["mymodule:greatest_jerk"],
+    )
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = Field(
+        "", description='in which it is shown; the function returns SI; "" for a ratio', examples=["m/s^3"]
+    )
+    title: Annotated[str, Field(max_length=60), AfterValidator(_one_line)] | None = Field(
+        None, description="for people; the name if left out", examples=["greatest jerk of the slider"]
+    )
+    gradient: Gradient = Field(
+        "complex step",
+        description="how derivatives are had: complex step for a function that runs on complex numbers",
+        examples=["complex step"],
+    )
+    limit: Annotated[float, Physical(TIME, "positive")] = Field(
+        LIMIT, description="what a call, of up to 256 designs, may take", examples=["30 s"]
+    )
+
+    def build(self, name: str, folders: Iterable[str]) -> OwnQuantity:
+        """Return the quantity as the problem has it."""
+        return OwnQuantity(
+            name=name,
+            function=self.function,
+            title=self.title or name.replace("_", " "),
+            unit=Unit(self.unit, per_si(self.unit)),
+            gradient=self.gradient,
+            folders=tuple(folders),
+            limit=self.limit,
+        )
+
+
+def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
+    """Refuse names that are taken, or that a table could not have as a column."""
+    for name, part in parts.items():
+        if name in QUANTITIES or name in DEVIATIONS:
+            raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
+        part.build(name, ())
+    return parts
+
+
+@dataclass(frozen=True)
+class Declared:
+    """The quantities that a job has beside those that every job has.
+
+    tables: title and kind by name, for what [objectives] and [constraints] may say. installed: those from packages.
+    """
+
+    tables: Mapping[str, tuple[str, Kind]]
+    installed: tuple[OwnQuantity, ...]
+
+
+def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
+    """Return what a job declares, and what it names of installed packages; raises JobError for code not allowed.
+
+    Lenient otherwise: what is wrong in a declaration the validation of the job says.
+    """
+    parts = data.get("quantity", {})
+    if parts and not allowed:
+        raise JobError(
+            f"quantity: functions of your own are not run here; got {shown(parts)}; leave the table out, or have them "
+            "installed as a package with entry points in slidercrank.quantities"
+        )
+    parts = parts if isinstance(parts, Mapping) else {}
+    tables: dict[str, tuple[str, Kind]] = {}
+    for name, part in parts.items():
+        unit = part.get("unit", "") if isinstance(part, Mapping) else ""
+        try:
+            kind = kind_for(unit if isinstance(unit, str) else "")
+        except InputError:
+            kind = kind_for("")
+        if name not in QUANTITIES and name not in DEVIATIONS and name.isidentifier() and not name.startswith("_"):
+            tables[name] = (name.replace("_", " "), kind)
+    asked = [name for table in ("objectives", "constraints") for name in _keys(data.get(table))]
+    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables}]
+    packages = own_quantities() if unknown else {}
+    found = tuple(installed(name) for name in unknown if name in packages)
+    for quantity in found:
+        tables[quantity.name] = (quantity.title, kind_for(quantity.unit.symbol))
+    return Declared(tables, found)
+
+
+def _keys(table: object) -> list[str]:
+    return list(table) if isinstance(table, Mapping) else []
+
+
+def folders_of(folder: Path | None) -> list[str]:
+    """Return where modules of a job may lie: beside the job file, then in the working directory."""
+    return [str(place.resolve()) for place in ((folder,) if folder else ()) + (Path(),)]
+
+
+def modules_beside(data: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Return the files beside a job file that its functions come from."""
+    parts = data.get("quantity", {})
+    functions = [part.get("function") for part in parts.values() if isinstance(part, Mapping)] if parts else []
+    files = [folder / f"{text.partition(':')[0]}.py" for text in functions if isinstance(text, str)]
+    return [file for file in dict.fromkeys(files) if file.is_file()]

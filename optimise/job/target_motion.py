@@ -1,0 +1,122 @@
+"""The table [target_motion] of a job file: the wanted slider motion, point by point or from a file beside the job."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path, PurePath
+from typing import Annotated, Any
+
+from pydantic import Field, WrapValidator, model_validator
+
+from ...model.errors import InputError, JobError
+from ...model.target_motion import Freedom, TargetMotion
+from ...objectives.motion_deviation import DEVIATIONS
+from ..units import shown
+from .loads import increasing
+from .values import Angle, Length, Part
+
+HEADER = ["crank_angle_deg", "position_mm"]
+"""First line of a file of points."""
+_LARGEST = 1_000_000  # bytes
+_MOST = 1000
+
+
+class TargetMotionPart(Part):
+    """A wanted motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
+
+    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] | None = Field(
+        None,
+        min_length=3,
+        max_length=_MOST,
+        description="crank angles of the points, increasing, spanning less than 360 deg",
+        examples=[["0 deg", "90 deg", "180 deg"]],
+    )
+    positions: tuple[Length, ...] | None = Field(
+        None,
+        min_length=3,
+        max_length=_MOST,
+        description="slider position at each point, from the crank pivot outward",
+        examples=[["240 mm", "200 mm", "160 mm"]],
+    )
+    file: Annotated[str, Field(max_length=200)] | None = Field(
+        None,
+        description=f"instead of the two: a CSV file beside the job file, with the columns {' and '.join(HEADER)}",
+        examples=["motion.csv"],
+    )
+    phase: Freedom = Field(
+        "fixed",
+        description="whether the crank may sit on its shaft at any angle: the best one counts",
+        examples=["free"],
+    )
+    shift: Freedom = Field(
+        "fixed",
+        description="whether positions may count from anywhere on the slider line: the best place counts",
+        examples=["free"],
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> TargetMotionPart:
+        if self.file is not None:
+            raise InputError(
+                f"a file is read beside a job file only, and instead of points; got file {shown(self.file)}; "
+                "give crank_angles and positions, or the file alone in a job file"
+            )
+        self.build()
+        return self
+
+    def build(self) -> TargetMotion:
+        """Return the target motion as the model has it."""
+        if self.crank_angles is None or self.positions is None:
+            raise InputError("a target motion needs crank_angles and positions, or a file; got neither; add them")
+        return TargetMotion(
+            crank_angles=self.crank_angles, positions=self.positions, phase=self.phase, shift=self.shift
+        )
+
+
+def require_target(target: TargetMotionPart | None, objectives: Part, constraints: Part) -> None:
+    """Raise JobError if a job asks for a deviation without saying from what."""
+    for table, part in (("objectives", objectives), ("constraints", constraints)):
+        for name in DEVIATIONS:
+            if target is None and getattr(part, name) is not None:
+                raise JobError(
+                    f"{table}.{name}: a motion deviation comes from a target motion; got none; add "
+                    "[target_motion] with crank_angles and positions, or with a file"
+                )
+
+
+def points_file(data: Mapping[str, Any]) -> str | None:
+    """Return the file that a job's target motion names; None if it names none."""
+    part = data.get("target_motion")
+    file = part.get("file") if isinstance(part, Mapping) else None
+    return file if isinstance(file, str) else None
+
+
+def with_points(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a job with the points of its file, found in `folder`, in place of the file. Raises JobError."""
+    file, job = points_file(data), dict(data)
+    if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
+        return job
+    if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
+        raise JobError(f"target_motion.file: must lie beside the job file; got {shown(file)}; copy it there")
+    angles, positions = _read(folder / file, f"target_motion.file: {shown(file)}")
+    rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
+    return {**job, "target_motion": {**rest, "crank_angles": angles, "positions": positions}}
+
+
+def _read(path: Path, name: str) -> tuple[list[str], list[str]]:
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise JobError(f"{name} must have at most 1 MB; is it the right file?")
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            header, *lines = [[cell.strip() for cell in line] for line in csv.reader(file, strict=True) if line] or [[]]
+    except OSError as error:
+        raise JobError(f"{name} cannot be read: {error.strerror}; put it beside the job file") from None
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise JobError(f"{name} must be a CSV file, text with commas; got: {error}; save it as CSV") from None
+    if header != HEADER:
+        raise JobError(f"{name} must begin with the line {','.join(HEADER)}; got {shown(','.join(header))}")
+    for number, line in enumerate(lines, start=2):
+        if len(line) != 2:
+            raise JobError(f"{name} must have two values a line; got {len(line)} in line {number}; correct it")
+    return [f"{angle} deg" for angle, _ in lines], [f"{position} mm" for _, position in lines]

@@ -1,0 +1,193 @@
+"""Functions of your own in jobs: the page of the documentation, equality with what is built in, broken ones."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError, JobError
+from slidercrank.objectives.own import quantity as own_module
+from slidercrank.objectives.own.designs import magnitude
+from slidercrank.objectives.own.quantity import OwnQuantity
+from slidercrank.objectives.quantity import Unit
+from slidercrank.optimise.job import files_beside, load_job, parse_job
+from slidercrank.optimise.problem import Objective
+from slidercrank.optimise.solve import solve
+
+PAGE = Path(__file__).parents[2] / "docs" / "own-quantities.md"
+
+
+def job(quantity: dict[str, Any] | None = None, **parts: Any) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "name": "Own",
+        "mechanism": {"speed": "300 rpm", "slider": {"mass": "2 kg"}},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["80 mm", "300 mm"], "offset": ["5 mm", "60 mm"]},
+        "objectives": {"mine": "minimise", "time_ratio": "maximise"},
+        "constraints": {"stroke": {"equals": "80 mm"}},
+        "optimiser": {"designs": 6, "samples": 200},
+        **parts,
+    }
+    return data if quantity is None else {**data, "quantity": {"mine": quantity}}
+
+
+def module(folder: Path, text: str) -> dict[str, Any]:
+    """Write a module with a function `judge`; return its declaration."""
+    (folder / "judges.py").write_text(text)
+    return {"function": "judges:judge", "unit": "m/s^2", "limit": "2 s"}
+
+
+ACCELERATION = """
+from slidercrank.objectives.own.designs import magnitude
+
+def judge(designs):
+    print("the screen is not the place for answers")
+    return designs.peaks(lambda angle: magnitude(designs.acceleration(angle)))
+"""
+
+
+def test_page_of_the_documentation_runs_as_it_is_written(tmp_path: Path) -> None:
+    blocks = dict(re.findall(r"```(python|toml)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL))
+    (tmp_path / "mymodule.py").write_text(blocks["python"])
+    (tmp_path / "job.toml").write_text(blocks["toml"])
+    front = solve(load_job(tmp_path / "job.toml"))
+    assert front.status == "done"
+    assert len(front) >= 4
+    assert front.designs["pin_pressure_MPa"].max() <= 10.0 * (1.0 + 1e-8)
+    assert (front.designs["status"] == "stationary").mean() > 0.5
+    np.testing.assert_allclose(front.designs["stroke_mm"], 80.0, rtol=1e-9)
+    # The pressure is a force that the table has too, over the area that the page gives.
+    area = 0.012 * 0.020
+    forces = front.designs["peak_slider_pin_force_N"]
+    np.testing.assert_allclose(front.designs["pin_pressure_MPa"], forces / area / 1e6, rtol=1e-7)
+    assert files_beside(tmp_path / "job.toml") == [tmp_path / "mymodule.py"]
+
+
+def test_function_equal_to_a_quantity_gives_its_front(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    own = solve(parse_job(job(module(tmp_path, ACCELERATION)), folder=tmp_path))
+    assert capfd.readouterr().out == ""
+    known = job(objectives={"time_ratio": "maximise", "peak_slider_acceleration": "minimise"})
+    built_in = solve(parse_job(known))
+    assert len(own) == len(built_in) == 6
+    np.testing.assert_allclose(own.designs["mine_m_s2"], own.designs["peak_slider_acceleration_m_s2"], rtol=1e-9)
+    order = np.argsort(own.designs["time_ratio"]), np.argsort(built_in.designs["time_ratio"])
+    for column in ("time_ratio", "peak_slider_acceleration_m_s2"):
+        ends = [front.designs[column].to_numpy()[rows] for front, rows in zip((own, built_in), order, strict=True)]
+        np.testing.assert_allclose(ends[0][[0, -1]], ends[1][[0, -1]], rtol=1e-6)
+    # Greedy choice among ties of rounding may deliver other designs of the same front.
+    assert own.hypervolume == pytest.approx(built_in.hypervolume, rel=2e-3)
+
+
+def test_function_in_python_needs_no_job() -> None:
+    quantity = OwnQuantity(
+        name="mine",
+        function=lambda d: d.peaks(lambda angle: magnitude(d.acceleration(angle))),
+        title="mine",
+        unit=Unit("m/s^2", 1.0),
+    )
+    base = parse_job(job(objectives={"peak_slider_acceleration": "minimise"}))
+    wanted = (Objective(quantity="mine", sense="minimise"),)
+    own = solve(type(base)(**{**vars(base), "own": (quantity,), "objectives": wanted}))
+    np.testing.assert_allclose(own.dimensions, solve(base).dimensions, rtol=1e-6)
+
+
+BROKEN = {
+    "raises": ("def judge(d):\n    x = 1\n    return d.crank / len([])[0]\n", r"TypeError: .* \(judges.py:3\)"),
+    "endless": ("def judge(d):\n    while True:\n        pass\n", r"within 2 s; it still ran \(judges.py:[23]\)"),
+    "deaf": (
+        "def judge(d):\n    while True:\n        try:\n            sum(range(99))\n        except BaseException:\n"
+        "            pass\n",
+        "within 2 s",
+    ),
+    "ends": ("import os\ndef judge(d):\n    os._exit(7)\n", "not end the process; it ended with code 7"),
+    "exits": ("import sys\ndef judge(d):\n    sys.exit(0)\n", r"SystemExit: 0 \(judges.py:3\)"),
+    "nan": ("def judge(d):\n    return d.crank * float('nan')\n", "got nan for crank"),
+    "not there": ("def other(d):\n    return d.crank\n", "function in a module beside the job file .* AttributeError"),
+    "no function": ("judge = 3\n", "be a function; got int"),
+    "syntax": ("def judge(d:\n", "SyntaxError"),
+}
+
+
+@pytest.mark.parametrize(("text", "said"), BROKEN.values(), ids=BROKEN)
+def test_a_broken_function_fails_the_run_and_nothing_else(text: str, said: str, tmp_path: Path) -> None:
+    problem = parse_job(job(module(tmp_path, text)), folder=tmp_path)
+    with pytest.raises(InputError, match=r"the quantity mine \(judges:judge\) must .*" + said):
+        solve(problem)
+
+
+def test_a_missing_module_is_named(tmp_path: Path) -> None:
+    problem = parse_job(job({"function": "nowhere:judge"}), folder=tmp_path)
+    with pytest.raises(InputError, match="module beside the job file or installed; got ModuleNotFoundError"):
+        solve(problem)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "said"),
+    [
+        ({"function": "judges"}, 'quantity.mine.function: must name a module and a function .* write it like "mymod'),
+        ({"function": "a:b", "unit": "furlong"}, 'quantity.mine.unit: "furlong" is no known unit'),
+        ({"function": "a:b", "gradient": "exact"}, 'quantity.mine.gradient: must be "complex step", "finite'),
+        ({"function": "a:b", "limit": "5 mm"}, "quantity.mine.limit: must be a time; .* which is a length"),
+        ({"unit": "m"}, "quantity.mine.function: is missing"),
+        ({"function": "a:b", "colour": 1}, "quantity.mine.colour: unknown key"),
+    ],
+)
+def test_a_wrong_declaration_is_refused(quantity: dict[str, Any], said: str) -> None:
+    with pytest.raises(JobError, match=said):
+        parse_job(job(quantity))
+
+
+def test_bounds_are_read_in_the_unit_that_is_declared() -> None:
+    declared = {"function": "a:b", "unit": "MPa"}
+    problem = parse_job(job(declared, constraints={"mine": {"max": "10 N/m^2"}}))
+    assert problem.constraints[0].upper == 10.0
+    assert problem.own[0].unit == Unit("MPa", 1e-6)
+    with pytest.raises(JobError, match=r"constraints.mine.max: must be a pressure; got \"10 mm\", which is a length"):
+        parse_job(job(declared, constraints={"mine": {"max": "10 mm"}}))
+    jerk = parse_job(job({"function": "a:b", "unit": "mm/s^3"}, constraints={"mine": {"min": "5 mm/s^3"}}))
+    assert jerk.constraints[0].lower == 0.005
+
+
+def test_names_are_those_that_are_declared_and_no_others() -> None:
+    with pytest.raises(JobError, match=r"objectives.mine: unknown key"):
+        parse_job(job())
+    with pytest.raises(JobError, match=r"objectives.mein: unknown key.* did you mean mine\?"):
+        parse_job(job({"function": "a:b"}, objectives={"mein": "minimise"}))
+    taken = {"stroke": {"function": "a:b"}}
+    with pytest.raises(JobError, match="a quantity called stroke exists already"):
+        parse_job(job(objectives={"stroke": "minimise"}, constraints={}) | {"quantity": taken})
+    with pytest.raises(JobError, match="small letters, digits and underscores"):
+        parse_job(job(objectives={"stroke": "minimise"}, constraints={}) | {"quantity": {"My": {"function": "a:b"}}})
+
+
+def test_code_of_others_can_be_refused(tmp_path: Path) -> None:
+    with pytest.raises(JobError, match="functions of your own are not run here"):
+        parse_job(job({"function": "a:b"}), allow_user_code=False)
+    assert parse_job(job(objectives={"stroke": "minimise"}, constraints={}), allow_user_code=False).own == ()
+
+
+def test_reading_a_job_runs_nothing(tmp_path: Path) -> None:
+    parse_job(job(module(tmp_path, "raise SystemExit(9)\n")), folder=tmp_path)
+
+
+def test_installed_packages_offer_quantities_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    offered = OwnQuantity(name="mine", function=lambda d: d.crank, title="the crank", unit=Unit("mm", 1e3))
+    entry = importlib.metadata.EntryPoint("mine", "ourcompany:MINE", own_module.GROUP)
+    monkeypatch.setattr(importlib.metadata, "entry_points", lambda group: [entry] if group == own_module.GROUP else [])
+    monkeypatch.setattr(importlib.metadata.EntryPoint, "load", lambda _: offered)
+    problem = parse_job(job(constraints={"mine": {"min": "30 mm"}}), allow_user_code=False)
+    assert problem.own == (offered,)
+    assert problem.constraints[0].lower == 0.03
+    monkeypatch.setattr(importlib.metadata.EntryPoint, "load", lambda _: len)
+    with pytest.raises(InputError, match="must be an OwnQuantity of that name; got <built-in"):
+        parse_job(job())
+
+
+def test_a_method_that_needs_gradients_refuses_a_quantity_without() -> None:
+    problem = parse_job(job({"function": "a:b", "gradient": "none"}))
+    with pytest.raises(InputError, match=r"auto needs the gradient .* got mine .* use one of nsga2, .* or set"):
+        solve(problem)

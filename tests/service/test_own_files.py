@@ -1,0 +1,59 @@
+"""Jobs with files beside them: functions of your own, points of a target motion."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.service import fronts
+from tests.service.conftest import Command
+
+OWN = """
+[quantity.mine]
+function = "judges:judge"
+unit = "m/s^3"
+limit = "1 s"
+[target_motion]
+file = "points/motion.csv"
+shift = "free"
+"""
+POINTS = "crank_angle_deg,position_mm\n0,400\n90,300\n180,120\n270,300\n"
+
+
+def job_file(folder: Path, judge: str) -> Path:
+    """Return a job that minimises a function of its own, with the files that it needs."""
+    job = fronts.job_file(folder)
+    text = job.read_text().replace('transmission_angle = "maximise"', 'mine = "minimise"')
+    job.write_text(text + OWN)
+    (folder / "judges.py").write_text(judge)
+    (folder / "points").mkdir()
+    (folder / "points" / "motion.csv").write_text(POINTS)
+    return job
+
+
+def test_a_run_keeps_the_files_that_its_job_needs(tmp_path: Path, runs: Path, command: Command) -> None:
+    job = job_file(tmp_path, "def judge(designs):\n    return designs.rod / designs.crank\n")
+    done = command("optimise", job, "--no-figures", "--json")
+    assert done.exit_code == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert {"mine_m_s3", "motion_deviation_mm", "motion_deviation_rms_mm", "motion_shift_mm"} <= set(
+        record["designs"][0]
+    )
+    kept = Path(record["run"])
+    for file in ("judges.py", "points/motion.csv"):
+        assert (kept / file).read_bytes() == (tmp_path / file).read_bytes()
+    shown = command("front", "latest", "--columns", "mine,motion_deviation")
+    assert shown.exit_code == 0, shown.stderr
+    assert command("check", kept / "job.toml").exit_code == 0
+
+
+def test_an_endless_function_ends_the_run_with_exit_code_2_and_keeps_nothing(
+    tmp_path: Path, runs: Path, command: Command
+) -> None:
+    job = job_file(tmp_path, "def judge(designs):\n    while True:\n        pass\n")
+    assert command("check", job).exit_code == 0
+    done = command("optimise", job, "--no-figures")
+    assert done.exit_code == 2
+    assert "slidercrank: the quantity mine (judges:judge) must return within 1 s" in done.stderr
+    assert "judges.py:" in done.stderr
+    assert list(runs.iterdir()) == []
