@@ -13,7 +13,8 @@ mass; turning the other way changes the sign of D alone. Without pins it says th
 arctan(mu).
 
 |D| is greatest, and |along| least, where the crank is normal to the slider line and points away from it,
-sin(theta) = -sgn(e); there l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is therefore exactly
+sin(theta) = -sgn(e); there l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is
+therefore exactly
 
     least transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).
 """

@@ -7,6 +7,7 @@ import json
 import math
 from decimal import Decimal
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -221,7 +222,12 @@ def test_figures_of_one_case_are_drawn(command: Command, tmp_path: Path) -> None
 def test_case_2_has_the_figure_of_its_loose_joint_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The simulation takes long and has its own tests; here only what is simulated counts."""
     drawn: list[tuple[object, ...]] = []
-    monkeypatch.setattr(figures, "draw_clearance_speeds", lambda *given: drawn.append(given) or given[-1])
+
+    def draw(*given: Any) -> Any:
+        drawn.append(given)
+        return given[-1]
+
+    monkeypatch.setattr(figures, "draw_clearance_speeds", draw)
     names = [file.name for file in draw_cases([2], tmp_path)]
     assert names == ["case_2_motion.png", "case_2_sensitivity.png", "case_2_clearance.png"]
     assert drawn == [(case_2.LOOSE, case_2.SIEVE, tmp_path / "case_2_clearance.png")]
