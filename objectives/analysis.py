@@ -12,13 +12,15 @@ from ..model.peaks import find_peaks
 from ..model.signals import Signal
 from .quantity import Array
 from .registry import QUANTITIES
+from .varying_column import varying_column
 
 
 def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
-    """Return a table with every quantity of designs (n, 3): crank, rod, offset, m, each turning fully.
+    """Return a table with every quantity of designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
-    Columns carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction
-    of rotation. Raises `AssemblyError` for a linkage that does not turn fully.
+    The values of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
+    carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
+    rotation. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
@@ -30,6 +32,7 @@ def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
         "crank_mm": 1e3 * dimensions[:, 0],
         "rod_mm": 1e3 * dimensions[:, 1],
         "offset_mm": 1e3 * dimensions[:, 2],
+        **_varying(mechanism, dimensions),
         "stroke_mm": 1e3 * linkage.stroke,
         "time_ratio": linkage.time_ratio,
         "slow_stroke": linkage.slow_stroke(direction=mechanism.speed or 1.0),
@@ -45,3 +48,11 @@ def analyse(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
     return pd.DataFrame(columns)
+
+
+def _varying(mechanism: Mechanism, designs: Array) -> dict[str, Array]:
+    columns = {}
+    for place, item in enumerate(mechanism.varying):
+        key, unit = varying_column(item)
+        columns[key] = unit.factor * designs[:, 3 + place]
+    return columns

@@ -9,7 +9,7 @@ import numpy as np
 from ..model.errors import InputError
 from ..objectives.registry import QUANTITIES
 from .deliver import deliver, empty, planned
-from .elimination import UNKNOWNS, Sheet, sheets
+from .elimination import Sheet, sheets
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .infeasibility import diagnose
@@ -62,7 +62,7 @@ def _best(problem: Problem) -> float | None:
     if front is None:
         return None
     quantity = QUANTITIES[problem.objectives[0].quantity]
-    return float(quantity.evaluate(problem.mechanism, front.dimensions[:1]).values[0])
+    return float(quantity.evaluate(front.part(0).mechanism, front.dimensions[:1]).values[0])
 
 
 def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
@@ -75,6 +75,7 @@ def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> N
 
 
 def _coordinates(sheet: Sheet, dimensions: Array) -> Array:
-    columns = [np.abs(dimensions[:, UNKNOWNS.index(name)]) for name in sheet.free]
+    sizes = np.concatenate([np.abs(dimensions[:, :3]), dimensions[:, 3:]], axis=1)
+    columns = [sizes[:, sheet.names.index(name)] for name in sheet.free]
     u = np.stack(columns, axis=1) if columns else np.zeros((len(dimensions), 0))
     return np.clip((u - sheet.lower) / np.where(sheet.upper > sheet.lower, sheet.upper - sheet.lower, 1.0), 0.0, 1.0)
