@@ -23,6 +23,7 @@ from .arithmetic import STEP, inlined, kernel
 from .batches import in_chunks, turning
 from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
+from .numbers import numbers_of
 from .parameters import DESIGN, derive, design_at
 from .rubbing import always_drives, joint_forces
 from .segments import crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
@@ -44,7 +45,7 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Averages:
-    """Mean and RMS value of a curve over crank angle, of n designs: (n,), with gradients (n, 3) or None.
+    """Mean and RMS value of a curve over crank angle, of n designs: (n,), with gradients (n, 3 + k) or None.
 
     Where friction locks a design the mean is NaN and the RMS value infinite.
     """
@@ -84,6 +85,7 @@ def _rough(values: Any, tail: Any, allowed: Any) -> bool:
 def _average(
     kind: Any,
     raw: Any,
+    variables: Any,
     designs: Any,
     loads: Any,
     watch: Any,
@@ -100,7 +102,7 @@ def _average(
     cuts = work_space(loads.at.shape[0])
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     real, block = np.empty((raw.shape[0], 1)), np.empty((rows, 1))
-    nv = 3 if wanted else 0
+    nv = variables.shape[0] if wanted else 0
     imaginary = np.empty((raw.shape[0], 1), np.complex128)
     stepped = np.empty((nv, rows, 1), np.complex128)
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
@@ -108,13 +110,13 @@ def _average(
     stack = np.empty((_DEEPEST + 2, 3))
     for n in range(designs.shape[0]):
         real[:, 0] = raw
-        for v in range(3):
-            real[v, 0] = designs[n, v]
+        for v in range(variables.shape[0]):
+            real[variables[v], 0] = designs[n, v]
         derive(real, loads.kind, loads.datum, block)
         for v in range(nv):
             for i in range(raw.shape[0]):
                 imaginary[i, 0] = real[i, 0]
-            imaginary[v, 0] += complex(0.0, STEP)
+            imaginary[variables[v], 0] += complex(0.0, STEP)
             derive(imaginary, loads.kind, loads.datum, stepped[v])
             mean_slope[n, v] = rms_slope[n, v] = 0.0
         d = design_at(block, 0)
@@ -201,20 +203,23 @@ def _rule() -> tuple[Array, Array, Array]:
 
 
 def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS drive torque, N m, for designs (n, 3): crank, rod, offset, m, each turning fully."""
+    """Return mean and RMS drive torque, N m, for designs (n, 3 + k), as `average` does."""
     return average(mechanism, Signal.TORQUE, designs, gradients=gradients)
 
 
 def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS value of a signal for designs (n, 3): crank, rod, offset, m, each turning fully.
+    """Return mean and RMS value of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
+    The k columns more are the values of the machine's varying numbers.
     The torque counts with its sign, any other signal by its size.
     """
     designs = turning(designs)
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
-    slopes = np.empty((2, n if gradients else 0, 3))
     raw, loads = inputs_of(mechanism, kind)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    columns, designs = numbers.columns, numbers.values
+    slopes = np.empty((2, n if gradients else 0, len(columns)))
     watch = watch_of(mechanism, kind)
     rubbing = rubs(mechanism) if kind.needs_forces else None
     rule = _rule()
@@ -224,6 +229,7 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
         _average(
             int(kind),
             raw,
+            columns,
             designs[begin:end],
             loads,
             watch,
@@ -237,4 +243,6 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
         )
 
     in_chunks(n, work)
-    return Averages(mean, rms, slopes[0] if gradients else None, slopes[1] if gradients else None)
+    if not gradients:
+        return Averages(mean, rms, None, None)
+    return Averages(mean, rms, numbers.chain(slopes[0]), numbers.chain(slopes[1]))

@@ -15,7 +15,7 @@ from .errors import AssemblyError
 
 
 def turning(designs: ArrayLike) -> NDArray[np.float64]:
-    """Return designs (n, 3): crank, rod, offset, m, as a contiguous array; what follows needs every one to turn fully.
+    """Return designs (n, 3 + k), crank, rod, offset, m, and more, as a contiguous array; every one must turn fully.
 
     Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.
     """
@@ -23,7 +23,7 @@ def turning(designs: ArrayLike) -> NDArray[np.float64]:
     turns = (designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (designs[:, 0] > 0.0)
     if not turns.all():
         row = int(np.flatnonzero(~turns)[0])
-        crank, rod, offset = 1e3 * designs[row]
+        crank, rod, offset = 1e3 * designs[row, :3]
         raise AssemblyError(
             "rod must exceed crank + |offset|, and the crank zero, for full rotation; "
             f"got rod {rod:g} mm, crank {crank:g} mm, offset {offset:g} mm in design {row}; leave such designs out"

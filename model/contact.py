@@ -24,7 +24,7 @@ _TURN = 2.0 * math.pi
 
 def rubs(mechanism: Mechanism) -> Any:
     """Return the flag that selects kernels with friction: True, or None, for which friction is not even compiled."""
-    return True if mechanism.friction.acts else None
+    return True if mechanism.fullest.friction.acts else None
 
 
 @inlined

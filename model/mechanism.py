@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from .clearance.joint import Clearance
@@ -12,6 +13,7 @@ from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads import During, Load, require_word
 from .transient.drive import Drive
+from .varying import Varying, put, require_possible
 
 Branch = Literal["open", "crossed"]
 
@@ -94,6 +96,8 @@ class Mechanism:
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
+    varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
+    offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
     """
 
     speed: float = 0.0
@@ -109,6 +113,7 @@ class Mechanism:
     branch: Branch = "open"
     drive: Drive | None = None
     clearance: Clearance | None = None
+    varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("speed", "acceleration"):
@@ -120,3 +125,20 @@ class Mechanism:
             raise InputError(f"gravity must be finite; got {self.gravity}")
         if self.branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {self.branch!r}")
+        if self.varying:
+            require_possible(self)
+
+    @property
+    def nominal(self) -> Mechanism:
+        """The machine as it is given, with nothing varying."""
+        return replace(self, varying=()) if self.varying else self
+
+    @property
+    def fullest(self) -> Mechanism:
+        """The machine with every varying number at its end of greatest size: it has all that some design has."""
+        return self.at([item.fullest for item in self.varying]) if self.varying else self
+
+    def at(self, values: Sequence[float]) -> Mechanism:
+        """Return the machine with these values, SI, of its varying numbers (k,)."""
+        machine: Mechanism = put(self.nominal, self.varying, values)
+        return machine

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import analytic, inlined, magnitude, root
+from .errors import InputError
 from .geometry import inner_dead_centre, outer_dead_centre
 from .links import Bar, Link
 from .loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
@@ -129,7 +130,13 @@ _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.in
 
 
 def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
-    """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten."""
+    """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
+
+    Raises `InputError` for one with varying numbers: it has none before a design says which.
+    """
+    if mechanism.varying:
+        names = ", ".join(item.name for item in mechanism.varying)
+        raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
     raw = np.zeros(_END + LOAD_SLOTS * len(mechanism.loads))
     raw[Raw.BRANCH] = 1.0 if mechanism.branch == "open" else -1.0
     raw[Raw.SPEED] = mechanism.speed

@@ -19,6 +19,7 @@ from .arithmetic import STEP, inlined, kernel
 from .batches import in_chunks, turning
 from .contact import cut_contacts, rubs, shift_of, sides_of
 from .mechanism import Mechanism
+from .numbers import numbers_of
 from .parameters import DESIGN, derive, design_at
 from .rubbing import always_drives
 from .segments import (
@@ -332,7 +333,9 @@ def find_peaks(
     kept: int = KEPT,
     angles: int = ANGLES,
 ) -> Peaks:
-    """Return the local peaks of a signal for designs (n, 3): crank, rod, offset, m, each turning fully.
+    """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
+
+    The k columns more are the values of the machine's varying numbers.
 
     during: for torque, "outward stroke" or "inward stroke" restricts the search; the position error counts over the
     window of the mechanism's tolerances. kept: peaks returned a design. angles: samples a turn.
@@ -340,17 +343,18 @@ def find_peaks(
     designs = turning(designs)
     n = len(designs)
     values, where = np.empty((n, kept)), np.empty((n, kept))
-    slopes = np.empty((n if gradients else 0, kept, 3))
     raw, loads = inputs_of(mechanism, kind)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    columns, designs = numbers.columns, numbers.values
+    slopes = np.empty((n if gradients else 0, kept, len(columns)))
     watch = watch_of(mechanism, kind, during=during)
     rubbing = rubs(mechanism) if kind.needs_forces else None
-    variables = np.arange(3)
 
     def work(begin: int, end: int) -> None:
         _find(
             int(kind),
             raw,
-            variables,
+            columns,
             designs[begin:end],
             loads,
             watch,
@@ -362,4 +366,4 @@ def find_peaks(
         )
 
     in_chunks(n, work)
-    return Peaks(values, where, slopes if gradients else None)
+    return Peaks(values, where, numbers.chain(slopes) if gradients else None)

@@ -23,6 +23,7 @@ from .loads import AngleTable, PositionTable
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .mechanism import Clearances, Mechanism
+from .numbers import numbers_of
 from .parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .segments import crowding
 from .signals import Signal, design_motion, signal
@@ -41,7 +42,7 @@ _FLAT = 1e-13
 
 @dataclass(frozen=True)
 class Screened:
-    """Greatest value over the cycle: values (n,), angles (n,) in rad, gradients (n, 3) or None."""
+    """Greatest value over the cycle: values (n,), angles (n,) in rad, gradients (n, 3 + k) or None."""
 
     values: Array
     angles: Array
@@ -53,6 +54,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
     watch = watch_of(mechanism, kind, during=during)
+    mechanism = mechanism.fullest
     whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `locate` samples the squares with the tolerances alone
@@ -191,6 +193,7 @@ def _refine(
 def _screen(
     kinds: Any,
     raw: Any,
+    columns: Any,
     designs: Any,
     load_kind: Any,
     load_datum: Any,
@@ -218,9 +221,9 @@ def _screen(
     value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
     for begin in range(0, n, LANES):
-        for i in range(3):
+        for i in range(columns.shape[0]):
             for j in range(LANES):
-                lanes[i, j] = designs[min(begin + j, n - 1), i]
+                lanes[columns[i], j] = designs[min(begin + j, n - 1), i]
         derive(lanes, load_kind, load_datum, block)
         if crowd:
             for j in range(LANES):
@@ -250,16 +253,16 @@ def _screen(
                 angle = math.atan2(found[0, q, j], found[1, q, j])
                 where[q, begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
         if gradients.shape[0]:
-            for v in range(3):
+            for v in range(columns.shape[0]):
                 for j in range(LANES):
-                    stepped[v, j] += complex(0.0, STEP)
+                    stepped[columns[v], j] += complex(0.0, STEP)
                 derive(stepped, load_kind, load_datum, complex_block)
                 for q in range(signals):
                     _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
                     for j in range(last):
                         gradients[q, begin + j, v] = slope[j]
                 for j in range(LANES):
-                    stepped[v, j] = lanes[v, j]
+                    stepped[columns[v], j] = lanes[columns[v], j]
 
 
 def screen(
@@ -271,7 +274,9 @@ def screen(
     angles: int = ANGLES,
     crowd: bool = True,
 ) -> tuple[Screened, ...]:
-    """Return the greatest values of torque or position errors for designs (n, 3): crank, rod, offset, m.
+    """Return the greatest values of torque or position errors for designs (n, 3 + k): crank, rod, offset, m.
+
+    The k columns more are the values of the machine's varying numbers.
 
     kinds: signals that `screens` accepts; evaluated together they share the motion. angles: samples a turn, a multiple
     of 4. crowd: concentrate them where the linkage comes close to locking.
@@ -279,8 +284,10 @@ def screen(
     designs = turning(designs)
     n, signals = len(designs), len(kinds)
     values, where = np.empty((signals, n)), np.empty((signals, n))
-    slopes = np.empty((signals if gradients else 0, n, 3))
-    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    columns, designs = numbers.columns, numbers.values
+    slopes = np.empty((signals if gradients else 0, n, len(columns)))
     codes = np.array([int(kind) for kind in kinds])
 
     def work(begin: int, end: int) -> None:
@@ -288,6 +295,7 @@ def screen(
         _screen(
             codes,
             raw,
+            columns,
             designs[part],
             loads.kind,
             loads.datum,
@@ -299,4 +307,4 @@ def screen(
         )
 
     in_chunks(n, work, size=16 * LANES)
-    return tuple(Screened(values[q], where[q], slopes[q] if gradients else None) for q in range(signals))
+    return tuple(Screened(values[q], where[q], numbers.chain(slopes[q]) if gradients else None) for q in range(signals))

@@ -29,6 +29,9 @@ from numpy.typing import NDArray
 from .arithmetic import STEP
 from .friction import Friction
 from .geometry import least_transmission_angle
+from .mechanism import Mechanism
+from .numbers import number_of, require_width
+from .parameters import Raw
 
 Array = NDArray[np.float64]
 
@@ -39,26 +42,63 @@ def locking_margin(friction: Friction, designs: Array, *, gradients: bool = Fals
     It does not depend on loads and masses: zero or less means that the linkage locks or may jam somewhere (see module).
     -inf where the friction circles' sum is the rod or more.
     """
+    return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
+
+
+def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
+    """Return the self-locking margin like `locking_margin`, of designs (n, 3 + k) of a machine, which may vary."""
     designs = np.asarray(designs, dtype=np.float64)
+    require_width(mechanism, designs)
+    friction = mechanism.friction
+    guide, circles = friction.guide, friction.crank_pin.circle + friction.slider_pin.circle
+    if not mechanism.varying:
+        return _margin(designs, guide, circles, gradients)[:2]
+    given = (
+        (Raw.GUIDE_FRICTION, guide),
+        (Raw.CRANK_PIN_RADIUS, friction.crank_pin.radius),
+        (Raw.CRANK_PIN_FRICTION, friction.crank_pin.coefficient),
+        (Raw.SLIDER_PIN_RADIUS, friction.slider_pin.radius),
+        (Raw.SLIDER_PIN_FRICTION, friction.slider_pin.coefficient),
+    )
+    (mu, mu_slope), *pins = (number_of(mechanism, slot, designs, otherwise=value) for slot, value in given)
+    (a, a_slope), (b, b_slope), (c, c_slope), (d, d_slope) = pins
+    sums = a * b + c * d
+    slopes = a[:, None] * b_slope + b[:, None] * a_slope + c[:, None] * d_slope + d[:, None] * c_slope
+    values, found, rates = _margin(designs[:, :3], mu, sums, gradients)
+    if found is None or rates is None:
+        return values, None
+    found = np.pad(found, ((0, 0), (0, len(mechanism.varying))))
+    return values, found + rates[:, :1] * mu_slope + rates[:, 1:] * slopes
+
+
+def _margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[Array, Array | None, Array | None]:
+    """Return margin (n,), its gradients (n, 3) and its derivatives by guide and circles (n, 2)."""
     r, l, a = designs[:, 0], designs[:, 1], np.abs(designs[:, 2])
-    circles = friction.crank_pin.circle + friction.slider_pin.circle
     turns = circles < l
     safe = np.where(turns, l, 2.0 * circles + 1.0)
 
-    def margin(r: Any, l: Any, l_safe: Any, a: Any) -> Any:
-        return least_transmission_angle(r, l, a) - np.arctan(friction.guide) - np.arcsin(circles / l_safe)
+    def margin(r: Any, l: Any, l_safe: Any, a: Any, guide: Any, circles: Any) -> Any:
+        return least_transmission_angle(r, l, a) - np.arctan(guide) - np.arcsin(circles / l_safe)
 
-    values = np.where(turns, margin(r, l, safe, a), -np.inf)
+    values = np.where(turns, margin(r, l, safe, a, guide, circles), -np.inf)
     if not gradients:
-        return values, None
+        return values, None, None
     step = STEP * 1j
     sign = np.where(designs[:, 2] < 0.0, -1.0, 1.0)
     slopes = np.stack(
         [
-            margin(r + step, l, safe, a).imag,
-            margin(r, l + step, safe + step, a).imag,
-            sign * margin(r, l, safe, a + step).imag,
+            margin(r + step, l, safe, a, guide, circles).imag,
+            margin(r, l + step, safe + step, a, guide, circles).imag,
+            sign * margin(r, l, safe, a + step, guide, circles).imag,
         ],
         axis=1,
     )
-    return values, np.where(turns[:, None], slopes / STEP, 0.0)
+    rates = np.stack(
+        [
+            margin(r, l, safe, a, guide + step, circles).imag,
+            margin(r, l, safe, a, guide, circles + step).imag,
+        ],
+        axis=1,
+    )
+    known = turns[:, None]
+    return values, np.where(known, slopes / STEP, 0.0), np.where(known, rates / STEP, 0.0)

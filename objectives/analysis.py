@@ -15,12 +15,14 @@ from ..model.signals import Signal
 from .motion_deviation import MotionDeviation
 from .quantity import Array, Quantity
 from .registry import QUANTITIES
+from .varying_column import varying_column
 
 
 def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> pd.DataFrame:
-    """Return a table with every quantity of designs (n, 3): crank, rod, offset, m, each turning fully.
+    """Return a table with every quantity of designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
-    own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. Columns
+    own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. The values
+    of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
     rotation. Raises `AssemblyError` for a linkage that does not turn fully.
     """
@@ -34,6 +36,7 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         "crank_mm": 1e3 * dimensions[:, 0],
         "rod_mm": 1e3 * dimensions[:, 1],
         "offset_mm": 1e3 * dimensions[:, 2],
+        **_varying(mechanism, dimensions),
         "stroke_mm": 1e3 * linkage.stroke,
         "time_ratio": linkage.time_ratio,
         "slow_stroke": linkage.slow_stroke(direction=mechanism.speed or 1.0),
@@ -52,3 +55,11 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)
     return pd.DataFrame(columns)
+
+
+def _varying(mechanism: Mechanism, designs: Array) -> dict[str, Array]:
+    columns = {}
+    for place, item in enumerate(mechanism.varying):
+        key, unit = varying_column(item)
+        columns[key] = unit.factor * designs[:, 3 + place]
+    return columns

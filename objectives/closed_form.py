@@ -8,6 +8,7 @@ import numpy as np
 
 from ..model.closed_forms import ClosedForm, evaluate_closed_form
 from ..model.mechanism import Mechanism
+from ..model.numbers import require_width
 from .quantity import Array, Pieces, Unit, Values
 
 
@@ -22,10 +23,10 @@ class ClosedFormQuantity:
     forms: tuple[ClosedForm, ...]
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3); see `Quantity`."""
-        values, slopes = evaluate_closed_form(self.forms[0], dimensions, gradients=gradients)
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        values, slopes = _evaluate(self.forms[0], mechanism, dimensions, gradients)
         for form in self.forms[1:]:
-            others, other_slopes = evaluate_closed_form(form, dimensions, gradients=gradients)
+            others, other_slopes = _evaluate(form, mechanism, dimensions, gradients)
             if slopes is not None and other_slopes is not None:
                 slopes = np.where((others > values)[:, None], other_slopes, slopes)
             values = np.maximum(values, others)
@@ -33,7 +34,17 @@ class ClosedFormQuantity:
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of its forms; see `Quantity`."""
-        parts = [evaluate_closed_form(form, dimensions, gradients=True) for form in self.forms]
+        parts = [_evaluate(form, mechanism, dimensions, True) for form in self.forms]
         values = np.stack([values for values, _ in parts], axis=1)
         labels = np.broadcast_to(np.arange(len(parts), dtype=np.float64), values.shape)
         return Pieces(values, np.stack([slopes for _, slopes in parts if slopes is not None], axis=1), labels)
+
+
+def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+    """Return values (n,) and gradients (n, 3 + k): a closed form follows from the three dimensions alone."""
+    designs = np.asarray(designs, dtype=np.float64)
+    require_width(mechanism, designs)
+    values, slopes = evaluate_closed_form(form, designs[:, :3], gradients=gradients)
+    if slopes is None or not mechanism.varying:
+        return values, slopes
+    return values, np.pad(slopes, ((0, 0), (0, len(mechanism.varying))))

@@ -9,6 +9,8 @@ import numpy as np
 
 from ..model.averages import average
 from ..model.mechanism import Mechanism
+from ..model.numbers import number_of
+from ..model.parameters import Raw
 from ..model.signals import Signal
 from .quantity import Array, Pieces, Unit, Values
 
@@ -29,13 +31,19 @@ class CycleAverage:
     times_speed: bool = False
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3); see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         found = average(mechanism, self.signal, dimensions, gradients=gradients)
         values, slopes = (
             (found.mean, found.mean_gradients) if self.which == "mean" else (found.rms, found.rms_gradients)
         )
         if self.times_speed:
-            values, slopes = mechanism.speed * values, None if slopes is None else mechanism.speed * slopes
+            if not mechanism.varying:
+                speed = mechanism.speed
+                return Values(speed * values, None if slopes is None else speed * slopes)
+            speeds, rates = number_of(mechanism, Raw.SPEED, dimensions, otherwise=mechanism.speed)
+            if slopes is not None:
+                slopes = speeds[:, None] * slopes + rates * values[:, None]
+            values = speeds * values
         return Values(values, slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:

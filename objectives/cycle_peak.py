@@ -27,7 +27,7 @@ class CyclePeak:
     during: str = "cycle"
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3); see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
         return Values(found.values[:, 0], None if found.gradients is None else found.gradients[:, 0])
 
@@ -41,7 +41,7 @@ class CyclePeak:
 def screen_peaks(
     quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
 ) -> tuple[Values, ...]:
-    """Return several quantities for designs (n, 3) by vectorised screening: exact but for peaks that sit on a kink."""
+    """Return several quantities for designs (n, 3 + k) by vectorised screening: exact but for peaks on a kink."""
     quick = [quantity for quantity in quantities if screens(mechanism, quantity.signal, during=quantity.during)]
     signals = tuple(quantity.signal for quantity in quick)
     screened = screen(mechanism, signals, dimensions, gradients=gradients) if quick else ()

@@ -37,7 +37,8 @@ METRE_PER_SECOND_SQUARED = Unit("m/s^2", 1.0)
 class Values:
     """A quantity of n designs.
 
-    values: (n,), SI. gradients: (n, 3), by crank, rod and offset; None unless asked for.
+    values: (n,), SI. gradients: (n, 3 + k), by crank, rod, offset and the machine's varying
+    numbers; None unless asked for.
     """
 
     values: Array
@@ -48,7 +49,7 @@ class Values:
 class Pieces:
     """A quantity as the greatest of smooth pieces: the local peaks of a curve over the cycle, highest first.
 
-    values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3).
+    values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
     labels: (n, k), what tells the pieces of neighbouring designs apart: the crank angle of a peak, rad, or a number.
     A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
     """
@@ -85,7 +86,10 @@ class Quantity(Protocol):
         ...
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3): crank, rod, offset, m, each turning fully."""
+        """Return the quantity for designs (n, 3 + k), each turning fully.
+
+        Columns: crank, rod, offset, m, then the value of each of the machine's varying numbers, SI.
+        """
         ...
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:

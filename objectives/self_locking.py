@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.mechanism import Mechanism
-from ..model.self_locking import locking_margin
+from ..model.self_locking import varied_margin
 from .quantity import DEGREE, Array, Pieces, Unit, Values
 
 
@@ -21,13 +21,13 @@ class ClosedFormMargin:
     unit: Unit = DEGREE
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3); see `Quantity`."""
-        values, slopes = locking_margin(mechanism.friction, dimensions, gradients=gradients)
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        values, slopes = varied_margin(mechanism, dimensions, gradients=gradients)
         return Values(values, slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as its only piece; see `Quantity`."""
-        values, slopes = locking_margin(mechanism.friction, dimensions, gradients=True)
+        values, slopes = varied_margin(mechanism, dimensions, gradients=True)
         assert slopes is not None
         return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
 

@@ -10,8 +10,8 @@ from .evaluation import Evaluator
 from .hypervolume import choose, nondominated
 from .pile import Pile
 from .problem import Problem
-from .sampling import around, first_samples, generator
-from .search import FIRST, SAMPLES, Archive
+from .sampling import around, first_samples, generator, stacked
+from .search import FIRST, SAMPLES, Archive, share
 from .stationarity import Array
 
 _WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
@@ -48,7 +48,7 @@ def challengers(
 def by_sheet(
     evaluators: list[Evaluator], sheet: NDArray[np.int64], u: Array, rows: NDArray[np.int64]
 ) -> list[tuple[int, Array]]:
-    """Return the points u (n, 3) of some rows by the sheet (n,) that they lie on."""
+    """Return the points u (n, k) of some rows by the sheet (n,) that they lie on."""
     return [
         (index, u[rows[sheet[rows] == index]][:, : evaluator.dimension])
         for index, evaluator in enumerate(evaluators)
@@ -64,10 +64,10 @@ def _sample(
     random = generator(seed, 2000, attempt)
     for index, evaluator in enumerate(evaluators):
         if evaluator.dimension:
-            count = -(-(problem.settings.samples or FIRST) // k)
+            count = share(problem.settings.samples or FIRST, evaluators)
             archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
             count = -(-(problem.settings.samples or SAMPLES) // k)
-            parents = pile.u[best][:, : evaluator.dimension]
+            parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
             archive.screen(index, evaluator, around(parents, pile.values[best], count, _WIDTH, random))
 
 

@@ -17,7 +17,7 @@ from .gradients import without_gradient
 from .hypervolume import choose, hypervolume, scaling
 from .pile import STATIONARY, Pile
 from .polish import polish, project
-from .problem import Problem
+from .problem import Problem, choice_field
 from .search import Archive, Run
 from .stationarity import Array, multipliers
 
@@ -148,8 +148,8 @@ def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Ru
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
-    table = analyse(problem.mechanism, dimensions, own=problem.own)
-    _slacks(table, problem, dimensions)
+    variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[rows]], dtype=np.int64)
+    table = _table(problem, variants, dimensions)
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
     evaluations = sum(evaluator.evaluations for evaluator in evaluators)
@@ -172,7 +172,23 @@ def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Ru
         seconds=run.seconds(),
         seed=problem.settings.seed,
         versions=versions(),
+        variants=tuple(variants.tolist()) if problem.variants else (),
     )
+
+
+def _table(problem: Problem, variants: NDArray[np.int64], dimensions: Array) -> pd.DataFrame:
+    """Return all quantities of designs and what was chosen for them, with the slacks of their constraints."""
+    parts = []
+    for variant in np.unique(variants).tolist():
+        rows = np.flatnonzero(variants == variant)
+        part = problem.part(variant)
+        table = analyse(part.mechanism, dimensions[rows], own=problem.own)
+        _slacks(table, part, dimensions[rows])
+        for place, name in enumerate(problem.choices):
+            label = problem.variants[variant].labels[place]
+            table.insert(list(table.columns).index("stroke_mm"), choice_field(name), label)
+        parts.append(table.set_index(rows))
+    return parts[0] if len(parts) == 1 else pd.concat(parts).sort_index()
 
 
 def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:

@@ -2,7 +2,7 @@
 
 Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
 free unknowns is chosen from which the rules, applied one after the other, give the rest. Requirements that no rule
-covers stay with the solver as equality constraints.
+covers stay with the solver as equality constraints. Numbers that vary beside the three are free: no rule computes them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ class Rule:
 class Sheet:
     """One sign of the offset with the free unknowns and the steps that give the others.
 
-    sign: of the offset. free: names. lower, upper: of the free unknowns, m. bounds: of all three unknowns, m.
+    sign: of the offset. free: names; crank, rod and offset come before the numbers that vary beside them. lower, upper:
+    of the free unknowns, SI. bounds: of all unknowns, SI. names: of all unknowns, in the order of a design's numbers.
+    variant: which combination of the problem's choices, see `Problem.part`.
     eliminated: requirements that hold exactly wherever the roots taken are not spurious, which `evaluation` checks.
     remaining: constraints left to the solver.
     """
@@ -53,11 +55,13 @@ class Sheet:
     steps: tuple[Rule, ...]
     eliminated: tuple[str, ...]
     remaining: tuple[Constraint, ...]
+    names: tuple[str, ...] = UNKNOWNS
+    variant: int = 0
 
     def dimensions(self, u: Any) -> Any:
-        """Return crank, rod, offset (n, 3), m, for points (n, k) of the unit box; NaN where no linkage fulfils it.
+        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage fulfils it.
 
-        Complex points give complex dimensions.
+        Columns: crank, rod, offset, m, and the numbers that vary beside them, SI. Complex points give complex designs.
         """
         u = np.atleast_2d(u)
         known: dict[str, Any] = {
@@ -71,33 +75,43 @@ class Sheet:
         offset = self.sign * known["offset"]
         if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
             offset = np.where(offset == 0.0, offset - ZERO, offset)
-        return np.stack([known["crank"], known["rod"], offset], axis=1)
+        return np.stack([known["crank"], known["rod"], offset, *(known[name] for name in self.names[3:])], axis=1)
 
     def jacobian(self, u: Array) -> Array:
-        """Return the derivatives (n, 3, k) of the dimensions by the unit-box coordinates, by complex step."""
+        """Return the derivatives (n, 3 + v, k) of the designs by the unit-box coordinates, by complex step."""
         columns = []
         for column in range(u.shape[1]):
             stepped = u.astype(np.complex128)
             stepped[:, column] += 1j * STEP
             columns.append(self.dimensions(stepped).imag / STEP)
-        return np.stack(columns, axis=2) if columns else np.zeros((len(u), 3, 0))
+        return np.stack(columns, axis=2) if columns else np.zeros((len(u), len(self.names), 0))
 
 
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
-    """Return the sheets of a problem: one for each sign that its offset may have.
+    """Return the sheets of a problem: one for each sign that its offset may have, in every variant of its choices.
 
     eliminate: whether equality constraints are eliminated (fixed dimensions always are).
     """
+    parts = problem.parts()
+    return tuple(
+        _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
+        for variant, part in enumerate(parts)
+        for sign, offset in _signs(part)
+    )
+
+
+def _signs(problem: Problem) -> list[tuple[float, Range]]:
+    """Return the signs that the offset may have, each with the range of its size."""
     lower, upper = problem.offset.lower, problem.offset.upper
     signed = []
     if upper > 0.0 or lower == upper == 0.0:
         signed.append((1.0, Range(lower=max(lower, 0.0), upper=upper)))
     if lower < 0.0:
         signed.append((-1.0, Range(lower=max(-upper, 0.0), upper=-lower)))
-    return tuple(_sheet(problem, sign, offset, eliminate=eliminate) for sign, offset in signed)
+    return signed
 
 
-def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> Sheet:
+def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
     bounds = {"crank": problem.crank, "rod": problem.rod, "offset": offset}
     wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
     rules = _rules(wanted) if eliminate else []
@@ -114,6 +128,9 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> 
     assert best is not None  # all unknowns free always works
     _, free, steps = best
     used = _fulfilled(steps)
+    more = {item.name: Range(lower=item.lower, upper=item.upper) for item in problem.mechanism.varying}
+    free = (*free, *(name for name, ends in more.items() if not ends.fixed))
+    bounds |= more
     return Sheet(
         sign=sign,
         free=free,
@@ -123,6 +140,8 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool) -> 
         steps=steps,
         eliminated=tuple(name for name in wanted if name in used),
         remaining=tuple(c for c in problem.constraints if c.quantity not in used),
+        names=(*UNKNOWNS, *more),
+        variant=variant,
     )
 
 

@@ -47,7 +47,7 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     They are on the transmission angle and, where there is friction, on the self-locking margin.
     """
     found = _with_floor(problem.constraints, "transmission_angle", LEAST_TRANSMISSION_ANGLE)
-    if problem.mechanism.friction.acts:
+    if problem.mechanism.fullest.friction.acts:
         found = _with_floor(found, "self_locking_margin", LEAST_SELF_LOCKING_MARGIN)
     return found
 
@@ -76,6 +76,7 @@ class Evaluator:
 
     def __init__(self, problem: Problem, sheet: Sheet) -> None:
         """Prepare the constraints that remain on the sheet, cheapest first."""
+        problem = problem.part(sheet.variant)
         self.problem = problem
         self.sheet = sheet
         self.mechanism = problem.mechanism
@@ -89,7 +90,7 @@ class Evaluator:
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
     def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
-        """Return dimensions (n, 3), minimised objectives (n, m) and violation (n,) of points of the unit box.
+        """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) of points of the unit box.
 
         The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
         violate a constraint by more than `band` have NaN objectives. Peaks are screened (see `model.screening`).
@@ -131,7 +132,7 @@ class Evaluator:
 
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
-        crank, rod, offset = dimensions.T
+        crank, rod, offset = dimensions.T[:3]
         violation = np.zeros(len(dimensions))
         with np.errstate(invalid="ignore"):
             turns = (crank > 0.0) & (rod > crank + np.abs(offset))

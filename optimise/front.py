@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ..model.errors import InputError
+from ..model.mechanism import Mechanism
 from .pile import STATIONARY
 from .problem import Objective, Problem
 from .stationarity import multipliers
@@ -43,9 +44,11 @@ class ParetoFront:
     designs: one row a design, all quantities under their JSON names with units, then `slack_<field>` for every
     constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual` (stationarity)
     and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
-    dimensions: (n, 3) crank, rod, offset, m, exactly. values: (n, m) objectives as they are minimised (maximised ones
-    negated, targets as distances), SI. goals: for each design, objective index and gradient of every active piece;
-    active: gradients of its active constraints; both by the free unknowns scaled to the unit box.
+    dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary beside them, SI, exactly.
+    variants: of each design, which of the problem's variants it is; empty if nothing was to be chosen.
+    values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
+    design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
+    free unknowns scaled to the unit box.
     hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
     history: rounds. versions: of this software and what computed the numbers.
     """
@@ -64,6 +67,7 @@ class ParetoFront:
     seconds: float
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
+    variants: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         return len(self.designs)
@@ -72,6 +76,14 @@ class ParetoFront:
     def objectives(self) -> tuple[Objective, ...]:
         """The problem's objectives."""
         return self.problem.objectives
+
+    def part(self, row: int) -> Problem:
+        """Return the problem that a design answers, with the choices that it made in place."""
+        return self.problem.part(self.variants[row] if self.variants else 0)
+
+    def mechanism(self, row: int) -> Mechanism:
+        """Return the machine of a design: with the choices and the varying numbers that it has."""
+        return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
 
     def extremes(self) -> dict[str, int]:
         """Return for each objective the row of its best design; ties go to the better in the other objectives."""

@@ -45,7 +45,7 @@ class Relaxation:
 class Diagnosis:
     """What a search for feasible designs found.
 
-    feasible: dimensions (n, 3), m, of feasible designs if there are any after all. relaxations: requirements of which
+    feasible: designs (n, 3 + v), SI, that are feasible if there are any after all. relaxations: requirements of which
     giving up any one is enough. message: the contradiction in words.
     """
 
@@ -137,7 +137,7 @@ def _least_violation(problem: Problem) -> tuple[Array, bool, str]:
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
-            nearest = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * dimensions[row]))
+            nearest = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * dimensions[row, :3]))
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest
 
 

@@ -9,6 +9,7 @@ from .elimination import ZERO
 from .evaluation import FEASIBLE, Evaluator
 from .hypervolume import nondominated
 from .polish import Polished
+from .sampling import stacked
 from .stationarity import Array
 
 STATIONARY = 1e-6
@@ -22,8 +23,8 @@ COVERED = 1e-3
 class Pile:
     """Polished designs, all feasible.
 
-    span: (m,), what objectives are scaled by. sheet: (n,), index. u: (n, 3), unit-box points, padded. dimensions:
-    (n, 3), m. values: (n, m), SI, minimised. residual: (n,). goals, active: see `polish.Polished`.
+    span: (m,), what objectives are scaled by. sheet: (n,), index. u: (n, k), unit-box points, padded. dimensions:
+    (n, 3 + v), designs, SI. values: (n, m), SI, minimised. residual: (n,). goals, active: see `polish.Polished`.
     """
 
     def __init__(self, span: Array) -> None:
@@ -43,12 +44,10 @@ class Pile:
     def add(self, index: int, evaluator: Evaluator, part: Polished) -> None:
         """Take in those polished designs of a sheet that are feasible."""
         rows = np.flatnonzero(part.violation <= FEASIBLE)
-        padded = np.zeros((len(rows), 3))
-        padded[:, : part.u.shape[1]] = part.u[rows]
         self.sheet = np.concatenate([self.sheet, np.full(len(rows), index)])
-        self.u = np.concatenate([self.u, padded])
+        self.u = stacked(self.u, part.u[rows])
         dimensions = evaluator.sheet.dimensions(part.u[rows])
-        self.dimensions = np.concatenate([self.dimensions, np.where(np.abs(dimensions) <= ZERO, 0.0, dimensions)])
+        self.dimensions = stacked(self.dimensions, np.where(np.abs(dimensions) <= ZERO, 0.0, dimensions))
         self.values = np.concatenate([self.values, part.values[rows] * self.span])
         self.residual = np.concatenate([self.residual, part.residual[rows]])
         self.goals += [part.goals[row] for row in rows]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from ..model.errors import InputError
@@ -101,11 +102,31 @@ class Settings:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One combination of discrete choices.
+
+    labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
+    with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
+    constrains the same quantity, both hold.
+    """
+
+    labels: tuple[str, ...]
+    mechanism: Mechanism
+    crank: Range
+    rod: Range
+    offset: Range
+    limits: tuple[Constraint, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
 class Problem:
     """A complete optimisation problem.
 
-    crank, rod, offset: where the three dimensions may lie, m. costs: of the tolerances, for their allocation. own:
-    quantities beside those that every problem has; objectives and constraints may name them too.
+    mechanism: its varying numbers are variables beside the dimensions. crank, rod, offset: where the three dimensions
+    may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
+    chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
+    tolerances, for their allocation. own: quantities beside those that every problem has; objectives and constraints
+    may name them too.
     """
 
     name: str
@@ -118,8 +139,20 @@ class Problem:
     settings: Settings = Settings()
     costs: Costs | None = None
     own: tuple[Quantity, ...] = ()
+    choices: tuple[str, ...] = ()
+    variants: tuple[Variant, ...] = ()
 
     def __post_init__(self) -> None:
+        for item in self.mechanism.varying:
+            if item.name in ("crank", "rod", "offset"):
+                raise InputError(
+                    f"a number that varies beside the dimensions needs a name of its own; got {item.name!r}"
+                )
+        for variant in self.variants:
+            if len(variant.labels) != len(self.choices):
+                raise InputError(f"a variant has a label for each of {self.choices}; got {variant.labels}")
+            if [x.name for x in variant.mechanism.varying] != [x.name for x in self.mechanism.varying]:
+                raise InputError("the same numbers must vary in all variants of a problem")
         if not self.objectives:
             raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
@@ -147,3 +180,43 @@ class Problem:
         own = {quantity.name: quantity for quantity in self.own}
         require_known(name, also=own)
         return own[name] if name in own else QUANTITIES[name]
+
+    def part(self, variant: int) -> Problem:
+        """Return the problem of one variant, with nothing left to be chosen."""
+        if not self.variants:
+            return self
+        chosen = self.variants[variant]
+        return replace(
+            self,
+            mechanism=chosen.mechanism,
+            crank=chosen.crank,
+            rod=chosen.rod,
+            offset=chosen.offset,
+            constraints=_both(self.constraints, chosen.limits),
+            choices=(),
+            variants=(),
+        )
+
+    def parts(self) -> tuple[Problem, ...]:
+        """Return the problem of every variant; itself if there is nothing to choose."""
+        return tuple(self.part(index) for index in range(max(1, len(self.variants))))
+
+
+def choice_field(name: str) -> str:
+    """Return the key of the column that says what was chosen."""
+    return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
+
+
+def _both(constraints: tuple[Constraint, ...], more: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
+    """Return constraints that hold where all of these do. Raises `InputError` if two exclude each other."""
+    found = {constraint.quantity: constraint for constraint in constraints}
+    for constraint in more:
+        own = found.get(constraint.quantity)
+        if own is not None:
+            lower = [bound for bound in (own.lower, constraint.lower) if bound is not None]
+            upper = [bound for bound in (own.upper, constraint.upper) if bound is not None]
+            constraint = Constraint(
+                quantity=own.quantity, lower=max(lower, default=None), upper=min(upper, default=None)
+            )
+        found[constraint.quantity] = constraint
+    return tuple(found.values())

@@ -13,7 +13,7 @@ from .evaluation import FEASIBLE, Evaluator
 from .front import Progress
 from .hypervolume import hypervolume, nondominated, scaling
 from .problem import Problem
-from .sampling import around, first_samples, generator
+from .sampling import around, first_samples, generator, stacked
 from .stationarity import Array
 
 FIRST = 16384
@@ -27,6 +27,8 @@ BANDS = (0.0, 0.01, 0.04, 0.16)
 out where equalities remain: no sample meets them."""
 ENOUGH = 32
 """Samples that are enough to zoom on."""
+LEAST = 1024
+"""Designs of a round on each of many sheets."""
 _CROWD = 2000  # parents of a round
 _BEST = 1000  # designs kept of a single objective
 _SHOWN = 400  # designs of which the hypervolume is told
@@ -36,9 +38,10 @@ Callback = Callable[[Progress], None]
 
 @dataclass
 class Archive:
-    """Non-dominated designs found so far: sheet index, unit-box point (padded to three columns), objectives.
+    """Non-dominated designs found so far: sheet index, unit-box point, objectives.
 
-    band: by how much they may violate constraints, relative. feasible: designs seen that meet every constraint.
+    u: (n, k), padded to as many columns as any sheet has, at least three. band: by how much they may violate
+    constraints, relative. feasible: designs seen that meet every constraint.
     """
 
     sheet: NDArray[np.int64]
@@ -65,10 +68,8 @@ class Archive:
 
     def take(self, index: int, u: Array, values: Array) -> None:
         """Take in points (n, k) of a sheet that are known to be feasible, with their objectives (n, m) as minimised."""
-        padded = np.zeros((len(u), self.u.shape[1]))
-        padded[:, : u.shape[1]] = u
-        self.sheet = np.concatenate([self.sheet, np.full(len(padded), index)])
-        self.u = np.concatenate([self.u, padded])
+        self.sheet = np.concatenate([self.sheet, np.full(len(u), index)])
+        self.u = stacked(self.u, u)
         self.values = np.concatenate([self.values, values])
         alone = self.values.shape[1] == 1
         self.keep(np.argsort(self.values[:, 0], kind="stable")[:_BEST] if alone else nondominated(self.values))
@@ -76,6 +77,13 @@ class Archive:
     def keep(self, rows: NDArray[np.int64]) -> None:
         """Keep only these rows."""
         self.sheet, self.u, self.values = self.sheet[rows], self.u[rows], self.values[rows]
+
+
+def share(samples: int, evaluators: list[Evaluator]) -> int:
+    """Return how many samples each sheet gets of those of a round; many sheets get a sensible number each."""
+    if len(evaluators) <= 2:
+        return -(-samples // len(evaluators))
+    return max(-(-samples // len(evaluators)), min(samples, LEAST))
 
 
 @dataclass
@@ -135,7 +143,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
         found = 0
         for index, evaluator in enumerate(evaluators):
             # A small feasible region wants more points before it is given up.
-            count = -(-samples * 4**attempt // len(evaluators))
+            count = share(samples * 4**attempt, evaluators)
             points = first_samples(count, evaluator.dimension, problem.settings.seed, index)
             found += archive.screen(index, evaluator, points)
         if found >= min(ENOUGH, samples) or run.stop():

@@ -8,7 +8,7 @@ import numpy as np
 
 from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, empty, planned
-from .elimination import UNKNOWNS, Sheet, sheets
+from .elimination import Sheet, sheets
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
@@ -80,7 +80,7 @@ def _best(problem: Problem) -> float | None:
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
-    return float(quantity.evaluate(problem.mechanism, front.dimensions[:1]).values[0])
+    return float(quantity.evaluate(front.part(0).mechanism, front.dimensions[:1]).values[0])
 
 
 def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
@@ -93,6 +93,7 @@ def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> N
 
 
 def _coordinates(sheet: Sheet, dimensions: Array) -> Array:
-    columns = [np.abs(dimensions[:, UNKNOWNS.index(name)]) for name in sheet.free]
+    sizes = np.concatenate([np.abs(dimensions[:, :3]), dimensions[:, 3:]], axis=1)
+    columns = [sizes[:, sheet.names.index(name)] for name in sheet.free]
     u = np.stack(columns, axis=1) if columns else np.zeros((len(dimensions), 0))
     return np.clip((u - sheet.lower) / np.where(sheet.upper > sheet.lower, sheet.upper - sheet.lower, 1.0), 0.0, 1.0)

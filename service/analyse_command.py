@@ -74,7 +74,7 @@ def analyse(
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
     problem = _load(job)
-    mechanism = Mechanism() if problem is None else problem.mechanism
+    mechanism = Mechanism() if problem is None else problem.mechanism.nominal
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
     lengths = [

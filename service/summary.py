@@ -9,6 +9,7 @@ from ..model.friction import Friction
 from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
+from ..model.varying import Varying
 from ..optimise.convex.costs import Cost
 from ..optimise.elimination import UNKNOWNS, sheets
 from ..optimise.evaluation import constraints_of
@@ -26,9 +27,14 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "given": _given(problem.mechanism),
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
-        "variables": [f"{name} {_range(getattr(problem, name))}" for name in UNKNOWNS],
+        "variables": [
+            *(f"{name} {_lengths(problem, name)}" for name in UNKNOWNS),
+            *(_varying(item) for item in problem.mechanism.varying),
+            *_choices(problem),
+        ],
         "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
+        "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
         "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
@@ -37,12 +43,13 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
 def freedom_in_words(summary: dict[str, Any]) -> str:
     """Return the degrees of freedom left as a sentence."""
-    left, eliminated = summary["degrees_of_freedom"], summary["eliminated"]
-    text = f"{left} of 3 dimensions left to choose"
+    left, eliminated, unknowns = summary["degrees_of_freedom"], summary["eliminated"], summary["unknowns"]
+    what = "dimensions" if unknowns == 3 else "dimensions and other numbers"
+    text = f"{left} of {unknowns} {what} left to choose"
     if left < 0:
         text = f"more equalities than dimensions, by {-left}: no design can be expected"
     elif left == 0:
-        text = "0 of 3 dimensions left to choose: the equalities leave single designs"
+        text = f"0 of {unknowns} {what} left to choose: the equalities leave single designs"
     if eliminated:
         text += f"; {', '.join(name.replace('_', ' ') for name in eliminated)} met exactly by elimination"
     return text
@@ -146,6 +153,31 @@ def _cost(name: str, cost: Cost) -> str:
     ends += [f"at most {factor * cost.greatest:.6g} {unit}"] if math.isfinite(cost.greatest) else []
     text = f"{name.replace('_', ' ')} {fixed}{cost.cost:.6g} ({factor * cost.at:.6g} {unit} / tolerance){power}"
     return ", ".join([text, *ends])
+
+
+def _lengths(problem: Problem, name: str) -> str:
+    """Return where a dimension may lie; of choices all that there are."""
+    found = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
+    if len(found) < 2:
+        return _range(getattr(problem, name))
+    return f"{', '.join(f'{1e3 * lower:.6g}' for lower, _ in found)} mm, one of these"
+
+
+def _varying(item: Varying) -> str:
+    from ..objectives.varying_column import varying_column
+
+    unit = varying_column(item)[1]
+    ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()
+    return f"{item.name} {ends}"
+
+
+def _choices(problem: Problem) -> list[str]:
+    """Return what there is to choose from, and how many combinations that makes."""
+    lines = []
+    for place, name in enumerate(problem.choices):
+        labels = dict.fromkeys(variant.labels[place] for variant in problem.variants)
+        lines.append(f"{name}: {', '.join(labels)}")
+    return [*lines, f"{len(problem.variants)} combinations of choices, all tried"] if problem.variants else []
 
 
 def _range(bounds: Range) -> str:

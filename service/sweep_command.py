@@ -61,7 +61,7 @@ def sweep(
             raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
     lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in given.items()]
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
-    table = all_rows(problem.mechanism, np.array(lengths), axes, names)
+    table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names)
     if json:
         give(json_text(rows_of(table.to_dict("list"))))
     else:

@@ -79,8 +79,8 @@ def print_table(screen: Console, table: Table) -> None:
 
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
-    """Return dimensions, stroke and objectives that differ between designs; and in words those that do not."""
-    keys = [f"{name}_mm" for name in (*DIMENSIONS, "stroke")]
+    """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
+    keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []
     for key in keys:
@@ -93,6 +93,13 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         else:
             columns.append(column)
     return columns, constant
+
+
+def _chosen(keys: list[str]) -> list[str]:
+    """Return the columns of what was chosen beside the dimensions: those between the offset and the stroke."""
+    if not {"offset_mm", "stroke_mm"} <= set(keys):
+        return []
+    return keys[keys.index("offset_mm") + 1 : keys.index("stroke_mm")]
 
 
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:

@@ -195,7 +195,7 @@ def _result(
     evaluator: Evaluator, point: Point, scale: float, found: list[tuple[int, Point]], evaluations: int
 ) -> MinimaxResult:
     objective = evaluator.problem.objectives[0]
-    peaks = isinstance(problem.quantity(objective.quantity), CyclePeak)
+    peaks = isinstance(evaluator.problem.quantity(objective.quantity), CyclePeak)
     weights = point.step.goals if point.step is not None else (point.goals.values == point.top).astype(np.float64)
     pieces = [
         ActivePiece(

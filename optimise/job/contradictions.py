@@ -105,7 +105,8 @@ def _require_causes(problem: Problem) -> None:
     """Refuse position errors without tolerances, and torques and forces that nothing causes."""
     wanted = [(f"objectives.{o.quantity}", o.quantity) for o in problem.objectives]
     held = [(f"constraints.{c.quantity}", c.quantity) for c in problem.constraints]
-    t = problem.mechanism.tolerances
+    machine = problem.mechanism.fullest
+    t = machine.tolerances
     exact = not any(x.absolute or x.fraction for x in (t.crank, t.rod, t.offset, t.crank_angle))
     exact = exact and t.clearances == Clearances()
     for key, name in (*wanted, *held):
@@ -114,12 +115,12 @@ def _require_causes(problem: Problem) -> None:
                 f"{key}: a position error comes from tolerances; got none; "
                 'add for example [tolerances] crank = "0.05 mm"'
             )
-        if name == "self_locking_margin" and not problem.mechanism.friction.acts:
+        if name == "self_locking_margin" and not machine.friction.acts:
             raise JobError(
                 f"{key}: a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, "
                 "or use transmission_angle"
             )
-    m = problem.mechanism
+    m = machine
     moving = m.slider_mass > 0.0 or _weighs(m.rod)
     turning = _weighs(m.crank) or m.counterweight.mass > 0.0 or m.counterweight.inertia > 0.0
     # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.

@@ -8,10 +8,11 @@ from typing import Annotated, Any, cast
 from pydantic import AfterValidator, Field, create_model
 
 from ...model.errors import InputError
+from ...model.mechanism import Mechanism
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ..methods.registry import Name, require_fit
-from ..problem import Problem, Range, Settings
+from ..problem import Problem, Settings
 from ..units import shown
 from .clearance import ClearancePart
 from .contradictions import require_consistent
@@ -24,18 +25,9 @@ from .own import Declared, QuantityPart, folders_of, named
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart, require_target
-from .values import AnyRange, Part, PositiveRange
-
-
-class VariablesPart(Part):
-    """Where the three dimensions may lie: [lower, upper], or one value that fixes a dimension."""
-
-    crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
-    rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
-    offset: AnyRange = Field(
-        description="of the slider line from the crank pivot, positive to the left of the outward direction",
-        examples=[["0 mm", "200 mm"]],
-    )
+from .values import Part
+from .variables import ChoicePart, VariablesPart
+from .varying import ends_of, variants_of, varying_machine
 
 
 class OptimiserPart(Part):
@@ -142,8 +134,24 @@ class Job(Part):
         examples=[{"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}}],
     )
     variables: VariablesPart = Field(
-        description="where the three dimensions may lie",
+        description="where the three dimensions, and any other number of the job, may lie",
         examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
+    )
+    choice: tuple[ChoicePart, ...] = Field(
+        (),
+        max_length=10,
+        description="choices between options that each set several numbers; every combination is tried",
+        examples=[
+            [
+                {
+                    "name": "gearmotor",
+                    "option": [
+                        {"name": "GM 40", "constraints": {"peak_torque": {"max": "40 N m"}}},
+                        {"name": "GM 90", "constraints": {"peak_torque": {"max": "90 N m"}}},
+                    ],
+                }
+            ]
+        ],
     )
     constraints: ConstraintsPart = Field(
         ConstraintsPart(),
@@ -175,6 +183,12 @@ class Job(Part):
         OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]
     )
 
+    def machine(self) -> Mechanism:
+        """Return the machine of the job, its numbers as they are given."""
+        return self.mechanism.build(
+            self.load, self.tolerances, friction=self.friction, clearance=self.clearance, drive=self.drive
+        )
+
     def problem(self, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
         """Return the problem that the job states. Raises JobError if it contradicts itself.
 
@@ -182,14 +196,15 @@ class Job(Part):
         """
         variables = self.variables
         require_target(self.target_motion, self.objectives, self.constraints)
+        choices, variants = variants_of(self)
         problem = Problem(
             name=self.name,
-            mechanism=self.mechanism.build(
-                self.load, self.tolerances, friction=self.friction, clearance=self.clearance, drive=self.drive
-            ),
-            crank=Range(lower=variables.crank[0], upper=variables.crank[1]),
-            rod=Range(lower=variables.rod[0], upper=variables.rod[1]),
-            offset=Range(lower=variables.offset[0], upper=variables.offset[1]),
+            mechanism=varying_machine(self),
+            crank=ends_of(variables.crank),
+            rod=ends_of(variables.rod),
+            offset=ends_of(variables.offset),
+            choices=choices,
+            variants=variants,
             objectives=tuple(objectives_of(self.objectives)),
             constraints=tuple(constraints_of(self.constraints)),
             costs=None if self.costs is None else self.costs.build(),

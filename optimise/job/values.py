@@ -5,6 +5,7 @@ Each says in the JSON Schema what it accepts, and writes back what it reads: SI 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -57,21 +58,30 @@ def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
+class Choices:
+    """Lengths, m, of which one is to be chosen; ascending."""
+
+    choices: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class RangeOf:
-    """Marks a pair as a range of a length: [lower, upper], or one value that fixes it."""
+    """Marks a range of a length: [lower, upper], one value that fixes it, or { choices = [standard lengths] }."""
 
     sign: Sign = "any"
 
-    def read(self, value: object) -> tuple[float, float]:
-        """Return lower and upper end, m; raises InputError."""
+    def read(self, value: object) -> tuple[float, float] | Choices:
+        """Return lower and upper end, m, or what there is to choose from; raises InputError."""
+        if isinstance(value, Choices):
+            return value
+        if isinstance(value, Mapping) and set(value) == {"choices"}:
+            return self._choices(value["choices"])
         ends = value if isinstance(value, list | tuple) else (value, value)
         if len(ends) != 2:
             raise InputError(
                 f'must be a range [lower, upper] or one value; got {shown(value)}; write it like ["20 mm", "200 mm"]'
             )
-        lower, upper = (to_si(end, units.LENGTH, sign=self.sign) for end in ends)
-        if self.sign == "positive" and lower < SHORTEST:
-            raise InputError(f"must be at least {SHORTEST:g} m; got {shown(ends[0])}; check the unit")
+        lower, upper = (self._length(end) for end in ends)
         if lower > upper:
             raise InputError(
                 f"must run from its lower to its upper end; got {shown(ends[0])} to "
@@ -79,13 +89,33 @@ class RangeOf:
             )
         return lower, upper
 
+    def _length(self, value: object) -> float:
+        length = to_si(value, units.LENGTH, sign=self.sign)
+        if self.sign == "positive" and length < SHORTEST:
+            raise InputError(f"must be at least {SHORTEST:g} m; got {shown(value)}; check the unit")
+        return length
+
+    def _choices(self, values: object) -> Choices:
+        if not isinstance(values, list | tuple) or len(values) < 2:
+            raise InputError(f'choices must be two lengths or more, like ["100 mm", "125 mm"]; got {shown(values)}')
+        lengths = sorted(self._length(value) for value in values)
+        if len(set(lengths)) < len(lengths):
+            raise InputError(f"choices must differ; got {shown(values)}; leave out the second")
+        return Choices(tuple(lengths))
+
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         one = described(units.LENGTH, self.sign)["anyOf"]
         pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [pair, *one], "examples": [["20 mm", "200 mm"], "140 mm"]}
+        choices = {
+            "type": "object",
+            "properties": {"choices": {"type": "array", "items": {"anyOf": one}, "minItems": 2}},
+            "required": ["choices"],
+            "additionalProperties": False,
+        }
+        return {"anyOf": [pair, *one, choices], "examples": [["20 mm", "200 mm"], "140 mm"]}
 
 
 class ToleranceOf:
@@ -151,6 +181,6 @@ PositiveTorque = Annotated[float, Physical(units.TORQUE, "positive")]
 Pressure = Annotated[float, Physical(units.PRESSURE, "positive")]
 Fraction = Annotated[float, Physical(units.RATIO, "zero or more")]
 PositiveRatio = Annotated[float, Physical(units.RATIO, "positive")]
-PositiveRange = Annotated[tuple[float, float], RangeOf("positive")]
-AnyRange = Annotated[tuple[float, float], RangeOf()]
+PositiveRange = Annotated[tuple[float, float] | Choices, RangeOf("positive")]
+AnyRange = Annotated[tuple[float, float] | Choices, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -32,10 +32,10 @@ def draw_front(front: ParetoFront, folder: Path) -> Iterator[Path]:
             yield folder / "scatter_matrix.png"
         save(parallel_coordinates(front), folder / "parallel_coordinates.png")
         yield folder / "parallel_coordinates.png"
-    mechanism = front.problem.mechanism
     bold = [front.problem.quantity(objective.quantity).field for objective in front.objectives]
     for mark in marks(front):
-        crank, rod, offset = front.dimensions[mark.row]
+        mechanism = front.mechanism(mark.row)
+        crank, rod, offset = front.dimensions[mark.row, :3]
         figure = design_sheet(
             mechanism,
             Linkage(crank, rod, offset, mechanism.branch),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.quantity import Quantity
+from ...objectives.varying_column import varying_column
 from ...optimise.front import ParetoFront
 from ...optimise.problem import Objective
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
@@ -93,9 +94,14 @@ def objective_axis(front: ParetoFront, objective: Objective) -> Axis:
 
 
 def dimension_axes(front: ParetoFront) -> list[Axis]:
-    """Return the axes of crank, rod and offset."""
+    """Return the axes of crank, rod and offset, and of what varies beside them."""
     columns = ("crank", "rod", "offset")
-    return [Axis(f"{name}, mm", "mm", 1e3 * front.dimensions[:, index], 0) for index, name in enumerate(columns)]
+    axes = [Axis(f"{name}, mm", "mm", 1e3 * front.dimensions[:, index], 0) for index, name in enumerate(columns)]
+    for index, item in enumerate(front.problem.mechanism.varying, start=3):
+        unit = varying_column(item)[1]
+        title = with_unit(item.name.removeprefix("mechanism."), unit.symbol)
+        axes.append(Axis(title, unit.symbol, unit.factor * front.dimensions[:, index], 0))
+    return axes
 
 
 def short_title(of: Quantity) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Function = Callable[[Array, NDArray[np.int64]], Array]
-"""Values (m,) of designs (m, 3), each a displaced copy of the design whose index is given."""
+"""Values (m,) of designs (m, k), each a displaced copy of the design whose index is given."""
 
 LEVELS = 13
 _AT_ONCE = 4  # extrapolations of one entry: more only amplify rounding
@@ -31,15 +31,15 @@ def steps_to_the_nearest_edge(designs: Array, *, kink_without_offset: bool) -> A
 
 
 def derivatives(function: Function, designs: Array, first: Array, *, one_sided: bool = False) -> tuple[Array, Array]:
-    """Return gradients (n, 3) and the method's own estimate of their error.
+    """Return gradients (n, k) of designs (n, k) and the method's own estimate of their error.
 
-    first: (n, 3), the greatest step. one_sided: forward differences, for a function that has a kink at the design.
+    first: (n, k), the greatest step. one_sided: forward differences, for a function that has a kink at the design.
     """
-    n = len(designs)
+    n, k = designs.shape
     index = np.arange(n)
-    found = np.empty((n, 3))
-    error = np.empty((n, 3))
-    for v in range(3):
+    found = np.empty((n, k))
+    error = np.empty((n, k))
+    for v in range(k):
         rows: list[Array] = []
         for level in range(LEVELS):
             h = first[:, v] * 0.5**level

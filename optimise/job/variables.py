@@ -1,0 +1,137 @@
+"""What may vary, in a job file: [variables] and [[choice]].
+
+A variable other than the three dimensions is named by the path of a number that the job gives, as messages name it:
+`mechanism.slider.mass = ["0.5 kg", "2 kg"]`, or `load.1.force` for the first [[load]]. What the job gives there stays
+the value of analyses of single designs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, model_validator
+
+from ...model.errors import InputError
+from ..units import shown
+from .quantities import ConstraintsPart
+from .values import AnyRange, Part, PositiveRange
+
+_ROOTS = ("mechanism", "load", "friction", "tolerances")
+Table = dict[str, Any]
+
+
+def _more(what: str, example: dict[str, Any]) -> Any:
+    return Field({}, description=f"numbers of {what} that may vary, by their keys there", examples=[example])
+
+
+class VariablesPart(Part):
+    """Where dimensions and other numbers may lie: [lower, upper], or { choices = [...] }.
+
+    One value fixes a dimension.
+    """
+
+    crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
+    rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
+    offset: AnyRange = Field(
+        description="of the slider line from the crank pivot, positive to the left of the outward direction",
+        examples=[["0 mm", "200 mm"]],
+    )
+    mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
+    load: Table = _more("a [[load]], after its place, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
+    friction: Table = _more("[friction]", {"guide": [0.05, 0.15]})
+    tolerances: Table = _more("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
+
+    @model_validator(mode="before")
+    @classmethod
+    def _nested(cls, data: Any) -> Any:
+        """Take a path in quotes for the same without: both are dotted keys to an engineer, one key to TOML."""
+        if not isinstance(data, Mapping):
+            return data
+        found: dict[str, Any] = {}
+        for key, value in data.items():
+            steps = key.split(".") if isinstance(key, str) and key.split(".")[0] in _ROOTS else [key]
+            _place(found, steps, deepcopy(value), key)
+        return found
+
+    @property
+    def paths(self) -> dict[str, Any]:
+        """The numbers that vary beside the dimensions: path and what is given for it."""
+        return {path: leaf for root in _ROOTS for path, leaf in _leaves(getattr(self, root), root)}
+
+
+class OptionPart(Part):
+    """One option of a choice."""
+
+    name: Annotated[str, Field(min_length=1, max_length=60)] = Field(
+        description="of the option, as the table of designs has it", examples=["bar 30 x 10"]
+    )
+    values: Table = Field(
+        {},
+        description="numbers of the job that come with it, by their paths; crank, rod and offset too",
+        examples=[{"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}],
+    )
+    constraints: ConstraintsPart = Field(
+        ConstraintsPart(),
+        description="what holds for it beside the constraints of the job, as in [constraints]",
+        examples=[{"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}],
+    )
+
+    @property
+    def paths(self) -> dict[str, Any]:
+        """The numbers that come with it: path and value."""
+        return dict(_leaves(self.values, ""))
+
+
+def _apart(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
+    names = [option.name for option in options]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"options of a choice need different names; got {shown(name)} twice; rename one")
+    return options
+
+
+class ChoicePart(Part):
+    """A choice between options that each set several numbers, such as sections or gearmotors of a catalogue."""
+
+    name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = Field(
+        description="of the choice; the table of designs has it as choice_<name>", examples=["rod section"]
+    )
+    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = Field(
+        min_length=2,
+        max_length=100,
+        description="what there is to choose from",
+        examples=[
+            [
+                {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
+                {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
+            ]
+        ],
+    )
+
+
+def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
+    """Put a value into tables within tables."""
+    for step in steps[:-1]:
+        table = table.setdefault(step, {})
+        if not isinstance(table, dict):
+            raise InputError(f"{key} is given twice, once as a part of another key; leave out one of the two")
+    own = table.get(steps[-1])
+    if isinstance(own, dict) and isinstance(value, Mapping):
+        for inner, item in value.items():
+            _place(own, [inner], item, f"{key}.{inner}")
+    elif own is not None:
+        raise InputError(f"{key} is given twice; leave out one of the two")
+    else:
+        table[steps[-1]] = value
+
+
+def _leaves(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
+    """Yield path and value of what is no table in tables within tables; { choices } counts as a value."""
+    for key, value in table.items():
+        path = f"{root}.{key}" if root else key
+        if isinstance(value, Mapping) and set(value) != {"choices"} and value:
+            yield from _leaves(value, path)
+        else:
+            yield path, value

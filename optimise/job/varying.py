@@ -1,0 +1,234 @@
+"""From the paths in [variables] and [[choice]] to varying numbers of the machine and to variants of the problem.
+
+A path names a number of the job. What that number does to the machine is found by building the machine twice, with the
+number at both ends of its range, and comparing: every number of the machine that differs must be a factor times it. So
+each is read, and refused, by the rules of its own key, and any number that a job can hold may vary.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from ...model.errors import InputError, JobError
+from ...model.mechanism import Mechanism
+from ...model.numbers import unit_of
+from ...model.varying import Varying
+from ..problem import Constraint, Range, Variant
+from ..units import closest, shown
+from .messages import explain
+from .quantities import constraints_of
+from .values import Choices, ToleranceOf
+
+if TYPE_CHECKING:
+    from .model import Job
+
+MOST = 200
+"""Combinations of choices that are enumerated."""
+DIMENSIONS = ("crank", "rod", "offset")
+_STRAY = 1e-12  # rounding of a factor
+
+
+@dataclass(frozen=True)
+class _Option:
+    label: str
+    values: dict[str, Any]
+    limits: tuple[Constraint, ...] = ()
+
+
+def varying_machine(job: Job, key: str = "variables") -> Mechanism:
+    """Return the machine of a job with the numbers that vary in [variables]. Raises JobError, naming the path."""
+    base = job.machine()
+    found = []
+    for path, given in job.variables.paths.items():
+        if not (isinstance(given, Mapping) and set(given) == {"choices"}):
+            found.append(_varying(job, f"{key}.{path}", path, given))
+    try:
+        return replace(base, varying=tuple(found))
+    except InputError as error:
+        raise JobError(f"{key}: {error}") from None
+
+
+def variants_of(job: Job) -> tuple[tuple[str, ...], tuple[Variant, ...]]:
+    """Return the names of a job's choices and every combination of them; none if nothing is to be chosen."""
+    axes = list(_axes(job))
+    if not axes:
+        return (), ()
+    count = math.prod(len(options) for _, options in axes)
+    if count > MOST:
+        sizes = " x ".join(str(len(options)) for _, options in axes)
+        raise JobError(
+            f"variables: every combination of choices is tried, so there are {MOST} at most; got {sizes} = {count}; "
+            "leave out some, or let a number vary over a range"
+        )
+    combinations = itertools.product(*(options for _, options in axes))
+    variants = tuple(_variant(job, [name for name, _ in axes], chosen) for chosen in combinations)
+    return tuple(name for name, _ in axes if name not in DIMENSIONS), variants
+
+
+def ends_of(given: tuple[float, float] | Choices) -> Range:
+    """Return the range of a dimension; of choices the one from the least to the greatest."""
+    if isinstance(given, Choices):
+        return Range(lower=min(given.choices), upper=max(given.choices))
+    return Range(lower=given[0], upper=given[1])
+
+
+def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
+    """Yield name and options of every choice."""
+    for name in DIMENSIONS:
+        given = getattr(job.variables, name)
+        if isinstance(given, Choices):
+            yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in given.choices]
+    for path, given in job.variables.paths.items():
+        if isinstance(given, Mapping) and set(given) == {"choices"}:
+            values = given["choices"]
+            if not isinstance(values, list | tuple) or len(values) < 2:
+                raise JobError(f"variables.{path}: choices are a list of two values or more; got {shown(values)}")
+            labels = [str(value) for value in values]
+            if len(set(labels)) < len(labels):
+                raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
+            yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
+    for part in job.choice:
+        yield part.name, [_Option(o.name, o.paths, tuple(constraints_of(o.constraints))) for o in part.option]
+
+
+def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant:
+    ranges: dict[str, Any] = {name: getattr(job.variables, name) for name in DIMENSIONS}
+    values: dict[str, Any] = {}
+    for name, option in zip(names, chosen, strict=True):
+        for path, value in option.values.items():
+            if path in values or (path in job.variables.paths and path not in _single(name, option)):
+                raise JobError(f"choice {name!r}: {path} is set twice; leave out one of the two")
+            values[path] = value
+    for name in DIMENSIONS:
+        if name in values:
+            ranges[name] = _length(name, values.pop(name))
+    other = _with(job, values, "choice") if values else job
+    return Variant(
+        labels=tuple(option.label for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS),
+        mechanism=varying_machine(other),
+        limits=tuple(limit for option in chosen for limit in option.limits),
+        **{name: ends_of(given) for name, given in ranges.items()},
+    )
+
+
+def _single(name: str, option: _Option) -> tuple[str, ...]:
+    """Return the path of a choice that [variables] itself gives."""
+    paths = tuple(option.values)
+    return paths if len(paths) == 1 and paths[0].removeprefix("mechanism.") == name else ()
+
+
+def _length(name: str, value: Any) -> tuple[float, float]:
+    from .values import AnyRange, PositiveRange
+
+    kind: Any = AnyRange if name == "offset" else PositiveRange
+    try:
+        found: tuple[float, float] = kind.__metadata__[0].read(value)
+    except InputError as error:
+        raise JobError(f"choice: {name} {error}") from None
+    return found
+
+
+def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
+    """Return the varying number of a path."""
+    if not isinstance(given, list | tuple) or len(given) != 2:
+        raise JobError(
+            f"{key}: must be a range [lower, upper] or {{ choices = [...] }}; got {shown(given)}; "
+            "what does not vary is given in its own place alone"
+        )
+    jobs = [_with(job, {path: end}, key) for end in given]
+    lower, upper = (_number(other, path, key) for other in jobs)
+    if not lower < upper:
+        raise JobError(
+            f"{key}: must run from its lower to its upper end; got {shown(given[0])} to {shown(given[1])}; swap the two"
+        )
+    low, high = (dict(_numbers(other.machine(), "")) for other in jobs)
+    end, there = (upper, high) if upper else (lower, low)
+    sets = []
+    for place in low:
+        if low[place] == high.get(place):
+            continue
+        factor = there[place] / end
+        stray = _STRAY * abs(factor) * max(abs(lower), abs(upper))
+        if abs(low[place] - factor * lower) > stray or abs(high[place] - factor * upper) > stray:
+            raise JobError(f"{key}: the machine does not follow it in proportion; let it be a choice instead")
+        sets.append((place, factor))
+    try:
+        if not sets:
+            raise InputError("nothing that a design is judged by follows from it; leave it out")
+        for place, _ in sets:
+            unit_of(place)
+        return Varying(name=path, sets=tuple(sets), lower=lower, upper=upper)
+    except InputError as error:
+        raise JobError(f"{key}: {error}") from None
+
+
+def _with(job: Job, values: Mapping[str, Any], key: str) -> Job:
+    """Return the job with values put at paths, read by the rules of their keys."""
+    data = job.model_dump(exclude_unset=True)
+    known = [path for path, value in _given(data, "") if isinstance(value, int | float | str)]
+    data = deepcopy(data)
+    for path, value in values.items():
+        steps = path.split(".")
+        table: Any = data
+        if path not in known:
+            near = closest(path, known)
+            hint = f"did you mean {near}?" if near else "give it there, as the value that single designs have"
+            raise JobError(f"{key}: must name a number that the job gives; got {path}; {hint}")
+        for step in steps[:-1]:
+            table = table[int(step) - 1] if isinstance(table, list | tuple) else table[step]
+        table[steps[-1]] = value
+    data["choice"] = ()
+    try:
+        return type(job).model_validate(data)
+    except ValidationError as error:
+        from . import job_schema
+
+        sentence = explain(error, job_schema())[0]
+        for path in values:
+            sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
+        raise JobError(f"{key}: {sentence}") from None
+
+
+def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:
+    """Yield path and value of everything in a job that is no table; places in lists count from 1."""
+    if isinstance(data, Mapping):
+        for name, item in data.items():
+            if root or name in ("mechanism", "load", "friction", "tolerances"):
+                yield from _given(item, f"{root}.{name}" if root else str(name))
+    elif isinstance(data, list | tuple):
+        for place, item in enumerate(data):
+            if isinstance(item, Mapping):
+                yield from _given(item, f"{root}.{place + 1}")
+    else:
+        yield root, data
+
+
+def _number(job: Job, path: str, key: str) -> float:
+    """Return the number at a path of a job, SI."""
+    part: Any = job
+    for step in path.split("."):
+        part = part[int(step) - 1] if isinstance(part, tuple) else getattr(part, step)
+    share = ToleranceOf.share(part)
+    number = part if share is None else share
+    if isinstance(number, bool) or not isinstance(number, int | float):
+        raise JobError(f"{key}: must name a number; got {shown(part)}; let it be a choice instead")
+    return float(number)
+
+
+def _numbers(part: Any, root: str) -> Iterator[tuple[str, float]]:
+    """Yield dotted path and value of every number of a machine."""
+    if is_dataclass(part):
+        for field in fields(part):
+            yield from _numbers(getattr(part, field.name), f"{root}.{field.name}" if root else field.name)
+    elif isinstance(part, tuple):
+        for place, item in enumerate(part):
+            yield from _numbers(item, f"{root}.{place}")
+    elif isinstance(part, int | float) and not isinstance(part, bool):
+        yield root, float(part)
