@@ -128,11 +128,11 @@ def search(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def _within_budget(problem: Problem) -> Problem:
-    """Return the problem with samples that take five eighths of the evaluations that a job allows."""
+    """Return the problem with samples that leave evaluations to the descents: exploring takes 5 to 25 times them."""
     allowed = problem.settings.evaluations
     if allowed is None:
         return problem
-    samples = min(problem.settings.samples or SAMPLES, max(16, allowed // 8))
+    samples = min(problem.settings.samples or SAMPLES, max(16, allowed // 32))
     return replace(problem, settings=replace(problem.settings, samples=samples))
 
 

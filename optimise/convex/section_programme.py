@@ -123,7 +123,8 @@ class SectionProgramme:
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)
-        with warnings.catch_warnings():
+        # The objective's value, which nothing asks for, may overflow where the loads are far beyond the ranges.
+        with warnings.catch_warnings(), np.errstate(over="ignore"):
             warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the iteration goes on until it settles
             self.programme.solve(gp=True, solver=cp.CLARABEL, tol_gap_abs=_EXACT, tol_gap_rel=_EXACT, tol_feas=_EXACT)
         if self.programme.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):

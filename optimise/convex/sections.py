@@ -91,7 +91,8 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
             radius = 0.5 * min(radius, change)  # two crank angles take turns as the worst
         before = change if iteration else math.inf
     states = {name: state for name, state in task.states(sizes).items() if not name.endswith(AMPLIFICATION)}
-    worst = max(states, key=lambda name: states[name])
+    # Where a bar buckles its stress is infinite; what says by how much is the buckling.
+    worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
     if states[worst] > 1.0 + _OVER:
         raise InputError(
             f"no section within the ranges carries the loads; got {worst} at {100.0 * states[worst]:.4g} % of what is "
