@@ -24,6 +24,7 @@ from .tree import Tree, pool
 _BATCH = 4096  # boxes halved at a time
 _MOST = 4_000_000  # open boxes that memory is kept for
 _POLISHED = 400  # added designs that are polished; more would take longer than the proof
+_STEPS = 8  # of their polish: most of the way; they need not be stationary
 _SHARE = 0.15  # of the time, kept for polishing
 _THIN = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
 
@@ -259,7 +260,7 @@ class Search:
                 if time.perf_counter() - self.start > self.seconds or self.stopped:
                     return
                 k = evaluator.dimension
-                part = polish(evaluator, self.u[rows][:, :k], self.span)
+                part = polish(evaluator, self.u[rows][:, :k], self.span, iterations=_STEPS)
                 fresh = self._exact(evaluator.sheet.dimensions(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added[rows]).all(axis=1)
                 self.u[rows[better], :k] = part.u[better]

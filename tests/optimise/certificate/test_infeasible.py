@@ -15,7 +15,7 @@ CONTRADICTIONS: tuple[dict[str, Bounds], ...] = (
     {"stroke": 0.2, "peak_torque": (None, 15.0)},
     {"stroke": 0.2, "peak_torque": (None, 0.5), "peak_slider_speed": (None, 0.5)},
     {"rod_to_offset": 3.2, "transmission_angle": (degrees(40.0), None), "time_ratio": (1.4, None)},
-    {"stroke": 0.45},
+    {"stroke": 0.58},
 )
 
 
