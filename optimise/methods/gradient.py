@@ -1,0 +1,55 @@
+"""Gradient methods of scipy for one objective, from many starts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..deliver import span_of
+from ..evaluation import Evaluator
+from ..problem import Problem
+from ..search import Archive, Run
+from .local import Local, by_slsqp, by_trust_constr
+from .registry import budget
+from .scalar import Form, Programme
+from .starts import samples
+
+_STARTS = {"slsqp": 24, "trust_constr": 8}
+_APART = 0.1  # of the unit box: starts that are to lead to different optima
+
+
+def slsqp(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the local optima that SLSQP finds from up to 24 starts; see `local.by_slsqp`."""
+    return _many(problem, evaluators, run, by_slsqp)
+
+
+def trust_constr(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the local optima that trust-constr finds from up to 8 starts; see `local.by_trust_constr`."""
+    return _many(problem, evaluators, run, by_trust_constr)
+
+
+def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local) -> Archive:
+    archive = Archive.empty(1)
+    begun = samples(problem, evaluators)
+    if not len(begun):
+        run.tell("sampling", evaluators, archive)
+        return archive
+    ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
+    rows = begun.apart(begun.values[:, 0], _STARTS[problem.settings.method], _APART)
+    run.rounds = 1 + len(rows)
+    run.tell("sampling", evaluators, archive)
+    for row in rows:
+        if run.stop() or (len(archive) and spent(problem, evaluators)):
+            break
+        index = int(begun.sheet[row])
+        programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
+        u = solve(programme, begun.u[row, : programme.k])
+        if u is not None:
+            archive.take(index, u[None], programme.objectives(u)[None] * span + ideal)
+            archive.feasible += 1
+        run.tell("descending", evaluators, archive)
+    return archive
+
+
+def spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
+    """Whether the budget of evaluations is used up."""
+    return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))

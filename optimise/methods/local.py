@@ -1,0 +1,98 @@
+"""The local solvers of scipy on a scalar programme, with exact gradients."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..evaluation import FEASIBLE
+from ..stationarity import Array
+from .scalar import Programme
+
+REACH = 1e-6
+"""Relative violation that a solver may leave: the delivery moves the design onto the constraints."""
+_STEPS = 100
+_BARRIER_STEPS = 100
+_ATTEMPTS = 3
+_MARGIN, _NEARER = 0.1, 0.3  # of the objectives' range: where the barrier begins, and how much nearer each time
+_INSIDE = 1e-6  # of the unit box: a barrier cannot begin on a bound
+_EXACT = 1e-12  # of the objective's range
+
+Local = Callable[[Programme, Array], Array | None]
+
+
+def by_slsqp(programme: Programme, u: Array) -> Array | None:
+    """Return the optimum near u (k,) by sequential least squares programming, None if it is not feasible.
+
+    D. Kraft, "A software package for sequential quadratic programming", DFVLR-FB 88-28, 1988.
+    """
+    from scipy.optimize import minimize
+
+    minimised: Any = minimize  # its stubs know no mixed arguments
+    constraints: list[dict[str, Any]] = [
+        {"type": "ineq", "fun": lambda z: -programme.inequalities(z), "jac": lambda z: -programme.slopes(z)}
+    ]
+    begin = programme.begin(u)
+    if len(programme.equalities(begin)):
+        constraints.append({"type": "eq", "fun": programme.equalities, "jac": programme.equal_slopes})
+    found = minimised(
+        lambda z: programme.cost @ z,
+        begin,
+        jac=lambda z: programme.cost,
+        method="SLSQP",
+        bounds=list(zip(programme.lower, programme.upper, strict=True)),
+        constraints=constraints,
+        options={"ftol": _EXACT, "maxiter": _STEPS},
+    )
+    return _feasible(programme, found.x)
+
+
+def by_trust_constr(programme: Programme, u: Array) -> Array | None:
+    """Return the optimum near u (k,) by the trust-region interior-point method, None if it is not feasible.
+
+    R. H. Byrd, M. E. Hribar and J. Nocedal, "An interior point algorithm for large-scale nonlinear programming", SIAM
+    J. Optim. 9(4), 1999. A peak that comes or goes is a jump of a slack that may end it early: it then begins again,
+    nearer to the limits. It keeps within the inequalities, unless u lies on one.
+    """
+    for attempt in range(_ATTEMPTS):
+        found, settled = _barrier(programme, u, _MARGIN * _NEARER**attempt)
+        best = _feasible(programme, found)
+        if best is None or settled:
+            break
+        u = best
+    return best
+
+
+def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool]:
+    """Return where one run of the interior-point method ends, and whether at an optimum. margin: between s and t."""
+    from scipy.optimize import BFGS, Bounds, NonlinearConstraint, minimize
+
+    minimised: Any = minimize
+    begin = programme.begin(np.clip(u, _INSIDE, 1.0 - _INSIDE))
+    begin[programme.k :] += margin
+    begin[-1] += margin * programme.form.weights.max()
+    inside = bool((programme.inequalities(begin) < 0.0).all() and (begin < programme.upper).all())
+    limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), inside)]
+    if len(programme.equalities(begin)):
+        limits.append(NonlinearConstraint(programme.equalities, 0.0, 0.0, programme.equal_slopes, BFGS()))
+    none = np.zeros((len(begin), len(begin)))
+    found = minimised(
+        lambda z: programme.cost @ z,
+        begin,
+        jac=lambda z: programme.cost,
+        hess=lambda z: none,
+        method="trust-constr",
+        bounds=Bounds(programme.lower, programme.upper, keep_feasible=inside),
+        constraints=limits,
+        options={"gtol": 0.0, "xtol": 1e-10, "barrier_tol": 1e-10, "maxiter": _BARRIER_STEPS},
+    )
+    return np.asarray(found.x), found.status == 2
+
+
+def _feasible(programme: Programme, z: Array) -> Array | None:
+    u = np.clip(z[: programme.k], 0.0, 1.0)
+    if not np.isfinite(u).all():
+        return None
+    return u if programme.violation(u) <= REACH + FEASIBLE else None

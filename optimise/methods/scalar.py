@@ -1,0 +1,200 @@
+"""One objective made of several, and its smooth programme as the solvers of scipy take it.
+
+With objectives f_i scaled by their range over the front, ideal at zero, a `Form` stands for
+
+    min over u   max_i w_i (f_i(u) - z_i) + rho sum_i f_i(u)      subject to   f_i(u) <= c_i   and the constraints.
+
+Each f_i is the greatest of smooth pieces, so that kinks are no problem to a smooth solver once they are written as
+
+    min over u, s, t   t + rho sum_i s_i   subject to   p(u) <= s_i for each piece p of objective i,
+                                                        w_i (s_i - z_i) <= t where w_i > 0,   s_i <= c_i,
+
+the epigraph form (Boyd and Vandenberghe, "Convex Optimization", 2004, ch. 4.1.3). A little of the sum, rho > 0, keeps
+designs out that are only weakly optimal (Miettinen, "Nonlinear Multiobjective Optimization", 1999, ch. 3.4.5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation import Evaluator, Rows
+from ..pieces import alone, greatest
+from ..stationarity import Array
+
+_ABSENT = -1.0  # value of a row that a design does not have: fulfilled, without slope
+_OUT = 10.0  # violation of a point where no linkage turns fully, so that a line search turns back
+_CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points nearer than this keep their place for sure
+
+
+@dataclass(frozen=True)
+class Form:
+    """A scalarisation: weights w, reference z and ceilings c, (m,) each, and the share rho of the sum."""
+
+    weights: Array
+    reference: Array
+    ceilings: Array
+    rho: float = 0.0
+
+    @classmethod
+    def single(cls, objectives: int, column: int, *, rho: float = 0.0) -> Form:
+        """Return the form that is one of the objectives."""
+        weights = np.zeros(objectives)
+        weights[column] = 1.0
+        return cls(weights, np.zeros(objectives), np.full(objectives, np.inf), rho)
+
+    def value(self, scaled: Array) -> Array:
+        """Return the form's value (n,) at objectives (n, m), scaled; infinite above a ceiling."""
+        used = self.weights > 0.0
+        reached = (self.weights[used] * (scaled[:, used] - self.reference[used])).max(axis=1)
+        inside = (scaled <= self.ceilings).all(axis=1)
+        return np.where(inside, reached + self.rho * scaled.sum(axis=1), np.inf)
+
+
+class Programme:
+    """A form on one sheet, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers ask for in turns.
+
+    ideal, span: (m,), what objectives are scaled by.
+    """
+
+    def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
+        """Prepare the parts that do not depend on the point."""
+        self.evaluator = evaluator
+        self.form = form
+        self.ideal, self.span = ideal, span
+        self.k, self.m = evaluator.dimension, len(span)
+        self.cost = np.concatenate([np.zeros(self.k), np.full(self.m, form.rho), [1.0]])
+        self.lower = np.concatenate([np.zeros(self.k), np.full(self.m + 1, -np.inf)])
+        self.upper = np.concatenate([np.ones(self.k), form.ceilings, [np.inf]])
+        used = np.flatnonzero(form.weights > 0.0)
+        self._fixed = np.zeros((len(used), self.k + self.m + 1))
+        self._fixed[np.arange(len(used)), self.k + used] = form.weights[used]
+        self._fixed[:, -1] = -1.0
+        self._bound = form.weights[used] * form.reference[used]
+        self._u: Array | None = None
+        self._goals: Rows
+        self._limits: Rows
+        self._valid = True
+
+    def begin(self, u: Array) -> Array:
+        """Return z at a point u (k,) where the evaluator is valid, s and t as low as they can be."""
+        self._go(u)
+        s = np.minimum(greatest(self._goals, self.m), self.form.ceilings)
+        used = self.form.weights > 0.0
+        t = (self.form.weights[used] * (s[used] - self.form.reference[used])).max()
+        return np.concatenate([u, s, [t]])
+
+    def objectives(self, u: Array) -> Array:
+        """Return the scaled objectives (m,) at a point."""
+        self._go(u)
+        return greatest(self._goals, self.m)
+
+    def violation(self, u: Array) -> float:
+        """Return the greatest relative violation of the problem's constraints at a point."""
+        self._go(u)
+        return float(self._limits.values.max(initial=0.0)) if self._valid else np.inf
+
+    def inequalities(self, z: Array) -> Array:
+        """Return the rows g(z) <= 0, (r,)."""
+        self._go(z[: self.k])
+        goals = self._goals.values - z[self.k + self._goals.owner]
+        goals[~np.isfinite(self._goals.values)] = _ABSENT
+        limits = self._limits.values[~self._equal]
+        limits = np.where(np.isfinite(limits), limits, _ABSENT)
+        if not self._valid:
+            goals, limits = goals + _OUT, limits + _OUT
+        return np.concatenate([goals, limits, self._fixed @ z - self._bound])
+
+    def slopes(self, z: Array) -> Array:
+        """Return the derivatives (r, k + m + 1) of the inequalities."""
+        self._go(z[: self.k])
+        goals = np.zeros((len(self._goals.owner), self.k + self.m + 1))
+        goals[:, : self.k] = self._goals.gradients
+        goals[np.arange(len(goals)), self.k + self._goals.owner] = -1.0
+        goals[~np.isfinite(self._goals.values)] = 0.0
+        limits = np.where(np.isfinite(self._limits.values)[:, None], self._limits.gradients, 0.0)[~self._equal]
+        return np.concatenate([goals, np.pad(limits, ((0, 0), (0, self.m + 1))), self._fixed])
+
+    def equalities(self, z: Array) -> Array:
+        """Return the rows h(z) = 0 of equalities that are left."""
+        self._go(z[: self.k])
+        return self._limits.values[self._equal] + (0.0 if self._valid else _OUT)
+
+    def equal_slopes(self, z: Array) -> Array:
+        """Return the derivatives of the equalities."""
+        self._go(z[: self.k])
+        return np.pad(self._limits.gradients[self._equal], ((0, 0), (0, self.m + 1)))
+
+    def _go(self, u: Array) -> None:
+        if self._u is not None and np.array_equal(u, self._u):
+            return
+        first = self._u is None
+        self._u = np.array(u)
+        inside = np.clip(self._u, 0.0, 1.0)[None]  # solvers step out of the box by rounding
+        self._valid = bool(self.evaluator.valid(inside)[0])
+        if not self._valid:
+            assert not first  # solvers begin at valid points
+            return
+        goals, limits = (alone(rows, 0) for rows in self.evaluator.exact(inside))
+        goals = Rows(
+            (goals.values - self.ideal[goals.owner]) / self.span[goals.owner],
+            goals.gradients / self.span[goals.owner][:, None],
+            goals.labels,
+            goals.owner,
+        )
+        if first:
+            self._equal = _equal_rows(self.evaluator, limits)
+            self._groups = _groups(self.evaluator, goals, limits)
+        else:
+            goals = _placed(goals, self._goals, self._groups[0])
+            limits = _placed(limits, self._limits, self._groups[1])
+        self._goals, self._limits = goals, limits
+
+
+def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.bool_]:
+    """Return which constraint rows are to vanish: of an equality the one that holds it from below, its highest peak.
+
+    The rows that hold it from above say the same; one of two opposite inequalities has no interior.
+    """
+    equal = np.zeros(len(limits.owner), dtype=bool)
+    for owner, constraint in enumerate(evaluator.constraints):
+        if constraint.equality:
+            equal[np.flatnonzero(limits.owner == owner)[-1]] = True
+    return equal
+
+
+def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArray[np.int64]], ...]:
+    """Return the columns of goals and of limits that are peaks of one curve, hence may swap; lower bounds may not."""
+    found: tuple[list[NDArray[np.int64]], ...] = ([], [])
+    last = [objective.target is not None for objective in evaluator.problem.objectives]
+    bounds = [constraint.lower is not None for constraint in evaluator.constraints]
+    for rows, apart, groups in ((goals, last, found[0]), (limits, bounds, found[1])):
+        for owner, less in enumerate(apart):
+            columns = np.flatnonzero(rows.owner == owner)
+            columns = columns[: len(columns) - less]
+            if len(columns) > 1:
+                groups.append(columns)
+    return found
+
+
+def _placed(rows: Rows, before: Rows, groups: list[NDArray[np.int64]]) -> Rows:
+    """Return the rows in the places that the same pieces had before: peaks come by height and swap where they tie."""
+    order = np.arange(len(rows.owner))
+    for columns in groups:
+        apart = np.abs(rows.labels[columns][:, None] - before.labels[columns])
+        apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
+        gone = ~(np.isfinite(rows.values[columns])[:, None] & np.isfinite(before.values[columns]))
+        order[columns] = columns[_matched(np.where(gone | ~np.isfinite(apart), np.pi, apart))]
+    return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
+
+
+def _matched(apart: Array) -> NDArray[np.int64]:
+    """Return for each place the row that goes there."""
+    from scipy.optimize import linear_sum_assignment
+
+    if (np.diag(apart) < _CLOSE).all():
+        return np.arange(len(apart))
+    rows, places = linear_sum_assignment(apart)
+    return np.asarray(rows[np.argsort(places)])

@@ -1,0 +1,216 @@
+"""Fronts by scalarisation: many problems with one objective each, whose optima are Pareto-optimal.
+
+All begin with the optimum of each objective alone. Their objectives are the payoff table; its ranges scale the
+objectives. Each further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The
+first round takes aim evenly. As fronts of more objectives than free unknowns are thin, much of that leads to the same
+designs; later rounds aim at samples in the gaps: those that would add most to the hypervolume of what was found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..evaluation import Evaluator
+from ..hypervolume import choose, nondominated, scaling
+from ..problem import Problem
+from ..search import Archive, Run
+from ..stationarity import Array
+from .gradient import spent
+from .local import by_slsqp
+from .reference import grid, simplex
+from .scalar import Form, Programme
+from .starts import Samples, samples
+
+_SUM = 1e-4
+"""rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
+_FIRST = 0.5  # problems of the first round a delivered design: many have the same optimum
+_MORE = 3.0  # optima wanted a delivered design: the best are chosen
+_ROUNDS = 6  # of aiming at gaps
+_POOL = 2000  # samples that gaps are looked for with
+_STARTS, _APART = 4, 0.1  # of each objective alone, and how far apart in the unit box
+_UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
+_SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
+_TOLD = 16  # problems between two questions whether to stop
+_SLACK = 0.005  # of the ranges: samples above a ceiling by less may lead below it
+_FINEST = 60  # intervals of the grid of ceilings
+_WIDER = 1.5  # how far beyond the triangle
+
+
+def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the front by minimising the first objective with ceilings on all others, on a grid of the payoff table.
+
+    Ceilings that no sample comes near are left out; the grid is refined until enough others are left. With the sum, see
+    `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of the
+    epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2), 2009).
+    """
+    front = _begin(problem, evaluators, run)
+    if front is None:
+        return Archive.empty(len(problem.objectives))
+    m, scaled = len(problem.objectives), front.scaled(front.begun.values)
+    wanted = _first(problem)
+    for parts in range(2, _FINEST):
+        ceilings = grid(np.zeros(m - 1), np.ones(m - 1), parts)
+        near = np.array([bool((scaled[:, 1:] <= row + _SLACK).all(axis=1).any()) for row in ceilings])
+        if near.sum() >= wanted:
+            break
+    only = Form.single(m, 0, rho=_SUM)
+    forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), _SUM) for row in ceilings[near]]
+    return front.solve(forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), _SUM))
+
+
+def chebyshev(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the front by the augmented weighted Chebyshev norm from a utopian point, in evenly spread directions.
+
+    R. E. Steuer and E.-U. Choo, "An interactive weighted Tchebycheff procedure for multiple objective programming",
+    Math. Program. 26(3), 1983.
+    """
+    front = _begin(problem, evaluators, run)
+    m = len(problem.objectives)
+    if front is None:
+        return Archive.empty(m)
+    none = np.full(m, np.inf)
+
+    def along(direction: Array) -> Form:
+        direction = np.maximum(direction, _SLIVER)
+        return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, _SUM)
+
+    return front.solve([along(direction) for direction in simplex(m, _first(problem))], along)
+
+
+def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the front by normal-boundary intersection.
+
+    From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
+    go as far as they can along its quasi-normal n = -Phi e (Das and Dennis 1998, see `reference`). As there is a design
+    that is better than the point reached where the front is not met, F <= Phi beta + t n is asked rather than equality
+    (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result is
+    Pareto-optimal, also on a front that is folded. Of three objectives and more the plane's triangle does not lie over
+    the whole front: points outside of it are used as well.
+    """
+    front = _begin(problem, evaluators, run)
+    m = len(problem.objectives)
+    if front is None:
+        return Archive.empty(m)
+    payoff = front.scaled(front.payoff)
+    normal = np.maximum(payoff.sum(axis=0), _SLIVER)
+    shares = simplex(m, _first(problem))
+    if m > 2:
+        shares = 1.0 / m + (shares - 1.0 / m) * _WIDER
+    none = np.full(m, np.inf)
+
+    def through(point: Array) -> Form:
+        return Form(normal.min() / normal, point, none, _SUM)
+
+    return front.solve([through(share @ payoff) for share in shares], through)
+
+
+@dataclass
+class _Front:
+    """What the problems share. payoff: (m, m), objectives (columns) of the optimum of each objective (rows), SI."""
+
+    problem: Problem
+    evaluators: list[Evaluator]
+    run: Run
+    begun: Samples
+    archive: Archive
+    ideal: Array
+    span: Array
+    payoff: Array
+
+    def scaled(self, values: Array) -> Array:
+        return np.asarray((values - self.ideal) / self.span)
+
+    def optimum(self, form: Form, index: int, u: Array) -> Array | None:
+        """Keep the design that is the form's optimum near a point; return its objectives (m,), SI, None without one."""
+        programme = Programme(self.evaluators[index], form, self.ideal, self.span)
+        found = by_slsqp(programme, u[: programme.k])
+        if found is None:
+            return None
+        values = programme.objectives(found) * self.span + self.ideal
+        self.archive.take(index, found[None], values[None])
+        self.archive.feasible += 1
+        return values
+
+    def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
+        """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""
+        for _ in range(1 + _ROUNDS):
+            self.run.rounds = len(self.run.told) + -(-len(forms) // _TOLD)
+            for begin in range(0, len(forms), _TOLD):
+                if self.run.stop() or spent(self.problem, self.evaluators):
+                    return self.archive
+                for form in forms[begin : begin + _TOLD]:
+                    for index, u in self._starts(form):
+                        self.optimum(form, index, u)
+                self.run.tell("scalarising", self.evaluators, self.archive)
+            forms = [aimed(aim) for aim in self._gaps()]
+            if not forms:
+                break
+        return self.archive
+
+    def _gaps(self) -> Array:
+        """Return the scaled objectives (n, m) of samples that would add most to the front, none if it is full."""
+        found = self.scaled(self.archive.values)
+        missing = int(_MORE * self.problem.settings.designs) - len(found)
+        sampled = self.scaled(self.begun.values)
+        both = np.concatenate([found, sampled])
+        rows = nondominated(both)
+        rows = rows[rows >= len(found)]
+        rows = rows[:: 1 + len(rows) // _POOL]
+        if missing <= 0 or not len(rows):
+            return sampled[:0]
+        union = np.concatenate([found, both[rows]])
+        picked = choose(union, len(found) + missing, always=tuple(range(len(found))))
+        return np.asarray(union[picked[picked >= len(found)]])
+
+    def _starts(self, form: Form) -> list[tuple[int, Array]]:
+        """Return the best point of every sheet that is not plainly worse than that of another."""
+        sheet = np.concatenate([self.archive.sheet, self.begun.sheet])
+        width = self.begun.u.shape[1]
+        points = np.concatenate([self.archive.u[:, :width], self.begun.u])
+        scaled = self.scaled(np.concatenate([self.archive.values, self.begun.values]))
+        excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
+        worth = _open(form).value(scaled) + 10.0 * excess
+        found: list[tuple[float, int, Array]] = []
+        for index in np.unique(sheet).tolist():
+            own = np.flatnonzero(sheet == index)
+            row = own[np.argmin(worth[own])]
+            found.append((float(worth[row]), index, points[row]))
+        least = min(value for value, _, _ in found)
+        return [(index, u) for value, index, u in found if value <= least + _APART]
+
+
+def _first(problem: Problem) -> int:
+    return max(1, int(_FIRST * problem.settings.designs))
+
+
+def _open(form: Form) -> Form:
+    return Form(form.weights, form.reference, np.full(len(form.weights), np.inf), form.rho)
+
+
+def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
+    """Return samples and payoff table; None where nothing was found to begin with."""
+    m = len(problem.objectives)
+    begun = samples(problem, evaluators)
+    front = Archive.empty(m)
+    if not len(begun):
+        run.tell("sampling", evaluators, front)
+        return None
+    ideal, span = scaling(begun.values[nondominated(begun.values)])
+    shared = _Front(problem, evaluators, run, begun, front, ideal, span, np.zeros((m, m)))
+    run.rounds = 1 + m
+    run.tell("sampling", evaluators, front)
+    for column in range(m):
+        best = np.full(m, np.inf)
+        for row in begun.apart(begun.values[:, column], _STARTS, _APART):
+            values = shared.optimum(Form.single(m, column, rho=_SUM), int(begun.sheet[row]), begun.u[row])
+            if values is not None and values[column] < best[column]:
+                best = values
+        if not np.isfinite(best).all():
+            return None
+        shared.payoff[column] = best
+        run.tell("finding the best of each objective", evaluators, front)
+    shared.ideal, shared.span = scaling(shared.payoff)
+    return shared

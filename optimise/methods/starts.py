@@ -1,0 +1,66 @@
+"""Where local solvers begin: screened samples, and of these the best ones that lie apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation import FEASIBLE, Evaluator
+from ..problem import Problem
+from ..sampling import first_samples
+from ..search import BANDS
+from ..stationarity import Array
+
+SAMPLES = 16384
+"""Samples over all sheets."""
+_ENOUGH = 32
+_STREAM = 3000  # of the seed
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Screened points. sheet: (n,), index. u: (n, k), of the unit box, padded. values: (n, m), SI, as minimised."""
+
+    sheet: NDArray[np.int64]
+    u: Array
+    values: Array
+
+    def __len__(self) -> int:
+        return len(self.sheet)
+
+    def apart(self, worth: Array, count: int, distance: float) -> list[int]:
+        """Return at most `count` rows, the least worth (n,) first, each this far from those before in the unit box."""
+        rows = np.argsort(worth, kind="stable")
+        rows = rows[np.isfinite(worth[rows])]
+        chosen: list[int] = []
+        while len(rows) and len(chosen) < count:
+            best = int(rows[0])
+            chosen.append(best)
+            far = np.abs(self.u[rows] - self.u[best]).max(axis=1) >= distance
+            rows = rows[far | (self.sheet[rows] != self.sheet[best])]
+        return chosen
+
+
+def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
+    """Return feasible samples of all sheets; where there are few, with such as violate constraints by up to 16 %.
+
+    Solvers remove the violation. Equalities that are left are met by no sample.
+    """
+    loose = any(evaluator.loose for evaluator in evaluators)
+    widest = max(1, max(evaluator.dimension for evaluator in evaluators))
+    for attempt, band in enumerate(BANDS[1:] if loose else BANDS):
+        parts = []
+        for index, evaluator in enumerate(evaluators):
+            count = -(-SAMPLES * 4 ** min(attempt, 1) // len(evaluators))
+            u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
+            _, values, violation = evaluator.screen(u, band=band)
+            good = (violation <= band + FEASIBLE) & evaluator.valid(u)
+            padded = np.zeros((int(good.sum()), widest))
+            padded[:, : u.shape[1]] = u[good]
+            parts.append((np.full(len(padded), index), padded, values[good]))
+        found = Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+        if len(found) >= _ENOUGH or not any(evaluator.dimension for evaluator in evaluators):
+            break
+    return found
