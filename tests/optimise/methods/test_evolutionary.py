@@ -56,8 +56,8 @@ def test_cma_es_finds_the_optimum_of_the_default(objective: str) -> None:
     )
     best = solve(given).values[0, 0]
     found = solve(asked(given, "cmaes", 6000)).values[0, 0]
-    # A climb ends where a generation is 1e-10 of the box wide; over the whole box objectives change by a few times their
-    # size, in 1e-10 of it by less than 1e-9. The rest is for optima on constraints: half of what is drawn there is lost.
+    # A climb ends where a generation is 1e-10 of the box wide; objectives change by a few times their size over the
+    # whole box, hence by less than 1e-9 in that. The rest is for optima on constraints, which draws meet from inside.
     assert found == pytest.approx(best, rel=1e-6)
     assert found >= best - 1e-9 * abs(best)
 
