@@ -230,7 +230,7 @@ def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Statu
 def versions() -> dict[str, str]:
     """Return the versions of this software and of what computes its numbers."""
     found = {"python": python_version()}
-    for name in ("slidercrank", "numpy", "scipy", "numba", "moocore", "pandas"):
+    for name in ("slidercrank", "numpy", "scipy", "numba", "moocore", "pandas", "optuna", "cmaes"):
         try:
             found[name] = version(name)
         except PackageNotFoundError:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from .hypervolume import hypervolume, nondominated, scaling
 from .problem import Problem
 from .sampling import around, first_samples, generator, stacked
 from .stationarity import Array
+
+if TYPE_CHECKING:
+    from .methods.generation import Generation
 
 FIRST = 16384
 """Designs of the first round, everywhere."""
@@ -88,12 +92,17 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 
 @dataclass
 class Run:
-    """What a search tells while it runs: its rounds, and the fronts that they ended with."""
+    """What a search tells while it runs: its rounds, and the fronts that they ended with.
+
+    past: generations of an earlier run, to go on from. keep: called with every new one; see `methods.population`.
+    """
 
     problem: Problem
     progress: Callback | None
     cancelled: Callable[[], bool] | None
     rounds: int
+    past: Sequence[Generation] = ()
+    keep: Callable[[Generation], None] | None = None
     start: float = field(default_factory=time.perf_counter)
     told: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,21 +14,34 @@ from .evaluation import Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
 from .infeasibility import diagnose
-from .methods.registry import require_eliminated, require_fit, search_of
+from .methods.registry import require_eliminated, require_fit, require_resumable, search_of
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
 from .stationarity import Array
 
+if TYPE_CHECKING:
+    from .methods.generation import Generation
+
 
 def solve(
-    problem: Problem, *, progress: Callback | None = None, cancelled: Callable[[], bool] | None = None
+    problem: Problem,
+    *,
+    progress: Callback | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    resume: Sequence[Generation] = (),
+    keep: Callable[[Generation], None] | None = None,
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
     progress: called after every round. cancelled: asked between rounds; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
+    keep: called with each generation as soon as it is evaluated, by the methods that go generation by generation.
+    resume: all generations that an earlier run of this problem kept, in order, however many; the run goes on from them
+    and gives what it would have given without a stop, bit for bit.
     """
     require_fit(problem)
+    if resume:
+        require_resumable(problem)
     method = problem.settings.method
     require_gradients(problem)
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
@@ -37,7 +51,7 @@ def solve(
         front = deliver(problem, evaluators, archive, run) if len(archive) else None
     else:
         require_eliminated(problem, evaluators)
-        run = Run(problem, progress, cancelled, 1)
+        run = Run(problem, progress, cancelled, 1, resume, keep)
         archive = search_of(method)(problem, evaluators, run)
         front = as_found(problem, evaluators, archive, run) if len(archive) else None
     if front is not None:

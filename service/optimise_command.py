@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..model.errors import InputError
 from .interruption import Interruption
 from .result import Result, json_text, result_of
 from .run_folder import RunFolder, disk, runs_place
 from .screen import console, give, progress_bar, say, waiting
+from .stored_generations import GenerationsFile, stopped_run
+from .stored_runs import find_run
 from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ..optimise.front import ParetoFront, Progress
+    from ..optimise.methods.generation import Generation
     from ..optimise.problem import Problem
 
 NOTHING_FEASIBLE, INTERRUPTED = 3, 130
+_NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
 EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED}
 
 Runs = Annotated[
@@ -30,7 +35,10 @@ Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard 
 
 
 def optimise(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
+    job: Annotated[Path | None, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")] = None,
+    resume: Annotated[
+        str | None, typer.Option(metavar="RUN", help="Instead of a job: go on with an interrupted or cancelled run.")
+    ] = None,
     runs: Runs = None,
     designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of everything random.")] = None,
@@ -40,18 +48,37 @@ def optimise(
     """Find the Pareto front of a job.
 
     Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops after the round that is
-    under way and keeps what was found.
+    under way and keeps what was found. Evolutionary methods and plain sampling can then go on with --resume, in the
+    folder of that run, and end as if they had never stopped.
     """
     from ..optimise.job import files_beside
 
-    problem = _problem(job, designs, seed)
-    with Interruption() as interruption, RunFolder(runs_place(runs), problem.name) as run:
+    if (job is None) == (resume is None):
+        raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
+    past: list[Generation] = []
+    if job is not None:
+        problem = _problem(job, designs, seed)
+        folder = RunFolder(runs_place(runs), problem.name)
+    else:
+        if designs is not None or seed is not None:
+            raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+        stopped = find_run(resume or "", runs_place(runs))
+        problem, past = stopped_run(stopped)
+        folder = RunFolder.again(stopped)
+    with Interruption() as interruption, folder as run:
         run.log(f"command: {' '.join(sys.argv[1:])}")
-        run.keep_job(job, files_beside(job))
-        front = _solve(problem, run, interruption)
+        if job is not None:
+            run.keep_job(job, files_beside(job))
+        kept = GenerationsFile(run.path, problem.settings, past)
+        try:
+            front = _solve(problem, run, interruption, kept)
+        finally:
+            kept.write()
         result = result_of(front, str(run.path))
         run.keep_result(result, _versions(front))
         run.log(f"{result.status}: {result.message}")
+        if result.status != "cancelled":
+            kept.remove()
         if figures and result.status == "done":
             _draw(front, run, interruption)
     if json:
@@ -60,6 +87,8 @@ def optimise(
             say(f"slidercrank: {result.message}")
     else:
         show_result(result)
+    if result.status == "cancelled" and kept.generations:
+        say(f"go on with: slidercrank optimise --resume {run.path.name}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
 
 
@@ -114,7 +143,7 @@ def _problem(job: Path, designs: int | None, seed: int | None) -> Problem:
     )
 
 
-def _solve(problem: Problem, run: RunFolder, interruption: Interruption) -> ParetoFront:
+def _solve(problem: Problem, run: RunFolder, interruption: Interruption, kept: GenerationsFile) -> ParetoFront:
     from ..optimise.solve import solve
 
     with progress_bar() as show:
@@ -126,7 +155,13 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption) -> Pare
             )
             show(at)
 
-        return solve(problem, progress=tell, cancelled=interruption.asked)
+        return solve(
+            problem,
+            progress=tell,
+            cancelled=interruption.asked,
+            resume=tuple(kept.generations),
+            keep=kept.keep,
+        )
 
 
 def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption) -> None:

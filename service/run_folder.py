@@ -7,6 +7,7 @@
         figures/        PNG files
         versions.json   of this software and of what computed the numbers
         log.txt         what happened when
+        generations.npz only while the run can go on from them: what it has evaluated
         UNFINISHED      only until everything else is on the disk
 
 The folder appears under its name with UNFINISHED already in it, and losing that file is the last thing that happens.
@@ -67,8 +68,26 @@ class RunFolder:
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
-        self._has_result = False
+        self._has_result = self._was_whole = False
+        self._lock = _lock(self.path)
         self.log(f"run {self.path.name} started")
+
+    @classmethod
+    def again(cls, path: Path) -> RunFolder:
+        """Open the folder of a run that was interrupted or cancelled, to go on in it.
+
+        It is marked unfinished until then. Wrong input leaves it as it was. Raises `InputError` while another process
+        is at work in it.
+        """
+        run = cls.__new__(cls)
+        run.started = time.strftime("%Y-%m-%d %H:%M:%S")
+        run.path = path
+        with disk(path):
+            run._lock = _lock(path)
+            run._was_whole, run._has_result = not (path / MARK).exists(), True
+            _write(path / MARK, f"Taken up {run.started}. The run still goes on, or was interrupted.\n")
+        run.log(f"run {path.name} goes on")
+        return run
 
     @property
     def figures(self) -> Path:
@@ -106,6 +125,12 @@ class RunFolder:
                     _sync(file)
             (self.path / MARK).unlink(missing_ok=True)
             _sync(self.path)
+        self._release()
+
+    def _release(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
 
     def __enter__(self) -> RunFolder:
         return self
@@ -120,18 +145,48 @@ class RunFolder:
             self.finish()
         elif isinstance(error, InputError) and not self._has_result:
             shutil.rmtree(self.path, ignore_errors=True)
+        elif isinstance(error, InputError) and self._was_whole:
+            self.finish()
         else:
             with contextlib.suppress(RunError, OSError):  # the error that is under way matters more
                 self.log("".join(traceback.format_exception(error)).rstrip())
                 reason = str(error) or "interrupted"
                 error.add_note(f"log: {self.path / 'log.txt'}")
                 _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
+        self._release()
 
 
 def write_file(path: Path, text: str) -> None:
     """Write a text file as a whole or not at all. Raises `RunError` when the disk refuses."""
     with disk(path.parent):
         _write(path, text)
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file as a whole or not at all. Raises `RunError` when the disk refuses."""
+    with disk(path.parent):
+        _write(path, content)
+
+
+def _lock(folder: Path) -> int | None:
+    """Return a handle that keeps other processes from the folder while it is open; None where there are no locks.
+
+    The lock ends with the process, however that ends. Raises `InputError` if another one holds it.
+    """
+    if os.name == "nt":
+        return None
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise InputError(f"another process is at work on the run {folder}; wait for it, or stop it") from None
+    except OSError:  # some network disks have no locks
+        os.close(handle)
+        return None
+    return handle
 
 
 def _rename(hidden: Path, wanted: Path) -> Path:

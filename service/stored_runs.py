@@ -57,7 +57,9 @@ def read_run(folder: Path) -> Result:
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
-            raise RunError(f"the run {folder} is unfinished: {text}; run its job again")
+            way = f"go on with `slidercrank optimise --resume {folder.name}`"
+            way = way if (folder / "generations.npz").is_file() else "run its job again"
+            raise RunError(f"the run {folder} is unfinished: {text}; {way}")
         if not (folder / "front.json").is_file():
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))

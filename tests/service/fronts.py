@@ -137,7 +137,7 @@ def job_file(folder: Path) -> Path:
 def found(monkeypatch: pytest.MonkeyPatch, result: ParetoFront) -> None:
     """Let `solve` give a front without a search, after telling of its rounds."""
 
-    def solve(_: Problem, *, progress: object = None, cancelled: object = None) -> ParetoFront:
+    def solve(_: Problem, *, progress: object = None, **_more: object) -> ParetoFront:
         for at in result.history:
             progress(at)  # type: ignore[operator]
         return result

@@ -28,7 +28,7 @@ from slidercrank.optimise.front import Progress
 from slidercrank.service.cli import main
 from tests.service import fronts
 
-def solve(problem, *, progress, cancelled):
+def solve(problem, *, progress, cancelled, **_):
     for number in range(1, 1000):
         progress(Progress("sampling", number, 1000, 100 * number, 10 * number, 0.1, 0.05 * number))
         time.sleep(0.02)

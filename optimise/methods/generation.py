@@ -1,0 +1,82 @@
+"""What a method that goes generation by generation has done: all that it needs to go on as if it had never stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ..stationarity import Array
+
+Rows = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Brood:
+    """Points to be evaluated together.
+
+    sheet: (n,), index of each point's sheet. u: (n, k), points of the unit box; columns beyond a sheet's own dimension
+    do not count. parents: (p,), rows that the brood was bred from, counted over the points of all generations; empty
+    where a method has none.
+    """
+
+    sheet: Rows
+    u: Array
+    parents: Rows
+
+    def __len__(self) -> int:
+        return len(self.u)
+
+
+@dataclass(frozen=True)
+class Generation(Brood):
+    """A brood and what its points turned out to be.
+
+    values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated. violation: (n,), the
+    greatest relative one beyond what is tolerated (see `population.BAND`), infinite where no linkage turns fully.
+    """
+
+    values: Array
+    violation: Array
+
+    def __post_init__(self) -> None:
+        n = len(self.u)
+        shapes = (self.sheet.shape == (n,), self.u.ndim == 2, self.values.ndim == 2 and len(self.values) == n)
+        if not n or not all(shapes) or self.violation.shape != (n,) or self.parents.ndim != 1:
+            raise InputError(
+                "a generation needs one sheet, one point, one set of objectives and one violation for each of its "
+                f"designs; got {len(self.sheet)}, {n}, {len(self.values)} and {len(self.violation)}; start the run anew"
+            )
+        if not np.isfinite(self.u).all() or np.isnan(self.violation).any():
+            raise InputError("the points of a generation and their violations must be numbers; start the run anew")
+
+
+@dataclass(frozen=True)
+class History:
+    """The generations so far, end to end: the fields of `Generation` over all points. last: rows of the last one."""
+
+    sheet: Rows
+    u: Array
+    values: Array
+    violation: Array
+    last: Rows
+
+    @classmethod
+    def of(cls, past: Sequence[Generation]) -> History:
+        """Return what one or more generations are end to end."""
+        count = sum(len(generation) for generation in past)
+        return cls(
+            np.concatenate([generation.sheet for generation in past]),
+            np.concatenate([generation.u for generation in past]),
+            np.concatenate([generation.values for generation in past]),
+            np.concatenate([generation.violation for generation in past]),
+            np.arange(count - len(past[-1]), count),
+        )
+
+
+def generation_seed(seed: int, generation: int) -> int:
+    """Return the seed of one generation, so that a run may go on at any of them; independent of all others."""
+    return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])

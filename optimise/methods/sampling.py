@@ -1,0 +1,55 @@
+"""Random and Sobol points: what every other method must beat."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ..evaluation import Evaluator
+from ..problem import Problem
+from ..search import Archive, Run
+from ..stationarity import Array
+from .generation import Brood, Generation, generation_seed
+from .population import evolve
+from .registry import budget
+
+Draw = Callable[[int, int, int], Array]
+
+BATCH = 1024
+"""Designs of a generation where the job sets no number of samples: Sobol points are even in powers of two."""
+
+
+def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return what uniformly random points find, spread over the sheets by chance."""
+
+    def draw(generation: int, size: int, dimension: int) -> Array:
+        return np.random.default_rng(generation_seed(problem.settings.seed, generation)).random((size, dimension))
+
+    return _sampled(problem, evaluators, run, draw)
+
+
+def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return what one scrambled Sobol sequence finds, one coordinate of which chooses among several sheets."""
+    from scipy.stats import qmc
+
+    def draw(generation: int, size: int, dimension: int) -> Array:
+        sequence = qmc.Sobol(dimension, rng=np.random.default_rng(problem.settings.seed))
+        if not generation:  # as many as the next power of two: scipy warns of any other number
+            return np.asarray(sequence.random_base2((size - 1).bit_length())[:size])
+        sequence.fast_forward(generation * size)
+        return np.asarray(sequence.random(size))
+
+    return _sampled(problem, evaluators, run, draw)
+
+
+def _sampled(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw) -> Archive:
+    size = min(problem.settings.samples or BATCH, budget(problem))
+    dimension, several = max(evaluator.dimension for evaluator in evaluators), len(evaluators) > 1
+
+    def breed(past: Sequence[Generation]) -> Brood:
+        points = draw(len(past), size, dimension + several)
+        chosen = np.floor(points[:, -1] * len(evaluators)).astype(np.int64) if several else np.zeros(size, np.int64)
+        return Brood(chosen, points[:, :dimension], np.zeros(0, np.int64))
+
+    return evolve(problem, evaluators, run, breed, size=size)

@@ -1,0 +1,93 @@
+"""Between points of the unit box and Optuna's trials. Optuna proposes; evaluation, storage and resumption are ours."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..evaluation import FEASIBLE, Evaluator
+from ..stationarity import Array
+from .generation import History, Rows
+
+if TYPE_CHECKING:
+    from optuna.distributions import BaseDistribution
+    from optuna.study import Study
+    from optuna.trial import FrozenTrial
+
+    Space = dict[str, BaseDistribution]
+
+_SHEET = "sheet"
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """While entered, Optuna neither tells of every study nor warns that an operator may change in a later version."""
+    import optuna
+
+    level = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+            yield
+    finally:
+        optuna.logging.set_verbosity(level)
+
+
+def space(evaluators: list[Evaluator]) -> Space:
+    """Return Optuna's parameters: the coordinates of the unit box, and the sheet where there are several."""
+    from optuna.distributions import CategoricalDistribution, FloatDistribution
+
+    found: Space = {name: FloatDistribution(0.0, 1.0) for name in _coordinates(evaluators)}
+    if len(evaluators) > 1:
+        found[_SHEET] = CategoricalDistribution(list(range(len(evaluators))))
+    return found
+
+
+def _coordinates(evaluators: list[Evaluator]) -> list[str]:
+    return [f"u{column:03d}" for column in range(max(evaluator.dimension for evaluator in evaluators))]
+
+
+def stored(space: Space, history: History, rows: Rows, mark: dict[str, Any]) -> list[FrozenTrial]:
+    """Return evaluated points as completed trials, each with its constraint.
+
+    A trial without a constraint would count as feasible, and one whose objectives are NaN or infinite would be taken
+    as it is: so every trial has its violation, and only infeasible ones carry stand-ins for objectives, which no
+    selection compares. They are infinite, unless all are: NSGA-III scales by what is finite.
+    """
+    from optuna.trial import create_trial
+
+    names = sorted(name for name in space if name != _SHEET)
+    feasible = history.violation[rows] <= FEASIBLE
+    absent = np.inf if feasible.any() else 0.0
+    trials = []
+    for row, good in zip(rows.tolist(), feasible.tolist(), strict=True):
+        values = history.values[row].tolist() if good else [absent] * history.values.shape[1]
+        if good and not np.isfinite(values).all():
+            raise ArithmeticError(f"a feasible design has objectives {values}")
+        params: dict[str, Any] = dict(zip(names, history.u[row].tolist(), strict=True))
+        if _SHEET in space:
+            params[_SHEET] = int(history.sheet[row])
+        violation = 0.0 if good else float(history.violation[row])
+        trials.append(
+            create_trial(
+                params=params,
+                distributions=space,
+                values=values,
+                constraints={"violation": violation},
+                system_attrs=dict(mark),
+            )
+        )
+    return trials
+
+
+def asked(study: Study, space: Space, count: int) -> tuple[Rows, Array]:
+    """Return sheets (n,) and points (n, k) of the trials that a study's sampler proposes."""
+    names = sorted(name for name in space if name != _SHEET)
+    trials = [study.ask(space).params for _ in range(count)]
+    u = np.array([[trial[name] for name in names] for trial in trials])
+    return np.array([trial.get(_SHEET, 0) for trial in trials], dtype=np.int64), np.clip(u, 0.0, 1.0)
