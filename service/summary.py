@@ -9,6 +9,8 @@ from ..model.friction import Friction
 from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
+from ..objectives.motion_deviation import MotionDeviation
+from ..objectives.own.quantity import OwnQuantity
 from ..optimise.elimination import UNKNOWNS, sheets
 from ..optimise.evaluation import constraints_of
 from ..optimise.problem import Constraint, Objective, Problem, Range
@@ -22,7 +24,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {settings.samples} samples a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": _given(problem.mechanism),
+        "given": [*_given(problem.mechanism), *_own(problem)],
         "tolerances": _tolerances(problem.mechanism),
         "variables": [f"{name} {_range(getattr(problem, name))}" for name in UNKNOWNS],
         "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
@@ -68,6 +70,15 @@ def _given(mechanism: Mechanism) -> list[str]:
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
     return lines
+
+
+def _own(problem: Problem) -> list[str]:
+    lines = [f"{own.name}: {own.title}, by {own.function}" for own in problem.own if isinstance(own, OwnQuantity)]
+    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation)}
+    return [
+        *(f"target motion: {len(t.positions)} points, phase {t.phase}, shift {t.shift}" for t in targets),
+        *lines,
+    ]
 
 
 def _link(link: Link) -> str:
