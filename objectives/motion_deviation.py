@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..model.mechanism import Mechanism
 from ..model.target_motion import Fit, Measure, TargetMotion, fit
 from ..model.target_pieces import fit_pieces
@@ -31,19 +33,21 @@ class MotionDeviation:
     measure: Measure
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3); see `Quantity`."""
+        """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""
         if not gradients:
-            return Values(fit(self.target, _sign(mechanism), self.measure, dimensions).values, None)
+            return Values(fit(self.target, _sign(mechanism), self.measure, dimensions[:, :3]).values, None)
         found = self.pieces(mechanism, dimensions)
         return Values(found.values[:, 0], found.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
-        return Pieces(*fit_pieces(self.target, _sign(mechanism), self.measure, dimensions))
+        found = fit_pieces(self.target, _sign(mechanism), self.measure, dimensions[:, :3])
+        more = dimensions.shape[1] - 3  # what varies beside the dimensions does not move the slider
+        return Pieces(found.values, np.pad(found.gradients, ((0, 0), (0, 0), (0, more))), found.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return phase (deg) and shift (mm) of the best fit for designs (n, 3), each if it is free, by column."""
-        found: Fit = fit(self.target, _sign(mechanism), self.measure, dimensions)
+        found: Fit = fit(self.target, _sign(mechanism), self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
         if self.target.phase == "free":

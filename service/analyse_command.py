@@ -80,7 +80,8 @@ def analyse(
     lengths = [
         length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
     ]
-    row = rows_of(all_numbers(mechanism, np.array([lengths])).to_dict("list"))[0]
+    own = () if problem is None else problem.own
+    row = rows_of(all_numbers(mechanism, np.array([lengths]), own=own).to_dict("list"))[0]
     notes = _leave_out(row, mechanism, alone=problem is None)
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     design = [Topic(name, mechanism, linkage, options.get(name, {})) for name in topics]

@@ -10,6 +10,8 @@ from ..model.links import Bar, Link
 from ..model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ..model.mechanism import Mechanism, Tolerance
 from ..model.varying import Varying
+from ..objectives.motion_deviation import MotionDeviation
+from ..objectives.own.quantity import OwnQuantity
 from ..optimise.convex.costs import Cost
 from ..optimise.elimination import UNKNOWNS, sheets
 from ..optimise.evaluation import constraints_of
@@ -24,7 +26,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {settings.samples} samples a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": _given(problem.mechanism),
+        "given": [*_given(problem.mechanism), *_own(problem)],
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
@@ -77,6 +79,15 @@ def _given(mechanism: Mechanism) -> list[str]:
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
     return lines
+
+
+def _own(problem: Problem) -> list[str]:
+    lines = [f"{own.name}: {own.title}, by {own.function}" for own in problem.own if isinstance(own, OwnQuantity)]
+    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation)}
+    return [
+        *(f"target motion: {len(t.positions)} points, phase {t.phase}, shift {t.shift}" for t in targets),
+        *lines,
+    ]
 
 
 def _link(link: Link) -> str:

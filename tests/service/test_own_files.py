@@ -44,7 +44,16 @@ def test_a_run_keeps_the_files_that_its_job_needs(tmp_path: Path, runs: Path, co
         assert (kept / file).read_bytes() == (tmp_path / file).read_bytes()
     shown = command("front", "latest", "--columns", "mine,motion_deviation")
     assert shown.exit_code == 0, shown.stderr
-    assert command("check", kept / "job.toml").exit_code == 0
+    checked = command("check", kept / "job.toml")
+    assert checked.exit_code == 0
+    assert "target motion: 4 points, phase fixed, shift free" in checked.stdout
+    assert "mine: mine, by judges:judge" in checked.stdout
+    lengths = ("--crank", "140 mm", "--rod", "400 mm", "--offset", "0 mm")
+    numbers = json.loads(command("analyse", kept / "job.toml", *lengths, "--json").stdout)
+    assert abs(numbers["mine_m_s3"] - 400.0 / 140.0) < 1e-12
+    # Positions 540, about 374.7 twice and 260 mm against 400, 300, 300 and 120: from 74.7 to 140 apart.
+    side = (400.0**2 - 140.0**2) ** 0.5
+    assert abs(numbers["motion_deviation_mm"] - 0.5 * (140.0 - (side - 300.0))) < 1e-9
 
 
 def test_an_endless_function_ends_the_run_with_exit_code_2_and_keeps_nothing(
