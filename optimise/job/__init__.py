@@ -20,28 +20,31 @@ from ..units import shown
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job
+from .varying import with_values
 
 __all__ = ["Job", "job_schema", "load_job", "parse_job"]
 
 
-def load_job(path: str | PathLike[str]) -> Problem:
+def load_job(path: str | PathLike[str], values: Mapping[str, Any] | None = None) -> Problem:
     """Return the problem that a job file states, .toml or .json.
 
+    values: numbers to put in place of those that the file gives, by their paths ("mechanism.slider.mass").
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
     schema, or contradicts itself.
     """
     try:
-        return parse_job(read(Path(path)))
+        return parse_job(read(Path(path)), values)
     except JobError as error:
         name = str(path)
         raise JobError(f"{name if name.isprintable() else shown(name)}: {error}") from None
 
 
-def parse_job(data: Mapping[str, Any]) -> Problem:
+def parse_job(data: Mapping[str, Any], values: Mapping[str, Any] | None = None) -> Problem:
     """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`."""
     require_plain(data)
     try:
-        return Job.model_validate(data).problem()
+        job = Job.model_validate(data)
+        return (with_values(job, values, "values") if values else job).problem()
     except ValidationError as error:
         found = explain(error, _schema())
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
