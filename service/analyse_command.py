@@ -43,6 +43,14 @@ def analyse(
         str | None,
         typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
     ] = None,
+    put: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="PATH=VALUE",
+            help='A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
+        ),
+    ] = None,
     show: Annotated[list[str] | None, typer.Option(metavar="TOPIC", help=_TOPIC_HELP)] = None,
     at: Annotated[
         str | None, typer.Option(metavar="ANGLE", help='Crank angle of the polygons.  [default: "30 deg"]')
@@ -73,7 +81,7 @@ def analyse(
 
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
-    problem = _load(job)
+    problem = _load(job, put or [])
     mechanism = Mechanism() if problem is None else problem.mechanism.nominal
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
@@ -160,12 +168,28 @@ def _draw(
         say(f"figure: {file}")
 
 
-def _load(job: Path | None) -> Problem | None:
+def _load(job: Path | None, put: list[str]) -> Problem | None:
     if job is None:
+        if put:
+            raise InputError("--set changes a number of a job; got none; give a JOB")
         return None
     from ..optimise.job import load_job
 
-    return load_job(job)
+    values = {}
+    for text in put:
+        path, sign, value = (part.strip() for part in text.partition("="))
+        if not (path and sign and value):
+            raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
+        values[path] = _plain(value)
+    return load_job(job, values)
+
+
+def _plain(value: str) -> float | str:
+    """Return a number without a unit as a number, anything else as it stands."""
+    try:
+        return float(value)
+    except ValueError:
+        return value
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:

@@ -67,7 +67,9 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
     plain, unit, factor = split_unit(key)
     slack = key.startswith("slack_")
-    title = titles.get(key.removeprefix("slack_"), plain.removeprefix("slack_").replace("_", " "))
+    title = titles.get(
+        key.removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
+    )
     return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
 
 

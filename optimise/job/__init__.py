@@ -23,13 +23,17 @@ from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
 from .target_motion import points_file, with_points
+from .varying import with_values
 
 __all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job"]
 
 
-def load_job(path: str | PathLike[str], *, allow_user_code: bool = True) -> Problem:
+def load_job(
+    path: str | PathLike[str], values: Mapping[str, Any] | None = None, *, allow_user_code: bool = True
+) -> Problem:
     """Return the problem that a job file states, .toml or .json.
 
+    values: numbers to put in place of those that the file gives, by their paths ("mechanism.slider.mass").
     allow_user_code: whether a job may name functions of its own ([quantity]); they run when the problem is solved, with
     all that the user may do. Refuse them in jobs of others.
 
@@ -38,7 +42,8 @@ def load_job(path: str | PathLike[str], *, allow_user_code: bool = True) -> Prob
     """
     try:
         folder = Path(path).parent
-        return parse_job(with_points(read(Path(path)), folder), folder=folder, allow_user_code=allow_user_code)
+        data = with_points(read(Path(path)), folder)
+        return parse_job(data, values, folder=folder, allow_user_code=allow_user_code)
     except JobError as error:
         name = str(path)
         raise JobError(f"{name if name.isprintable() else shown(name)}: {error}") from None
@@ -51,7 +56,13 @@ def files_beside(path: str | PathLike[str]) -> list[Path]:
     return [*([folder / points] if points else []), *modules_beside(data, folder)]
 
 
-def parse_job(data: Mapping[str, Any], *, folder: Path | None = None, allow_user_code: bool = True) -> Problem:
+def parse_job(
+    data: Mapping[str, Any],
+    values: Mapping[str, Any] | None = None,
+    *,
+    folder: Path | None = None,
+    allow_user_code: bool = True,
+) -> Problem:
     """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`.
 
     folder: where the modules of its own functions lie, beside the working directory.
@@ -60,7 +71,9 @@ def parse_job(data: Mapping[str, Any], *, folder: Path | None = None, allow_user
     own = declared(data, allowed=allow_user_code)
     job = job_with(own)
     try:
-        return job.model_validate(data).problem(folder=folder, installed=own.installed)
+        stated = job.model_validate(data)
+        stated = with_values(stated, values, "values") if values else stated
+        return stated.problem(folder=folder, installed=own.installed)
     except ValidationError as error:
         found = explain(error, _schema() if job is Job else _schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"

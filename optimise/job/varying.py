@@ -109,7 +109,7 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
     for name in DIMENSIONS:
         if name in values:
             ranges[name] = _length(name, values.pop(name))
-    other = _with(job, values, "choice") if values else job
+    other = with_values(job, values, "choice") if values else job
     return Variant(
         labels=tuple(option.label for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS),
         mechanism=varying_machine(other),
@@ -142,7 +142,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
             f"{key}: must be a range [lower, upper] or {{ choices = [...] }}; got {shown(given)}; "
             "what does not vary is given in its own place alone"
         )
-    jobs = [_with(job, {path: end}, key) for end in given]
+    jobs = [with_values(job, {path: end}, key) for end in given]
     lower, upper = (_number(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
@@ -169,8 +169,11 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         raise JobError(f"{key}: {error}") from None
 
 
-def _with(job: Job, values: Mapping[str, Any], key: str) -> Job:
-    """Return the job with values put at paths, read by the rules of their keys."""
+def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
+    """Return the job, without its [[choice]], with values put at paths, read by the rules of their own keys.
+
+    key: where the values come from, for messages. Raises JobError.
+    """
     data = job.model_dump(exclude_unset=True)
     known = [path for path, value in _given(data, "") if isinstance(value, int | float | str)]
     data = deepcopy(data)
