@@ -20,6 +20,7 @@ from typer.core import TyperGroup
 from ..model.errors import SlidercrankError
 from .analyse_command import analyse
 from .cases_command import cases
+from .compare_command import compare
 from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
@@ -102,7 +103,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, check, schema, front, export, cases):
+for command in (optimise, analyse, sweep, check, schema, front, export, compare, cases):
     app.command()(command)
 
 
