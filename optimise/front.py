@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .pile import STATIONARY
 from .problem import Objective, Problem
 from .stationarity import multipliers
@@ -87,7 +89,7 @@ class ParetoFront:
 
     def extremes(self) -> dict[str, int]:
         """Return for each objective the row of its best design; ties go to the better in the other objectives."""
-        scaled = self._scaled()
+        scaled = by_range(self.values)
         best = {}
         for index, objective in enumerate(self.objectives):
             least = np.flatnonzero(scaled[:, index] <= scaled[:, index].min() + 1e-9)
@@ -96,7 +98,31 @@ class ParetoFront:
 
     def knee(self) -> int:
         """Return the row nearest to the ideal point, every objective scaled by its range over the front."""
-        return int(np.argmin(np.linalg.norm(self._scaled(), axis=1)))
+        return knee(self.values)
+
+    def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
+        """Return the row that weights of the objectives choose, see `picking.closeness`; those not named have none.
+
+        `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
+        """
+        columns = {self._column(name): weight for name, weight in weights.items()}
+        shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
+        return topsis(self.values, shares, normalisation=normalisation)
+
+    def lexicographic(self, *priorities: Priority | str) -> int:
+        """Return the row that is left when objectives decide in turn, see `picking.lexicographic`.
+
+        `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: of the designs within
+        a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
+        """
+        order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
+        return lexicographic(self.values, [(self._column(item.quantity), item.absolute, item.share) for item in order])
+
+    def _column(self, name: str) -> int:
+        names = [objective.quantity for objective in self.objectives]
+        if name not in names:
+            raise InputError(f"pick by one of the objectives {', '.join(names)}; got {name!r}")
+        return names.index(name)
 
     def pick(self, best: str, **bounds: tuple[float | None, float | None]) -> int:
         """Return the row that is best in an objective among those within bounds.
@@ -104,9 +130,7 @@ class ParetoFront:
         best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
         `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. Raises `InputError` when none qualifies.
         """
-        names = [objective.quantity for objective in self.objectives]
-        if best not in names:
-            raise InputError(f"pick by one of the objectives {', '.join(names)}; got {best!r}")
+        objective = self._column(best)
         keep = np.ones(len(self), dtype=bool)
         for column, (least, greatest) in bounds.items():
             if column not in self.designs.columns:
@@ -119,7 +143,7 @@ class ParetoFront:
         if not keep.any():
             raise InputError(f"no design of the front lies within {bounds}; widen a bound")
         rows = np.flatnonzero(keep)
-        return int(rows[np.argmin(self.values[rows, names.index(best)])])
+        return int(rows[np.argmin(self.values[rows, objective])])
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates at a design, (m, m): `[a, b]` is what objective a loses per unit that b gains.
@@ -167,12 +191,6 @@ class ParetoFront:
             return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
         more = (objective.sense == "maximise") == gain
         return f"{size} {'more' if more else 'less'} {shown.title}"
-
-    def _scaled(self) -> Array:
-        if not len(self):
-            raise InputError("the front is empty; see its message for what contradicts what")
-        low, high = self.values.min(axis=0), self.values.max(axis=0)
-        return np.asarray((self.values - low) / np.where(high > low, high - low, 1.0))
 
 
 def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:

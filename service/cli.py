@@ -23,6 +23,7 @@ from .analyse_command import analyse
 from .balance_command import balance
 from .cases_command import cases
 from .certify_command import certify
+from .compare_command import compare
 from .job_commands import check, schema
 from .optimise_command import optimise
 from .run_commands import export, front
@@ -114,6 +115,7 @@ COMMANDS = (
     balance,
     sections,
     certify,
+    compare,
     check,
     schema,
     front,

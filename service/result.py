@@ -68,7 +68,7 @@ class Result:
             "name": self.name,
             "status": self.status,
             "message": self.message,
-            "objectives": [_wanted_record(wanted) for wanted in self.objectives],
+            "objectives": [wanted_record(wanted) for wanted in self.objectives],
             "designs": [finite(row) for row in self.designs],
             "hypervolume": finite(self.hypervolume),
             "evaluations": self.evaluations,
@@ -128,7 +128,8 @@ def _cell(value: Any) -> Cell:
     return float(value)
 
 
-def _wanted_record(wanted: Wanted) -> dict[str, Any]:
+def wanted_record(wanted: Wanted) -> dict[str, Any]:
+    """Return an objective as JSON has it."""
     record = {
         "quantity": wanted.quantity,
         "sense": wanted.sense,

@@ -14,7 +14,7 @@ from .result import Result, csv_text, json_text
 from .run_folder import runs_place, write_file
 from .screen import console, give, say
 from .stored_runs import find_run, read_run
-from .tables import ROWS, show_front
+from .tables import ROWS, show_design, show_front
 
 Run = Annotated[
     str,
@@ -48,11 +48,33 @@ def front(
         typer.Option(metavar="NAMES", help="Quantities or columns to show, separated by commas."),
     ] = None,
     rows: Annotated[int, typer.Option(min=0, help="Show at most so many designs; 0 shows all.")] = ROWS,
+    knee: Annotated[
+        bool, typer.Option("--knee", help="Choose one design: the nearest to the ideal, objectives by their range.")
+    ] = False,
+    topsis: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WEIGHTS",
+            help='Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
+        ),
+    ] = None,
+    lexicographic: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RANKING",
+            help="Choose one design by ranked objectives, each with what it may give up for the next, such as "
+            '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
+        ),
+    ] = None,
     runs: Runs = None,
     json: Json = False,
 ) -> None:
-    """Show the front of a run again, or a part of it."""
+    """Show the front of a run again, a part of it, or one design chosen from it.
+
+    --knee, --topsis and --lexicographic choose among the designs that meet --where.
+    """
     from .columns import find_columns
+    from .picking_options import picked_row
 
     result = read_run(find_run(run, runs_place(runs)))
     if not result.designs:
@@ -63,13 +85,20 @@ def front(
     keys = list(result.designs[0])
     shown = find_columns(columns, keys) if columns else None
     chosen = _chosen(result, where or [], sort, reverse)
+    one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
+    if one is not None:
+        chosen = [one]
     if json:
         picked = _part(result, chosen)
         record = picked.record()
         if shown is not None:
             names = [column.key for column in shown]
             record["designs"] = [{name: row[name] for name in names} for row in record["designs"]]
-        give(json_text(record))
+        give(json_text(record if one is None else {**record, "number": one + 1}))
+    elif one is not None:
+        screen = console()
+        screen.print(f"{result.name}: design {one + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
+        show_design(screen, result.designs[one], only=[column.key for column in shown] if shown else None)
     elif not (where or sort or reverse or columns or rows != ROWS):
         show_result(result)
     elif chosen:

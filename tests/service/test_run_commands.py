@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
 
+from slidercrank.optimise.picking import Priority
 from slidercrank.service.result import Result, result_of, rows_from_csv
 from slidercrank.service.run_folder import RunFolder
 from tests.service import fronts
@@ -158,3 +160,63 @@ def test_an_export_to_nowhere_is_refused(
     done = command("export", "latest", *arguments)
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
+
+
+def test_front_chooses_one_design(stored: Result, command: Command) -> None:
+    front = fronts.front(designs=30)
+    chosen = {
+        ("--knee",): front.knee(),
+        ("--topsis", "peak_torque=2, transmission_angle=1"): front.topsis(
+            {"peak_torque": 2.0, "transmission_angle": 1.0}
+        ),
+        ("--lexicographic", "peak_torque: 20 %, transmission_angle"): front.lexicographic(
+            Priority(quantity="peak_torque", share=0.2), "transmission_angle"
+        ),
+        ("--lexicographic", "transmission_angle: 2 deg, time_ratio: 0.01, peak_torque"): front.lexicographic(
+            Priority(quantity="transmission_angle", absolute=math.radians(2.0)),
+            Priority(quantity="time_ratio", absolute=0.01),
+            "peak_torque",
+        ),
+    }
+    assert len(set(chosen.values())) >= 3
+    for arguments, row in chosen.items():
+        record = json.loads(command("front", "latest", *arguments, "--json").stdout)
+        assert record["designs"] == [stored.record()["designs"][row]]
+        assert record["number"] == row + 1
+        shown = command("front", "latest", *arguments).stdout
+        assert f"design {row + 1} of {len(stored.designs)}" in shown
+        assert f"{stored.designs[row]['peak_torque_Nm']:.6g}" in shown
+
+
+def test_a_design_is_chosen_among_those_that_meet_the_conditions(stored: Result, command: Command) -> None:
+    free = json.loads(command("front", "latest", "--json", "--topsis", "peak_torque=1").stdout)["designs"][0]
+    limit = float(free["least_transmission_angle_deg"]) + 0.5
+    done = command(
+        *("front", "latest", "--json", "--topsis", "peak_torque=1"),
+        *("--where", f"transmission_angle >= {limit} deg"),
+    )
+    allowed = [row for row in stored.designs if row["least_transmission_angle_deg"] >= limit]  # type: ignore[operator]
+    assert json.loads(done.stdout)["designs"][0]["peak_torque_Nm"] == min(row["peak_torque_Nm"] for row in allowed)  # type: ignore[type-var]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--knee", "--topsis", "peak_torque=1"), "got --knee and --topsis; keep one"),
+        (("--topsis", "stroke=1"), "time_ratio, peak_torque, transmission_angle, position_error; got 'stroke'"),
+        (("--topsis", "peak_torque"), "an objective, =, and a number"),
+        (("--topsis", "peak_torque=1, peak_torque=2"), "each objective once"),
+        (("--topsis", "peak_torque=0"), "one above zero"),
+        (("--topsis", ""), "separated by single commas"),
+        (("--lexicographic", "peak_torque:2"), "a torque with its unit, or a share of the range; got 2"),
+        (("--lexicographic", "peak_torque:2 mm"), "the tolerance in 'peak_torque:2 mm'"),
+        (("--lexicographic", "peak_torque:-5 %"), "the tolerance in 'peak_torque:-5 %'"),
+        (("--lexicographic", "peak_torque, peak_torque"), "each once"),
+    ],
+)
+def test_a_wrong_choice_is_exit_code_2(
+    arguments: tuple[str, ...], message: str, stored: Result, command: Command
+) -> None:
+    done = command("front", "latest", *arguments)
+    assert done.exit_code == 2
+    assert message in done.stderr

@@ -1,0 +1,109 @@
+"""The fronts of several runs in one scatter matrix, a marker of its own for each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from ..result import Wanted
+from .scatter import MOST
+from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, place, unit_text, with_unit, write
+
+# Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).
+_STYLES = (
+    ("#0072b2", "#0072b2", "o"),
+    ("none", "#d55e00", "s"),
+    ("#000000", "#000000", "x"),
+    ("none", "#009e73", "D"),
+    ("#cc79a7", INK, "v"),
+    ("none", INK, "P"),
+    ("#56b4e9", INK, "*"),
+    ("#f0e442", INK, "^"),
+)
+GREATEST = len(_STYLES)
+"""Runs that can be told apart in one figure."""
+_LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24  # inches
+_WORDS = {"maximise": "→ better", "minimise": "← better", "target": ""}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A run in the figure. label: for the legend. values: (n, m), its objectives in shown units."""
+
+    label: str
+    values: NDArray[np.float64]
+
+
+def comparison_matrix(runs: Sequence[Drawn], objectives: Sequence[Wanted]) -> Figure:
+    """Return the scatter matrix of the fronts of several runs, of two objectives or more."""
+    count = min(len(objectives), MOST) - 1
+    side = max(1.6, min(4.2 if count == 1 else 2.6, 8.4 / count))
+    width = max(_LEFT + count * (side + _GAP) + _RIGHT, 6.4)
+    key = _KEY * len(runs) + 0.2
+    figure = new_figure(width, _BOTTOM + count * (side + _GAP) + _TOP + key)
+    for row in range(count):
+        for column in range(row + 1):
+            panel = place(
+                figure,
+                _LEFT + column * (side + _GAP),
+                _BOTTOM + (count - 1 - row) * (side + _GAP),
+                side,
+                side,
+            )
+            _panel(panel, runs, column, row + 1)
+            panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
+            if column == 0:
+                panel.set_ylabel(_label(objectives[row + 1]), fontsize=SMALL)
+            if row == count - 1:
+                panel.set_xlabel(_label(objectives[column]), fontsize=SMALL)
+    height = figure.get_size_inches()[1]
+    write(figure, 0.2, height - 0.3, "Fronts compared", fontsize=TITLE, weight="bold")
+    if len(objectives) > MOST:
+        write(figure, 0.2, height - 0.48, f"the first {MOST} of {len(objectives)} objectives", color=MUTED)
+    figure.legend(
+        [Line2D([], [], **_style(index)) for index in range(len(runs))],
+        [f"{run.label}, {len(run.values)} design{'s' if len(run.values) != 1 else ''}" for run in runs],
+        loc="upper left",
+        bbox_to_anchor=(0.2 / width, (height - _TOP) / height),
+        fontsize=SMALL,
+        frameon=False,
+        borderpad=0.0,
+        borderaxespad=0.0,
+        handletextpad=0.4,
+    )
+    return figure
+
+
+def _panel(panel: Axes, runs: Sequence[Drawn], across: int, up: int) -> None:
+    dress(panel)
+    for index, run in enumerate(runs):
+        panel.plot(run.values[:, across], run.values[:, up], **_style(index), zorder=2 + 0.01 * index)
+    for column, set_limits in ((across, panel.set_xlim), (up, panel.set_ylim)):
+        values = np.concatenate([run.values[:, column] for run in runs])
+        set_limits(limits(values.min(), values.max()))
+
+
+def _style(index: int) -> dict[str, Any]:
+    fill, edge, marker = _STYLES[index]
+    return {
+        "marker": marker,
+        "markersize": 4.6,
+        "markerfacecolor": fill,
+        "markeredgecolor": edge,
+        "markeredgewidth": 0.9,
+        "linestyle": "none",
+    }
+
+
+def _label(wanted: Wanted) -> str:
+    title = with_unit(wanted.title.removesuffix(", worst case"), wanted.unit)
+    if wanted.target is not None:
+        title += f" (target {wanted.target:g} {unit_text(wanted.unit)}".rstrip() + ")"
+    return f"{title}\n{_WORDS[wanted.sense]}".rstrip()
