@@ -1,6 +1,6 @@
 """Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder."""
 
-from . import evaluation, peak_accuracy, search, startup
+from . import evaluation, methods, peak_accuracy, search, startup
 from .report import machine, show
 
 
@@ -9,6 +9,7 @@ def main() -> None:
     print(machine())
     show("Evaluation", [*evaluation.speed(), *evaluation.accuracy(), *evaluation.memory()])
     show("Search", [row for job in ("feeder", "sieve") for row in search.compare(f"runs/{job}.toml")])
+    show("Methods: hypervolume of the designs delivered over that of the default's", methods.compare())
     show("Commands", startup.commands())
     show("Greatest relative error of peak torque, 1,000 random linkages", peak_accuracy.accuracy())
 

@@ -35,7 +35,7 @@ _UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference 
 _SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
 _TOLD = 16  # problems between two questions whether to stop
 _SLACK = 0.005  # of the ranges: samples above a ceiling by less may lead below it
-_FINEST = 60  # intervals of the grid of ceilings
+_CELLS = 20_000  # of the grid of ceilings at most
 _WIDER = 1.5  # how far beyond the triangle
 
 
@@ -50,14 +50,16 @@ def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) 
     if front is None:
         return Archive.empty(len(problem.objectives))
     m, scaled = len(problem.objectives), front.scaled(front.begun.values)
-    wanted = _first(problem)
-    for parts in range(2, _FINEST):
-        ceilings = grid(np.zeros(m - 1), np.ones(m - 1), parts)
-        near = np.array([bool((scaled[:, 1:] <= row + _SLACK).all(axis=1).any()) for row in ceilings])
-        if near.sum() >= wanted:
-            break
+    ceilings = np.zeros((0, m - 1))
+    parts = 2
+    while len(ceilings) < _first(problem) and parts ** (m - 1) <= _CELLS:
+        cells = grid(np.zeros(m - 1), np.ones(m - 1), parts)
+        # Only what nothing dominates decides which ceilings can be kept.
+        edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
+        ceilings = cells[[bool((edge <= row + _SLACK).all(axis=1).any()) for row in cells]]
+        parts += max(1, parts // 4)
     only = Form.single(m, 0, rho=_SUM)
-    forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), _SUM) for row in ceilings[near]]
+    forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), _SUM) for row in ceilings]
     return front.solve(forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), _SUM))
 
 
@@ -183,7 +185,9 @@ class _Front:
 
 
 def _first(problem: Problem) -> int:
-    return max(1, int(_FIRST * problem.settings.designs))
+    """Return how many problems take aim evenly. Of two objectives the front is a line: all of them find their own."""
+    share = _MORE if len(problem.objectives) == 2 else _FIRST
+    return max(1, int(share * problem.settings.designs))
 
 
 def _open(form: Form) -> Form:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
@@ -19,15 +18,11 @@ from slidercrank.optimise.methods.registry import METHODS, NAMES, budget
 from slidercrank.optimise.problem import Problem, Settings
 from slidercrank.optimise.search import Archive, Run
 from slidercrank.optimise.solve import solve
+from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
 BOTH = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=20)
 POINTS = 512
-
-
-def asked(given: Problem, method: str, **settings: int) -> Problem:
-    """Return a problem that asks for a method."""
-    return replace(given, settings=replace(given.settings, method=method, **settings))
 
 
 def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -58,8 +53,8 @@ def test_every_name_has_a_method() -> None:
 
 
 def test_the_budget_is_the_one_asked_or_the_method_s_own() -> None:
-    assert budget(asked(BOTH, "nbi", evaluations=123)) == 123
-    assert budget(asked(BOTH, "nbi")) == METHODS["nbi"].budget
+    assert budget(asking(BOTH, "nbi", evaluations=123)) == 123
+    assert budget(asking(BOTH, "nbi")) == METHODS["nbi"].budget
 
 
 def test_a_budget_without_a_method_is_refused() -> None:
@@ -71,24 +66,24 @@ def test_a_budget_without_a_method_is_refused() -> None:
 def test_several_objectives_are_refused_naming_the_methods_that_fit(method: str) -> None:
     wanted = rf"{method} takes one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
     with pytest.raises(InputError, match=wanted):
-        solve(asked(BOTH, method))
+        solve(asking(BOTH, method))
 
 
 @pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.objectives == "several"])
 def test_one_objective_is_refused_naming_the_methods_that_fit(method: str) -> None:
     with pytest.raises(InputError, match=f"{method} takes several objectives; got 1 .*; use one of auto, slsqp"):
-        solve(asked(problem({"peak_torque": "minimise"}), method))
+        solve(asking(problem({"peak_torque": "minimise"}), method))
 
 
 @pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.equalities])
 def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method: str) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
     with pytest.raises(InputError, match=f"{method} cannot hold peak_slider_speed at one value.*use slsqp or auto"):
-        solve(asked(given, method))
+        solve(asking(given, method))
 
 
 def test_designs_are_delivered_as_they_were_found() -> None:
-    front = solve(asked(BOTH, "sobol"))
+    front = solve(asking(BOTH, "sobol"))
     random = np.random.default_rng(1)
     evaluator = Evaluator(BOTH, sheets(BOTH)[0])
     sampled = evaluator.sheet.dimensions(random.random((2 * POINTS, 2)))
@@ -105,7 +100,7 @@ def test_what_lies_beside_an_equality_is_moved_onto_it() -> None:
     given = problem(
         {"transmission_angle": "maximise", "time_ratio": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0}
     )
-    front = solve(asked(given, "sobol"))
+    front = solve(asking(given, "sobol"))
     speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
     assert len(front) > 0
     assert np.abs(speed / 4.0 - 1.0).max() <= 1e-8
@@ -113,12 +108,12 @@ def test_what_lies_beside_an_equality_is_moved_onto_it() -> None:
 
 def test_rounds_are_told_and_the_run_stops_between_them() -> None:
     rounds: list[Progress] = []
-    whole = solve(asked(BOTH, "sobol"), progress=rounds.append)
+    whole = solve(asking(BOTH, "sobol"), progress=rounds.append)
     assert [(entry.round, entry.rounds) for entry in rounds] == [(1, 2), (2, 2)]
     assert len(whole.history) == 2
     assert whole.history[0].hypervolume <= whole.history[1].hypervolume
     rounds.clear()
-    part = solve(asked(BOTH, "sobol"), progress=rounds.append, cancelled=lambda: len(rounds) >= 1)
+    part = solve(asking(BOTH, "sobol"), progress=rounds.append, cancelled=lambda: len(rounds) >= 1)
     assert part.status == "cancelled"
     assert len(part) > 0
     assert len(part.history) == 1
@@ -126,7 +121,7 @@ def test_rounds_are_told_and_the_run_stops_between_them() -> None:
 
 def test_a_contradiction_is_explained_whatever_the_method() -> None:
     held: dict[str, Bounds] = {"stroke": 0.2, "time_ratio": (1.5, None), "transmission_angle": (degrees(60.0), None)}
-    front = solve(asked(problem({"peak_torque": "minimise", "footprint": "minimise"}, held), "sobol"))
+    front = solve(asking(problem({"peak_torque": "minimise", "footprint": "minimise"}, held), "sobol"))
     assert front.status == "infeasible"
     assert "can be had with all else kept" in front.message
 

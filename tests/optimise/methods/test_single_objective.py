@@ -1,0 +1,107 @@
+"""Methods for one objective against the default, which shares no solver with them, and against closed forms."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.solve import solve
+from tests.optimise.independent import excess, value
+from tests.optimise.methods.asking import asking
+from tests.optimise.problems import MACHINE, Bounds, degrees, problem
+
+HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
+PROBLEMS: dict[str, Problem] = {
+    "a torque between two peaks": problem({"peak_torque": "minimise"}, HELD),
+    "a ratio at the limit of an angle": problem({"time_ratio": "maximise"}, HELD),
+    "an error with the stroke in a range": problem(
+        {"position_error": "minimise"}, {"stroke": (0.15, 0.25), "time_ratio": (1.1, None)}
+    ),
+    "a footprint with offsets of either sign": problem(
+        {"footprint": "minimise"},
+        {"stroke": 0.2, "time_ratio": (1.1, None), "peak_torque": (None, 60.0)},
+        offset=(-0.1, 0.1),
+    ),
+    "a target within reach": problem({"time_ratio": 1.2}, HELD),
+}
+METHODS = ("slsqp", "trust_constr", "differential_evolution", "shgo")
+PAIRS = [(method, name) for method in METHODS for name in PROBLEMS if method != "trust_constr"]
+PAIRS += [("trust_constr", "a torque between two peaks"), ("trust_constr", "a target within reach")]  # takes seconds
+
+
+@cache
+def default(name: str) -> float:
+    """Return what the default finds."""
+    front = solve(PROBLEMS[name])
+    assert front.status == "done", front.message
+    return float(front.values[0, 0])
+
+
+def violation(front: ParetoFront) -> float:
+    """Return the greatest relative violation of a front's constraints, recomputed."""
+    given = front.problem
+    return max(
+        float(excess(constraint, value(given, constraint.quantity, front.dimensions)).max())
+        for constraint in given.constraints
+    )
+
+
+@pytest.mark.parametrize(("method", "name"), PAIRS)
+def test_every_method_finds_what_the_default_finds(method: str, name: str) -> None:
+    front = solve(asking(PROBLEMS[name], method))
+    assert front.status == "done", front.message
+    assert len(front) == 1
+    # Nobody promises more than 1e-6; a target is met to 1e-8 of its value.
+    assert front.values[0, 0] == pytest.approx(default(name), rel=1e-6, abs=1e-8)
+    assert violation(front) <= 1e-8
+
+
+@pytest.mark.parametrize("method", ["slsqp", "differential_evolution", "shgo"])
+def test_the_longest_rod_without_offset_transmits_best(method: str) -> None:
+    """As in the test of the default: cos(mu) = S / (2 l) with the longest rod."""
+    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.28}, rod=(0.2, 0.6), offset=(0.0, 0.1))
+    front = solve(asking(given, method))
+    assert math.cos(-front.values[0, 0]) == pytest.approx(0.14 / 0.6, rel=1e-7)
+
+
+@pytest.mark.parametrize("method", ["slsqp", "trust_constr"])
+def test_an_equality_that_no_rule_eliminates_is_met(method: str) -> None:
+    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
+    front, expected = solve(asking(given, method)), solve(given)
+    speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
+    assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
+    assert front.values[0, 0] == pytest.approx(expected.values[0, 0], rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["slsqp", "differential_evolution"])
+def test_the_same_seed_gives_the_same_design_bit_for_bit(method: str) -> None:
+    given = asking(PROBLEMS["a torque between two peaks"], method)
+    assert solve(given).dimensions.tobytes() == solve(given).dimensions.tobytes()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_all_dimensions_given_leave_one_design(method: str) -> None:
+    front = solve(asking(problem({"peak_torque": "minimise"}, crank=0.1, rod=0.3, offset=0.05), method))
+    assert front.dimensions.tolist() == [[0.1, 0.3, 0.05]]
+
+
+@pytest.mark.parametrize("method", ["slsqp", "differential_evolution"])
+def test_cancelling_keeps_what_was_found(method: str) -> None:
+    told: list[object] = []
+    given = asking(PROBLEMS["a torque between two peaks"], method)
+    front = solve(given, progress=told.append, cancelled=lambda: len(told) >= 3)
+    assert front.status == "cancelled"
+    assert len(front) == 1
+    assert len(told) <= 4
+
+
+def test_evolution_keeps_to_its_budget() -> None:
+    """What is found is evaluated a few times more for the front."""
+    front = solve(asking(PROBLEMS["a torque between two peaks"], "differential_evolution", evaluations=2_000))
+    assert front.evaluations <= 2_000 + 100
