@@ -22,6 +22,7 @@ from .analyse_command import analyse
 from .cases_command import cases
 from .compare_command import compare
 from .job_commands import check, schema
+from .like_command import like
 from .optimise_command import optimise
 from .run_commands import export, front
 from .screen import give, say
@@ -103,7 +104,7 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-for command in (optimise, analyse, sweep, check, schema, front, export, compare, cases):
+for command in (optimise, analyse, sweep, check, schema, front, export, like, compare, cases):
     app.command()(command)
 
 
