@@ -37,7 +37,7 @@ CASES: dict[str, tuple[bool, tuple[Constraint, ...], Mapping[str, Ends]]] = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> None:
-    """A front of 100 designs lies nearest to it at most a spacing away, and never nearer by more than rounding."""
+    """A front of 60 designs lies nearest to it at most a spacing away, and never nearer by more than rounding."""
     torque, constraints, ranges = CASES[case]
     given = front(torque)
     row = len(given) // 2
@@ -54,7 +54,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
         least, greatest = ranges.get(name, (None, None))
         assert least is None or found.dimensions[0, column] >= least - 1e-10
         assert greatest is None or found.dimensions[0, column] <= greatest + 1e-10
-    dense = solve(replace(found.problem, settings=Settings(designs=100)))
+    dense = solve(replace(found.problem, settings=Settings(designs=60)))
     here, there = found.values / span, dense.values / span
     assert not ((there <= here).all(axis=1) & (there < here - 1e-7).any(axis=1)).any()
     mine = float(distance(found.values, given.values[row], span)[0])
@@ -63,7 +63,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
     assert mine <= nearest + 1e-6
     spacing = float(np.min(np.linalg.norm(there - here, axis=1)))
     assert nearest <= mine + spacing + 1e-9
-    assert spacing < 0.03
+    assert spacing < 0.05
 
 
 def test_conditions_join_those_of_the_problem() -> None:
