@@ -236,3 +236,12 @@ def versions() -> dict[str, str]:
         except PackageNotFoundError:
             found[name] = "unknown"
     return found
+
+
+def only(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, row: int) -> ParetoFront:
+    """Return a front of one design of the pile; its residual is scaled by the pile's span."""
+    single = Pile(pile.span)
+    for name in ("sheet", "u", "dimensions", "values", "residual"):
+        setattr(single, name, getattr(pile, name)[row : row + 1])
+    single.goals, single.active = [pile.goals[row]], [pile.active[row]]
+    return _assemble(problem, evaluators, single, run, "done")

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from .hypervolume import scaling
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .pile import STATIONARY
-from .problem import Objective, Problem
+from .problem import Constraint, Objective, Problem
 from .stationarity import multipliers
 
 Array = NDArray[np.float64]
@@ -144,6 +145,20 @@ class ParetoFront:
             raise InputError(f"no design of the front lies within {bounds}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
+
+    def like(
+        self, row: int, *constraints: Constraint, ranges: Mapping[str, tuple[float | None, float | None]] | None = None
+    ) -> ParetoFront:
+        """Return the design most like one of the front that also meets further requirements, as a front of its own.
+
+        It is Pareto-optimal for the problem with them, and of those designs the nearest, see `like.like`; empty, with
+        the reason in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
+        `front.like(front.knee(), Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
+        """
+        from .like import like
+
+        table = {str(key): value for key, value in self.designs.iloc[row].items()}
+        return like(self.problem, table, self.values[row], scaling(self.values)[1], constraints, ranges)
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates at a design, (m, m): `[a, b]` is what objective a loses per unit that b gains.

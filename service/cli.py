@@ -25,6 +25,7 @@ from .cases_command import cases
 from .certify_command import certify
 from .compare_command import compare
 from .job_commands import check, schema
+from .like_command import like
 from .optimise_command import optimise
 from .run_commands import export, front
 from .screen import give, say
@@ -116,6 +117,7 @@ COMMANDS = (
     sections,
     certify,
     compare,
+    like,
     check,
     schema,
     front,

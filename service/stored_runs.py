@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..model.errors import InputError, RunError
+from ..model.errors import InputError, JobError, RunError
 from .result import Result, Row, Wanted, finite, rows_from_csv
 from .run_folder import MARK
+
+if TYPE_CHECKING:
+    from ..optimise.problem import Problem
 
 
 def find_run(text: str, place: Path) -> Path:
@@ -98,3 +102,20 @@ def _result(record: dict[str, Any], rows: list[Row], run: str) -> Result:
     if missing:
         raise ValueError(f"the designs have no column {missing.pop()}")
     return result
+
+
+def problem_of(folder: Path, result: Result) -> Problem:
+    """Return the problem that a run solved: its job, with the seed of the run.
+
+    Raises `RunError` for a run without a job, or with one that is not valid any more.
+    """
+    from ..optimise.job import load_job
+
+    for name in ("job.toml", "job.json"):
+        if (folder / name).is_file():
+            try:
+                problem = load_job(folder / name)
+            except JobError as error:
+                raise RunError(f"the job of the run {folder} cannot be read: {error}; run it again") from error
+            return replace(problem, settings=replace(problem.settings, seed=result.seed))
+    raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")
