@@ -2,12 +2,15 @@
 
 import math
 import re
+import tomllib
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
 from slidercrank.model.linkage import Linkage
+from slidercrank.optimise.job import parse_job
 from tests.packaging.feeder import numbers
 
 LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
@@ -178,3 +181,20 @@ def test_the_sketch_of_the_dead_centres_is_to_scale(root: Path) -> None:
         assert pin == pytest.approx((linkage.crank * math.cos(angle), linkage.crank * math.sin(angle)), abs=pixel)
     # Counter-clockwise the inward stroke, from the outer to the inner dead centre, takes pi + b: the slow one.
     assert linkage.slow_stroke(direction=1.0) == "inward"
+
+
+def _tables(page: str) -> list[dict[str, Any]]:
+    return [tomllib.loads(block) for block in re.findall(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)]
+
+
+def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str], root: Path) -> None:
+    """Each alone added to the job of the README; of tables that both have, the keys of both count."""
+    (whole,) = _tables(pages[root / "README.md"])
+    parts = _tables(pages[root / "docs" / "jobs.md"])
+    assert len(parts) >= 5
+    for part in [{}, *parts]:
+        job = {**whole, **part}
+        for name in part:
+            if isinstance(whole.get(name), dict):
+                job[name] = {**whole[name], **part[name]}
+        assert parse_job(job).name == "Press feed"
