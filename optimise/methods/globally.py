@@ -87,7 +87,8 @@ def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: 
 
     evaluator = evaluators[index]
     k, count = evaluator.dimension, 0
-    generations = max(1, budget(problem) // (len(evaluators) * _POPULATION * k) - 1)
+    members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
+    generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
     run.rounds = len(run.told) + 1 + generations // _TOLD
     exact = _Exact(evaluator)
 

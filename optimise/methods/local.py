@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -54,7 +55,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
 
     R. H. Byrd, M. E. Hribar and J. Nocedal, "An interior point algorithm for large-scale nonlinear programming", SIAM
     J. Optim. 9(4), 1999. A peak that comes or goes is a jump of a slack that may end it early: it then begins again,
-    nearer to the limits. It keeps within the inequalities, unless u lies on one.
+    nearer to the limits. It keeps within the inequalities, unless u lies on one. Equalities are not for it.
     """
     for attempt in range(_ATTEMPTS):
         found, settled = _barrier(programme, u, _MARGIN * _NEARER**attempt)
@@ -75,19 +76,20 @@ def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool
     begin[-1] += margin * programme.form.weights.max()
     inside = bool((programme.inequalities(begin) < 0.0).all() and (begin < programme.upper).all())
     limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), inside)]
-    if len(programme.equalities(begin)):
-        limits.append(NonlinearConstraint(programme.equalities, 0.0, 0.0, programme.equal_slopes, BFGS()))
     none = np.zeros((len(begin), len(begin)))
-    found = minimised(
-        lambda z: programme.cost @ z,
-        begin,
-        jac=lambda z: programme.cost,
-        hess=lambda z: none,
-        method="trust-constr",
-        bounds=Bounds(programme.lower, programme.upper, keep_feasible=inside),
-        constraints=limits,
-        options={"gtol": 0.0, "xtol": 1e-10, "barrier_tol": 1e-10, "maxiter": _BARRIER_STEPS},
-    )
+    with warnings.catch_warnings():
+        # On the way rows may be dependent and slopes constant, which scipy copes with.
+        warnings.simplefilter("ignore", UserWarning)
+        found = minimised(
+            lambda z: programme.cost @ z,
+            begin,
+            jac=lambda z: programme.cost,
+            hess=lambda z: none,
+            method="trust-constr",
+            bounds=Bounds(programme.lower, programme.upper, keep_feasible=inside),
+            constraints=limits,
+            options={"gtol": 0.0, "xtol": 1e-10, "barrier_tol": 1e-10, "maxiter": _BARRIER_STEPS},
+        )
     return np.asarray(found.x), found.status == 2
 
 

@@ -75,7 +75,7 @@ class Method:
 
 METHODS: dict[str, Method] = {
     "slsqp": Method("gradient", 20_000, "one"),
-    "trust_constr": Method("gradient", 20_000, "one"),
+    "trust_constr": Method("gradient", 20_000, "one", equalities=False),
     "differential_evolution": Method("globally", 50_000, "one", equalities=False),
     "shgo": Method("globally", 50_000, "one", equalities=False),
     "minimax": Method("minimax", 50_000, "one"),

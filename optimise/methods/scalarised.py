@@ -3,7 +3,7 @@
 All begin with the optimum of each objective alone. Their objectives are the payoff table; its ranges scale the
 objectives. Each further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The
 first round takes aim evenly. As fronts of more objectives than free unknowns are thin, much of that leads to the same
-designs; later rounds aim at samples in the gaps: those that would add most to the hypervolume of what was found.
+designs; later rounds aim at the gaps between optima.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import distance_matrix
 
 from ..evaluation import Evaluator
-from ..hypervolume import choose, nondominated, scaling
+from ..hypervolume import nondominated, scaling
 from ..problem import Problem
 from ..search import Archive, Run
 from ..stationarity import Array
@@ -42,14 +43,15 @@ _WIDER = 1.5  # how far beyond the triangle
 def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the front by minimising the first objective with ceilings on all others, on a grid of the payoff table.
 
-    Ceilings that no sample comes near are left out; the grid is refined until enough others are left. With the sum, see
-    `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of the
-    epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2), 2009).
+    Ceilings that no sample or optimum comes near are left out; the grid is refined until enough others are left. With
+    the sum, see `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of
+    the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
+    2009).
     """
     front = _begin(problem, evaluators, run)
     if front is None:
         return Archive.empty(len(problem.objectives))
-    m, scaled = len(problem.objectives), front.scaled(front.begun.values)
+    m, scaled = len(problem.objectives), front.scaled(np.concatenate([front.begun.values, front.archive.values]))
     ceilings = np.zeros((0, m - 1))
     parts = 2
     while len(ceilings) < _first(problem) and parts ** (m - 1) <= _CELLS:
@@ -111,7 +113,11 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 @dataclass
 class _Front:
-    """What the problems share. payoff: (m, m), objectives (columns) of the optimum of each objective (rows), SI."""
+    """What the problems share.
+
+    payoff: (m, m), objectives (columns) of the optimum of each objective (rows), SI. aimed: (n, m), where later rounds
+    took aim, scaled.
+    """
 
     problem: Problem
     evaluators: list[Evaluator]
@@ -121,6 +127,7 @@ class _Front:
     ideal: Array
     span: Array
     payoff: Array
+    aimed: Array
 
     def scaled(self, values: Array) -> Array:
         return np.asarray((values - self.ideal) / self.span)
@@ -153,19 +160,26 @@ class _Front:
         return self.archive
 
     def _gaps(self) -> Array:
-        """Return the scaled objectives (n, m) of samples that would add most to the front, none if it is full."""
+        """Return scaled objectives (n, m) in gaps between optima, the farthest from all first; none if it is full.
+
+        They are non-dominated samples and the middles between neighbouring optima: those with no other optimum in the
+        ball between them (K. R. Gabriel and R. R. Sokal, "A new statistical approach to geographic variation analysis",
+        Syst. Zool. 18(3), 1969). None is aimed at twice: what it leads to may lie elsewhere.
+        """
         found = self.scaled(self.archive.values)
         missing = int(_MORE * self.problem.settings.designs) - len(found)
+        if missing <= 0:
+            return found[:0]
         sampled = self.scaled(self.begun.values)
-        both = np.concatenate([found, sampled])
-        rows = nondominated(both)
-        rows = rows[rows >= len(found)]
-        rows = rows[:: 1 + len(rows) // _POOL]
-        if missing <= 0 or not len(rows):
-            return sampled[:0]
-        union = np.concatenate([found, both[rows]])
-        picked = choose(union, len(found) + missing, always=tuple(range(len(found))))
-        return np.asarray(union[picked[picked >= len(found)]])
+        sampled = sampled[nondominated(sampled)]
+        aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _middles(found)])
+        away = distance_matrix(aims, np.concatenate([found, self.aimed])).min(axis=1)
+        picked: list[int] = []
+        while len(picked) < min(missing, len(aims)):
+            picked.append(int(np.argmax(away)))
+            away = np.minimum(away, np.linalg.norm(aims - aims[picked[-1]], axis=1))
+        self.aimed = np.concatenate([self.aimed, aims[picked]])
+        return np.asarray(aims[picked])
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
         """Return the best point of every sheet that is not plainly worse than that of another."""
@@ -182,6 +196,15 @@ class _Front:
             found.append((float(worth[row]), index, points[row]))
         least = min(value for value, _, _ in found)
         return [(index, u) for value, index, u in found if value <= least + _APART]
+
+
+def _middles(points: Array) -> Array:
+    """Return the middles (n, m) of the edges of the Gabriel graph of points."""
+    first, second = np.triu_indices(len(points), 1)
+    middles = 0.5 * (points[first] + points[second])
+    within = distance_matrix(middles, points) < 0.5 * np.linalg.norm(points[first] - points[second], axis=1)[:, None]
+    within[np.arange(len(first)), first] = within[np.arange(len(first)), second] = False
+    return np.asarray(middles[~within.any(axis=1)])
 
 
 def _first(problem: Problem) -> int:
@@ -203,7 +226,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
         run.tell("sampling", evaluators, front)
         return None
     ideal, span = scaling(begun.values[nondominated(begun.values)])
-    shared = _Front(problem, evaluators, run, begun, front, ideal, span, np.zeros((m, m)))
+    shared = _Front(problem, evaluators, run, begun, front, ideal, span, np.zeros((m, m)), np.zeros((0, m)))
     run.rounds = 1 + m
     run.tell("sampling", evaluators, front)
     for column in range(m):

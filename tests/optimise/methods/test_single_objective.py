@@ -70,10 +70,9 @@ def test_the_longest_rod_without_offset_transmits_best(method: str) -> None:
     assert math.cos(-front.values[0, 0]) == pytest.approx(0.14 / 0.6, rel=1e-7)
 
 
-@pytest.mark.parametrize("method", ["slsqp", "trust_constr"])
-def test_an_equality_that_no_rule_eliminates_is_met(method: str) -> None:
+def test_an_equality_that_no_rule_eliminates_is_met() -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
-    front, expected = solve(asking(given, method)), solve(given)
+    front, expected = solve(asking(given, "slsqp")), solve(given)
     speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
     assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
     assert front.values[0, 0] == pytest.approx(expected.values[0, 0], rel=1e-6)
