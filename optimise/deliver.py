@@ -18,6 +18,7 @@ from .hypervolume import choose, hypervolume, scaling
 from .pile import STATIONARY, Pile
 from .polish import polish, project
 from .problem import Problem, choice_field
+from .sampling import apart
 from .search import Archive, Run
 from .stationarity import Array, multipliers
 
@@ -28,7 +29,6 @@ BATCH = 64
 _POOL = 2000  # greedy choice among more would take longer than it gains
 _STARTS = 24  # for the best value of a single objective
 _EXTREMES = 6  # for the best value of one objective among several
-_APART = 0.1  # of the unit box: starts that are to lead to different optima
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
@@ -108,14 +108,7 @@ def _choice(problem: Problem, archive: Archive) -> NDArray[np.int64]:
 
 def _spread(archive: Archive, column: int, count: int) -> NDArray[np.int64]:
     """Return the rows of designs that are best in an objective, each apart from the better ones."""
-    rows = np.argsort(archive.values[:, column], kind="stable")
-    chosen: list[int] = []
-    while len(rows) and len(chosen) < count:
-        best = int(rows[0])
-        chosen.append(best)
-        apart = np.abs(archive.u[rows] - archive.u[best]).max(axis=1) >= _APART
-        rows = rows[apart | (archive.sheet[rows] != archive.sheet[best])]
-    return np.array(chosen, dtype=np.int64)
+    return apart(archive.values[:, column], archive.u, archive.sheet, count)
 
 
 def _extremes(evaluators: list[Evaluator], archive: Archive, span: Array) -> list[tuple[int, Array]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
@@ -11,6 +12,25 @@ from .stationarity import Array
 
 FACES = 0.3
 """Chance that a coordinate of a sample is snapped to one of its bounds: optima sit on faces and edges."""
+
+APART = 0.1
+"""Distance in the unit box of starts that are to lead to different optima."""
+
+
+def apart(worth: Array, points: Array, sheet: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
+
+    Points of different sheets are apart.
+    """
+    rows = np.argsort(worth, kind="stable")
+    rows = rows[np.isfinite(worth[rows])]
+    chosen: list[int] = []
+    while len(rows) and len(chosen) < count:
+        best = int(rows[0])
+        chosen.append(best)
+        far = np.abs(points[rows] - points[best]).max(axis=1) >= APART
+        rows = rows[far | (sheet[rows] != sheet[best])]
+    return np.array(chosen, dtype=np.int64)
 
 
 def generator(seed: int, *stream: int) -> np.random.Generator:

@@ -34,7 +34,7 @@ from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator
 from ..methods.registry import budget
 from ..problem import Problem
-from ..sampling import first_samples
+from ..sampling import apart, first_samples
 from ..search import SAMPLES, WIDTHS, Archive, Run, explore
 from ..stationarity import Array
 from .scp import Descent, Point
@@ -44,7 +44,6 @@ STARTS = 12
 OPTIMAL = 1e-6
 """Residual that counts as optimal."""
 _LAST = 4096  # samples for the starts where none is feasible
-_APART = 0.1  # of the unit box, between starts
 _CARRIES = 1e-7  # multipliers below it are the solver's rounding
 
 
@@ -143,7 +142,8 @@ def descend(
 
     They start from the best designs of an archive that are apart, or where it is empty from what violates least.
     """
-    begin = [(int(archive.sheet[row]), archive.u[row]) for row in _starts(archive, starts)]
+    rows = apart(archive.values[:, 0], archive.u, archive.sheet, starts)
+    begin = [(int(archive.sheet[row]), archive.u[row]) for row in rows]
     begin = begin or _nearest(evaluators, starts)
     begin = [(index, u[: evaluators[index].dimension]) for index, u in begin]
     values = archive.values[:, 0]
@@ -167,17 +167,6 @@ def _scale(problem: Problem, values: Array) -> float:
         return 1.0
     target = abs(problem.objectives[0].target or 0.0)
     return float(max(abs(values.min()), target) or np.ptp(values) or 1.0)
-
-
-def _starts(archive: Archive, count: int) -> list[int]:
-    rows = np.argsort(archive.values[:, 0], kind="stable")
-    chosen: list[int] = []
-    while len(rows) and len(chosen) < count:
-        best = int(rows[0])
-        chosen.append(best)
-        apart = np.abs(archive.u[rows] - archive.u[best]).max(axis=1) >= _APART
-        rows = rows[apart | (archive.sheet[rows] != archive.sheet[best])]
-    return chosen
 
 
 def _nearest(evaluators: list[Evaluator], count: int) -> list[tuple[int, Array]]:

@@ -14,7 +14,6 @@ from .scalar import Form, Programme
 from .starts import samples
 
 _STARTS = {"slsqp": 24, "trust_constr": 8}
-_APART = 0.1  # of the unit box: starts that are to lead to different optima
 
 
 def slsqp(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -34,7 +33,7 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
         run.tell("sampling", evaluators, archive)
         return archive
     ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
-    rows = begun.apart(begun.values[:, 0], _STARTS[problem.settings.method], _APART)
+    rows = begun.best(0, _STARTS[problem.settings.method])
     run.rounds = 1 + len(rows)
     run.tell("sampling", evaluators, archive)
     for row in rows:

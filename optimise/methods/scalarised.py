@@ -31,7 +31,8 @@ _FIRST = 0.5  # problems of the first round a delivered design: many have the sa
 _MORE = 3.0  # optima wanted a delivered design: the best are chosen
 _ROUNDS = 6  # of aiming at gaps
 _POOL = 2000  # samples that gaps are looked for with
-_STARTS, _APART = 4, 0.1  # of each objective alone, and how far apart in the unit box
+_STARTS = 4  # of each objective alone
+_WORSE = 0.1  # of the ranges: a sheet whose best start is worse by less is tried too
 _UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
 _SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
 _TOLD = 16  # problems between two questions whether to stop
@@ -195,7 +196,7 @@ class _Front:
             row = own[np.argmin(worth[own])]
             found.append((float(worth[row]), index, points[row]))
         least = min(value for value, _, _ in found)
-        return [(index, u) for value, index, u in found if value <= least + _APART]
+        return [(index, u) for value, index, u in found if value <= least + _WORSE]
 
 
 def _middles(points: Array) -> Array:
@@ -231,7 +232,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     run.tell("sampling", evaluators, front)
     for column in range(m):
         best = np.full(m, np.inf)
-        for row in begun.apart(begun.values[:, column], _STARTS, _APART):
+        for row in begun.best(column, _STARTS):
             values = shared.optimum(Form.single(m, column, rho=_SUM), int(begun.sheet[row]), begun.u[row])
             if values is not None and values[column] < best[column]:
                 best = values

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..evaluation import FEASIBLE, Evaluator
 from ..problem import Problem
-from ..sampling import first_samples
+from ..sampling import apart, first_samples
 from ..search import BANDS
 from ..stationarity import Array
 
@@ -30,17 +30,9 @@ class Samples:
     def __len__(self) -> int:
         return len(self.sheet)
 
-    def apart(self, worth: Array, count: int, distance: float) -> list[int]:
-        """Return at most `count` rows, the least worth (n,) first, each this far from those before in the unit box."""
-        rows = np.argsort(worth, kind="stable")
-        rows = rows[np.isfinite(worth[rows])]
-        chosen: list[int] = []
-        while len(rows) and len(chosen) < count:
-            best = int(rows[0])
-            chosen.append(best)
-            far = np.abs(self.u[rows] - self.u[best]).max(axis=1) >= distance
-            rows = rows[far | (self.sheet[rows] != self.sheet[best])]
-        return chosen
+    def best(self, column: int, count: int) -> NDArray[np.int64]:
+        """Return at most `count` rows, the best in an objective first, each apart from the better ones."""
+        return apart(self.values[:, column], self.u, self.sheet, count)
 
 
 def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
