@@ -97,7 +97,9 @@ def nominal(problem: Problem) -> Problem:
     inner = {quantity.name: quantity.inner.name for quantity in robust_quantities(problem)}
     return replace(
         problem,
-        objectives=tuple(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in problem.objectives),
+        objectives=tuple(
+            replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in problem.objectives
+        ),
         constraints=_nominal(problem.constraints, inner),
         variants=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.variants),
         own=tuple(quantity for quantity in problem.own if not isinstance(quantity, RobustQuantity)),

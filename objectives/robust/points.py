@@ -97,7 +97,6 @@ def followed(here: Around) -> tuple[Array, Array, NDArray[np.bool_]]:
 
     A piece is found at a point where a piece of nearly the same label is.
     """
-    n, q, p = here.values.shape
     apart = np.abs(here.labels[:, :, None, :] - here.labels[:, :1, :, None])  # (n, q, p of the centre, p)
     apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
     apart = np.where(np.isfinite(here.values)[:, :, None, :], apart, np.inf)

@@ -14,12 +14,12 @@ from ...model.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array, Pieces, Quantity, Unit, Values
 from .points import around, corners, followed, limits_of, star, uncertain
-from .quantile import interpolation, weights
+from .quantile import interpolation, linear, linear_quantile, sample, weights
 
 Side = Literal["high", "low"]
 Kind = Literal["worst case", "percentile"]
 
-SAMPLES = 4096
+SAMPLES = 2048
 """Machines of a percentile."""
 _LEAST = 64
 _MOST = 65536
@@ -76,11 +76,10 @@ class RobustQuantity:
 
     @property
     def title(self) -> str:
-        """Name for people: "peak torque, 99 % at most"."""
+        """Name for people: "peak torque, 99 % of machines"."""
         title = self.inner.title.removesuffix(", worst case")
-        if self.kind == "worst case":
-            return f"{title}, worst in tolerances"
-        return f"{title}, {100.0 * self.share:.6g} % at {'most' if self.side == 'high' else 'least'}"
+        whose = "all within tolerances" if self.kind == "worst case" else f"{100.0 * self.share:.6g} % of machines"
+        return f"{title}, {whose}"
 
     @property
     def unit(self) -> Unit:
@@ -188,7 +187,7 @@ class RobustQuantity:
         values = np.where(kept[:, None, :], values, -np.inf)
         # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
         top = here.values.max(axis=2)
-        lost = (values.max(axis=2, initial=-np.inf) < top).any(axis=1)
+        lost = np.asarray((values.max(axis=2, initial=-np.inf) < top).any(axis=1))
         place = np.argmax(here.values, axis=2)[:, :, None]
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
         slopes[lost, :, 0] = np.take_along_axis(here.gradients, place[:, :, :, None], axis=2)[lost, :, 0]
@@ -201,10 +200,10 @@ class RobustQuantity:
         step = max(1, _BLOCK // (len(matrix) * values.shape[2]))
         for begin in range(0, len(rows), step):
             some = rows[begin : begin + step]
-            quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], matrix)
+            quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], columns, matrix)
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
-    def _of_sample(self, values: Array, slopes: Array, matrix: Array) -> tuple[Array, Array]:
+    def _of_sample(self, values: Array, slopes: Array, columns: tuple[int, ...], matrix: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
         absent = ~np.isfinite(values[:, :1])
         drawn = matrix @ np.where(absent, 0.0, values)  # (n, samples, p)
@@ -222,7 +221,19 @@ class RobustQuantity:
         for p in range(values.shape[2]):
             share_of = np.einsum("ns,nsq->nq", rank * (which == p), matrix[order])
             slope += np.einsum("nq,nqd->nd", share_of, slopes[:, :, p])
-        return found, slope
+        if self.shape != "normal":
+            return found, slope
+        rows = np.arange(len(values))
+        top = np.argmax(values[:, 0], axis=1)
+        ends = linear(columns)
+        control = values[rows, :, top] @ ends.T  # (n, d)
+        drawn = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
+        order = np.argsort(control @ drawn.T, axis=1, kind="stable")[:, used]
+        shift = np.einsum("s,nsd->nd", rank, drawn[order])
+        exact, exact_slope = linear_quantile(control, share)
+        by_control = (exact_slope - shift) @ ends  # (n, q)
+        found = found + exact - np.einsum("nd,nd->n", shift, control)
+        return found, slope + np.einsum("nq,nqd->nd", by_control, slopes[rows, :, top])
 
 
 def require_options(kind: str, order: int, share: float, samples: int, shape: str) -> None:
