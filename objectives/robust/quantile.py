@@ -4,7 +4,8 @@ Every design sees the same sample, scrambled Sobol points as deviations, so that
 the design and designs compare without noise (I. M. Sobol 1967; A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995).
 
 Within a tolerance box a quantity is a quadratic to a few parts in 10^9 of itself: it is evaluated exactly at the points
-of a star, a full quadratic is put through them, and the sample is drawn from that. The quantile is the estimate of
+of a star, a full quadratic is put through them, and the sample is drawn from that. Not where the offset may be zero:
+what depends on its size has a kink there, and every machine of the sample is evaluated. The quantile is the estimate of
 Harrell and Davis ("A new distribution-free quantile estimator", Biometrika 69(3), 1982): a mean of all order statistics
 with the weights of a beta distribution, hence without the kinks of a single one.
 
@@ -73,14 +74,13 @@ def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
     from scipy.special import ndtri
 
     sigmas = float(ndtri(share)) / 3.0  # `spread` takes the limit as three deviations
-    size = np.asarray(np.linalg.norm(coefficients, axis=1), dtype=np.float64)
+    size = np.sqrt((coefficients**2).sum(axis=1))
     slope = coefficients / np.where(size > 0.0, size, 1.0)[:, None]
     return sigmas * size, sigmas * slope
 
 
 def _fit(columns: tuple[int, ...]) -> Array:
-    found: Array = np.linalg.pinv(_basis(star(list(columns)), columns))
-    return found
+    return np.asarray(np.linalg.pinv(_basis(star(list(columns)), columns)), dtype=np.float64)
 
 
 def _basis(points: Array, columns: tuple[int, ...]) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ...model.loads import require_word
@@ -88,6 +89,8 @@ class RobustQuantity:
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if not uncertain(mechanism):
+            return self.inner.evaluate(mechanism, dimensions, gradients=gradients)
         found = self.pieces(mechanism, dimensions)
         values = found.values.min(axis=1) if found.least else found.values.max(axis=1)
         if not gradients:
@@ -147,7 +150,8 @@ class RobustQuantity:
         values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
         slopes = np.take_along_axis(here.gradients, first[:, :, :, None], axis=2)[:, :, 0]
         corner = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
-        return np.where(here.turns, values, -np.inf), slopes, corner
+        # Infinite where friction locks: nothing is high there.
+        return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, corner
 
     def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
@@ -183,15 +187,17 @@ class RobustQuantity:
     def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
         here = around(self.inner, mechanism, dimensions, star(list(columns)))
         values, slopes, found = followed(here)
-        kept = found.all(axis=1)
+        kept: NDArray[np.bool_] = np.logical_and.reduce(found, axis=1)
         values = np.where(kept[:, None, :], values, -np.inf)
         # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
         top = here.values.max(axis=2)
-        lost = np.asarray((values.max(axis=2, initial=-np.inf) < top).any(axis=1))
+        greatest: Array = values.max(axis=2, initial=-np.inf)
+        lost = np.flatnonzero((greatest < top).any(axis=1))
         place = np.argmax(here.values, axis=2)[:, :, None]
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
         slopes[lost, :, 0] = np.take_along_axis(here.gradients, place[:, :, :, None], axis=2)[lost, :, 0]
-        good = np.isfinite(top).all(axis=1)
+        kinked = self._kinked(mechanism, dimensions, columns)
+        good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         sign = 1.0 if self.side == "high" else -1.0
         quantiles, gradients = np.full(n, sign * np.inf), np.zeros((n, width))
@@ -201,7 +207,38 @@ class RobustQuantity:
         for begin in range(0, len(rows), step):
             some = rows[begin : begin + step]
             quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], columns, matrix)
+        rows = np.flatnonzero(kinked)
+        step = max(1, _BLOCK // (32 * len(matrix)))
+        for begin in range(0, len(rows), step):
+            some = rows[begin : begin + step]
+            quantiles[some], gradients[some] = self._of_machines(mechanism, dimensions[some], columns)
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
+
+    def _kinked(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> NDArray[np.bool_]:
+        """Return whose offset may be zero within the sample: what depends on its size has a kink there."""
+        reach = np.abs(sample(columns, self.shape, self.samples, self.seed)[:, 2]).max()
+        limits = limits_of(mechanism, dimensions)
+        return np.asarray((2 in columns) & (np.abs(dimensions[:, 2]) < reach * limits[:, 2]))
+
+    def _of_machines(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> tuple[Array, Array]:
+        """Return quantiles (n,) and gradients (n, width) from every machine of the sample, evaluated exactly."""
+        here = around(self.inner, mechanism, dimensions, sample(columns, self.shape, self.samples, self.seed))
+        top = np.argmax(here.values, axis=2)[:, :, None]
+        machines = np.take_along_axis(here.values, top, axis=2)[:, :, 0]
+        slopes = np.take_along_axis(here.gradients, top[:, :, :, None], axis=2)[:, :, 0]
+        if self.side == "low":
+            machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
+        order, rank = self._ranked(machines)
+        found = np.take_along_axis(machines, order, axis=1) @ rank
+        slope = np.einsum("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
+        return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
+
+    def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
+        """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
+        share = self.share if self.side == "high" else 1.0 - self.share
+        rank = weights(share, machines.shape[1])
+        used = np.flatnonzero(rank > _FAINT)
+        return np.argsort(machines, axis=1, kind="stable")[:, used], rank[used]
 
     def _of_sample(self, values: Array, slopes: Array, columns: tuple[int, ...], matrix: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
@@ -210,11 +247,7 @@ class RobustQuantity:
         drawn = np.where(absent, -np.inf, drawn)
         piece = np.argmax(drawn, axis=2)
         machines = np.take_along_axis(drawn, piece[:, :, None], axis=2)[:, :, 0]
-        order = np.argsort(machines, axis=1, kind="stable")
-        share = self.share if self.side == "high" else 1.0 - self.share
-        rank = weights(share, len(matrix))
-        used = np.flatnonzero(rank > _FAINT)
-        order, rank = order[:, used], rank[used]
+        order, rank = self._ranked(machines)
         found = np.take_along_axis(machines, order, axis=1) @ rank
         which = np.take_along_axis(piece, order, axis=1)
         slope = np.zeros((len(values), slopes.shape[3]))
@@ -228,9 +261,9 @@ class RobustQuantity:
         ends = linear(columns)
         control = values[rows, :, top] @ ends.T  # (n, d)
         drawn = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
-        order = np.argsort(control @ drawn.T, axis=1, kind="stable")[:, used]
+        order, rank = self._ranked(control @ drawn.T)
         shift = np.einsum("s,nsd->nd", rank, drawn[order])
-        exact, exact_slope = linear_quantile(control, share)
+        exact, exact_slope = linear_quantile(control, self.share if self.side == "high" else 1.0 - self.share)
         by_control = (exact_slope - shift) @ ends  # (n, q)
         found = found + exact - np.einsum("nd,nd->n", shift, control)
         return found, slope + np.einsum("nq,nqd->nd", by_control, slopes[rows, :, top])
