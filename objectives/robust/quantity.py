@@ -44,8 +44,10 @@ class RobustQuantity:
     (low), errors being independent and spread as `shape` says, in units of the limits T_i = absolute + fraction |x_i|.
     samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
 
-    Where a linkage within the tolerances does not turn fully (a corner, or a point of the star) it is infinite, to the
-    bad side. Raises `InputError` for options out of range.
+    The slope of a percentile has small steps where machines change places, greater ones where peaks tie among the
+    machines: a design there may be delivered as "best found" rather than stationary.
+    Infinite, to the bad side, where a corner or a point of the star does not turn fully. Raises `InputError` for options
+    out of range.
     """
 
     inner: Quantity
@@ -134,9 +136,7 @@ class RobustQuantity:
             width = float(ndtri(self.share)) * np.sqrt((steps**2).sum(axis=1) * float(spread(self.shape).var()))
         else:
             width = np.abs(steps).sum(axis=1)
-        crank, rod, offset = dimensions.T[:3]
-        turns = (crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1))
-        return np.where(turns, inner.values + sign * width, sign * np.inf)
+        return np.where(_inside(dimensions, limits), inner.values + sign * width, sign * np.inf)
 
     # ---- worst case -----------------------------------------------------------------------------------------------
 
