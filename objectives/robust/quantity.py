@@ -45,9 +45,8 @@ class RobustQuantity:
     samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
 
     The slope of a percentile has small steps where machines change places, greater ones where peaks tie among the
-    machines: a design there may be delivered as "best found" rather than stationary.
-    Infinite, to the bad side, where a corner or a point of the star does not turn fully. Raises `InputError` for options
-    out of range.
+    machines: a design there may be delivered as "best found" rather than stationary. Infinite, to the bad side, where a
+    corner or a point of the star does not turn fully. Raises `InputError` for options out of range.
     """
 
     inner: Quantity

@@ -36,7 +36,7 @@ JOB: dict[str, Any] = {
 }
 
 
-def plain(designs: int = 4) -> Problem:
+def plain(designs: int = 3) -> Problem:
     return problem(
         {"time_ratio": "maximise", "peak_torque": "minimise"},
         {"transmission_angle": (degrees(40.0), None), "stroke": (0.08, 0.1)},
