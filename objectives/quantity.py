@@ -52,11 +52,13 @@ class Pieces:
     values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
     labels: (n, k), what tells the pieces of neighbouring designs apart: the crank angle of a peak, rad, or a number.
     A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
+    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones.
     """
 
     values: Array
     gradients: Array
     labels: Array
+    least: bool = False
 
 
 class Quantity(Protocol):

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..objectives.cycle_peak import CyclePeak, screen_peaks
-from ..objectives.quantity import Array, Quantity
+from ..objectives.quantity import Array, Pieces, Quantity
+from ..objectives.robust.quantity import RobustQuantity
 from .elimination import UNKNOWNS, Sheet
 from .problem import Constraint, Objective, Problem
 
@@ -124,11 +125,22 @@ class Evaluator:
             zip((peak.name for peak in peaks), screen_peaks(peaks, self.mechanism, dimensions), strict=True)
         )
         return [
-            (
+            self._robustly(quantity, dimensions)
+            if isinstance(quantity, RobustQuantity)
+            else (
                 screened[quantity.name] if quantity.name in screened else quantity.evaluate(self.mechanism, dimensions)
             ).values
             for quantity in quantities
         ]
+
+    def _robustly(self, quantity: RobustQuantity, dimensions: Array) -> Array:
+        """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
+        inner = quantity.inner
+        if isinstance(inner, CyclePeak):
+            found = screen_peaks([inner], self.mechanism, dimensions, gradients=True)[0]
+        else:
+            found = inner.evaluate(self.mechanism, dimensions, gradients=True)
+        return quantity.estimate(self.mechanism, dimensions, found)
 
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
@@ -162,25 +174,26 @@ class Evaluator:
         dimensions = self.sheet.dimensions(u)
         jacobian = self.sheet.jacobian(u)
         self.evaluations += len(u)
-        cache: dict[str, tuple[Array, Array, Array]] = {}
+        cache: dict[str, Pieces] = {}
 
-        def pieces(name: str) -> tuple[Array, Array, Array]:
+        def pieces(name: str) -> Pieces:
             if name not in cache:
                 found = self.problem.quantity(name).pieces(self.mechanism, dimensions)
                 # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
                 bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
                 values = np.where(bounded, found.values, np.copysign(np.inf, found.values))
                 slopes = np.where(bounded[:, :, None], found.gradients, 0.0)
-                cache[name] = (values, np.einsum("npd,ndk->npk", slopes, jacobian), found.labels)
+                slopes = np.einsum("npd,ndk->npk", slopes, jacobian)
+                cache[name] = Pieces(values, slopes, found.labels, found.least)
             return cache[name]
 
         parts = []
         for index, objective in enumerate(self.problem.objectives):
-            parts += [(index, *part) for part in _objective_rows(objective, *pieces(objective.quantity))]
+            parts += [(index, *part) for part in _objective_rows(objective, pieces(objective.quantity))]
         goals = _stack(parts, len(u), self.dimension)
         parts = []
         for index, constraint in enumerate(self.constraints):
-            parts += [(index, *part) for part in _constraint_rows(constraint, *pieces(constraint.quantity))]
+            parts += [(index, *part) for part in _constraint_rows(constraint, pieces(constraint.quantity))]
         count = len(self.constraints)
         for name in self.computed:
             column = UNKNOWNS.index(name)
@@ -220,13 +233,11 @@ def _violation(constraint: Constraint, values: Array) -> Array:
     return np.where(np.isnan(values), np.inf, violation)
 
 
-def _objective_rows(
-    objective: Objective, values: Array, slopes: Array, labels: Array
-) -> list[tuple[Array, Array, Array]]:
+def _objective_rows(objective: Objective, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
+    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
     if objective.sense == "minimise":
-        return [(values, slopes, labels)]
-    # A greatest-of is maximised through its highest piece: there the pieces do not tie to hold it up.
-    highest = _highest(values, slopes, labels)
+        return [_ceiling(pieces)]
+    highest = _floor(pieces)
     top = (-highest[0], -highest[1], highest[2])
     if objective.target is None:
         # What is infinite is no optimum but out of reach.
@@ -234,23 +245,39 @@ def _objective_rows(
     return [(values - objective.target, slopes, labels), (top[0] + objective.target, top[1], top[2])]
 
 
-def _constraint_rows(
-    constraint: Constraint, values: Array, slopes: Array, labels: Array
-) -> list[tuple[Array, Array, Array]]:
+def _constraint_rows(constraint: Constraint, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
     rows = []
     if constraint.upper is not None:
         scale = _scale(constraint.upper)
+        values, slopes, labels = _ceiling(pieces)
         rows.append(((values - constraint.upper) / scale, slopes / scale, labels))
     if constraint.lower is not None:
         scale = _scale(constraint.lower)
-        highest = _highest(values, slopes, labels)
+        highest = _floor(pieces)
         rows.append(((constraint.lower - highest[0]) / scale, -highest[1] / scale, highest[2]))
     return rows
 
 
-def _highest(values: Array, slopes: Array, labels: Array) -> tuple[Array, Array, Array]:
-    """Return the highest piece of each design: peaks come highest first, closed forms in any order."""
-    first = np.argmax(values, axis=1)[:, None]
+def _ceiling(pieces: Pieces) -> tuple[Array, Array, Array]:
+    """Return the pieces that all must stay low for the quantity to be low: of a least-of only the lowest."""
+    if pieces.least:
+        return _one(pieces, np.argmin(pieces.values, axis=1))
+    return pieces.values, pieces.gradients, pieces.labels
+
+
+def _floor(pieces: Pieces) -> tuple[Array, Array, Array]:
+    """Return the pieces that all must stay high for the quantity to be high: of a greatest-of only the highest.
+
+    There the others do not tie to hold it up. Peaks come highest first, closed forms in any order.
+    """
+    if pieces.least:
+        return pieces.values, pieces.gradients, pieces.labels
+    return _one(pieces, np.argmax(pieces.values, axis=1))
+
+
+def _one(pieces: Pieces, place: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
+    first = place[:, None]
     return (
         np.take_along_axis(values, first, axis=1),
         np.take_along_axis(slopes, first[:, :, None], axis=1),

@@ -23,6 +23,7 @@ from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .own import Declared, QuantityPart, folders_of, named
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
+from .robust import RobustPart, robustly
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart, require_target
 from .values import Part
@@ -162,6 +163,11 @@ class Job(Part):
         description="what is wanted: the front shows the best compromises",
         examples=[{"time_ratio": "maximise", "peak_torque": "minimise"}],
     )
+    robust: RobustPart | None = Field(
+        None,
+        description="objectives and constraints as they are within the tolerances",
+        examples=[{"kind": "percentile", "share": 0.99}],
+    )
     sections: SectionsPart | None = Field(
         None,
         description="material, pins and safety of crank and rod, for the sizing of their sections",
@@ -223,7 +229,7 @@ class Job(Part):
         )
         require_consistent(problem)
         require_fit(problem)
-        return problem
+        return robustly(problem, self.robust)
 
 
 def job_with(declared: Declared) -> type[Job]:

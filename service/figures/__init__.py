@@ -10,8 +10,10 @@ from typing import Any
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
 from ...optimise.front import ParetoFront
+from ...optimise.robust import robust_quantities
 from .marks import marks
 from .parallel import parallel_coordinates
+from .robustness import robustness_figure
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 from .style import save
@@ -23,7 +25,8 @@ def draw_front(front: ParetoFront, folder: Path) -> Iterator[Path]:
     """Write the figures of a front that has designs; yield each file as soon as it is written.
 
     scatter_matrix.png (two objectives or more), parallel_coordinates.png (two designs or more), and one sheet for
-    each extreme, best_<quantity>.png, and for the knee, knee.png; what coincides is copied.
+    each extreme, best_<quantity>.png, and for the knee, knee.png; what coincides is copied. robust.png for a robust
+    problem of two objectives or more, for which the nominal one is solved.
     """
     folder.mkdir(parents=True, exist_ok=True)
     if len(front) > 1:
@@ -32,6 +35,11 @@ def draw_front(front: ParetoFront, folder: Path) -> Iterator[Path]:
             yield folder / "scatter_matrix.png"
         save(parallel_coordinates(front), folder / "parallel_coordinates.png")
         yield folder / "parallel_coordinates.png"
+    if robust_quantities(front.problem) and len(front.objectives) > 1:
+        figure = robustness_figure(front)
+        if figure is not None:
+            save(figure, folder / "robust.png")
+            yield folder / "robust.png"
     bold = [front.problem.quantity(objective.quantity).field for objective in front.objectives]
     for mark in marks(front):
         mechanism = front.mechanism(mark.row)

@@ -29,7 +29,7 @@ _STYLES = (
 )
 GREATEST = len(_STYLES)
 """Runs that can be told apart in one figure."""
-_LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24  # inches
+_LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY, _NOTE = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24, 0.18  # inches
 _WORDS = {"maximise": "→ better", "minimise": "← better", "target": ""}
 
 
@@ -41,19 +41,23 @@ class Drawn:
     values: NDArray[np.float64]
 
 
-def comparison_matrix(runs: Sequence[Drawn], objectives: Sequence[Wanted]) -> Figure:
-    """Return the scatter matrix of the fronts of several runs, of two objectives or more."""
+def comparison_matrix(
+    runs: Sequence[Drawn], objectives: Sequence[Wanted], *, title: str = "Fronts compared", notes: Sequence[str] = ()
+) -> Figure:
+    """Return the scatter matrix of the fronts of several runs, of two objectives or more. notes: lines below it."""
     count = min(len(objectives), MOST) - 1
     side = max(1.6, min(4.2 if count == 1 else 2.6, 8.4 / count))
     width = max(_LEFT + count * (side + _GAP) + _RIGHT, 6.4)
     key = _KEY * len(runs) + 0.2
-    figure = new_figure(width, _BOTTOM + count * (side + _GAP) + _TOP + key)
+    below = _NOTE * len(notes) + 0.2 if notes else 0.0
+    bottom = _BOTTOM + below
+    figure = new_figure(width, bottom + count * (side + _GAP) + _TOP + key)
     for row in range(count):
         for column in range(row + 1):
             panel = place(
                 figure,
                 _LEFT + column * (side + _GAP),
-                _BOTTOM + (count - 1 - row) * (side + _GAP),
+                bottom + (count - 1 - row) * (side + _GAP),
                 side,
                 side,
             )
@@ -64,7 +68,9 @@ def comparison_matrix(runs: Sequence[Drawn], objectives: Sequence[Wanted]) -> Fi
             if row == count - 1:
                 panel.set_xlabel(_label(objectives[column]), fontsize=SMALL)
     height = figure.get_size_inches()[1]
-    write(figure, 0.2, height - 0.3, "Fronts compared", fontsize=TITLE, weight="bold")
+    write(figure, 0.2, height - 0.3, title, fontsize=TITLE, weight="bold")
+    for line, note in enumerate(notes):
+        write(figure, 0.2, below - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     if len(objectives) > MOST:
         write(figure, 0.2, height - 0.48, f"the first {MOST} of {len(objectives)} objectives", color=MUTED)
     figure.legend(

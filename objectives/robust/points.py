@@ -1,0 +1,115 @@
+"""A quantity at points of the tolerance box around designs, its pieces kept apart."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.mechanism import Mechanism
+from ..quantity import Array, Quantity
+
+_SAME = 0.3  # labels (rad) farther apart are not the same peak; as the polish has it
+
+
+@dataclass(frozen=True)
+class Around:
+    """A quantity at q points around each of n designs.
+
+    values: (n, q, p) of its pieces, -inf where absent; +inf in the first where the linkage does not turn fully.
+    gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension. labels:
+    (n, q, p). turns: (n, q).
+    """
+
+    values: Array
+    gradients: Array
+    labels: Array
+    turns: NDArray[np.bool_]
+
+
+def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
+    """Return how far crank, rod and offset of designs (n, 3 + k) may be off, (n, 3), m.
+
+    That of the crank angle is left out: no quantity of a whole cycle depends on where the cycle begins. Clearances are
+    too: pins and guide are ideal in everything but the position errors. Raises `InputError` for tolerances that vary.
+    """
+    for item in mechanism.varying:
+        if any(path.startswith("tolerances.") for path in item.paths):
+            raise InputError(
+                f"robust quantities need tolerances that are given; got {item.name} that varies; fix it, or leave "
+                "out robust"
+            )
+    absolute, fraction = _parts(mechanism)
+    limits: Array = absolute + fraction * np.abs(dimensions[:, :3])
+    return limits
+
+
+def uncertain(mechanism: Mechanism) -> list[int]:
+    """Return which of crank, rod and offset (0, 1, 2) have a tolerance."""
+    absolute, fraction = _parts(mechanism)
+    return np.flatnonzero((absolute > 0.0) | (fraction > 0.0)).tolist()
+
+
+def corners(columns: list[int]) -> Array:
+    """Return the corners of the box, (2^d, 3), in units of the limits; a corner and its opposite are mirrored rows."""
+    found = np.zeros((2 ** len(columns), 3))
+    found[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
+    return found
+
+
+def star(columns: list[int]) -> Array:
+    """Return the points that a full quadratic is fitted to, in units of the limits: 1 + 2 d + d (d - 1), (q, 3).
+
+    The centre, both ends along each axis, and two opposite corners in each plane: cubic terms then cancel in the mixed
+    second derivatives as they do in the pure ones.
+    """
+    rows = [np.zeros(3)]
+    for column in columns:
+        rows += [sign * np.eye(3)[column] for sign in (1.0, -1.0)]
+    for a, b in itertools.combinations(columns, 2):
+        rows += [sign * (np.eye(3)[a] + np.eye(3)[b]) for sign in (1.0, -1.0)]
+    return np.array(rows)
+
+
+def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> Around:
+    """Return a quantity at points (q, 3) of the box, in units of the limits, around designs (n, 3 + k)."""
+    absolute, fraction = _parts(mechanism)
+    n, q, width = len(dimensions), len(points), dimensions.shape[1]
+    moved = np.repeat(dimensions[:, None, :], q, axis=1)
+    moved[:, :, :3] += points * (absolute + fraction * np.abs(dimensions[:, None, :3]))
+    turns = (moved[:, :, 0] > 0.0) & (moved[:, :, 1] > moved[:, :, 0] + np.abs(moved[:, :, 2]))
+    moved = np.where(turns[:, :, None], moved, dimensions[:, None, :])
+    found = quantity.pieces(mechanism, np.ascontiguousarray(moved.reshape(n * q, width)))
+    values = found.values.reshape(n, q, -1).copy()
+    gradients = found.gradients.reshape(n, q, -1, width).copy()
+    gradients[:, :, :, :3] *= (1.0 + points * fraction * np.sign(dimensions[:, None, :3]))[:, :, None, :]
+    values[~turns] = -np.inf
+    values[~turns, 0] = np.inf
+    gradients[~turns] = 0.0
+    return Around(values, gradients, found.labels.reshape(values.shape), turns)
+
+
+def followed(here: Around) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and where found.
+
+    A piece is found at a point where a piece of nearly the same label is.
+    """
+    apart = np.abs(here.labels[:, :, None, :] - here.labels[:, :1, :, None])  # (n, q, p of the centre, p)
+    apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
+    apart = np.where(np.isfinite(here.values)[:, :, None, :], apart, np.inf)
+    twin = np.argmin(apart, axis=3)
+    found = np.take_along_axis(apart, twin[:, :, :, None], axis=3)[:, :, :, 0] < _SAME
+    found &= np.isfinite(here.values[:, :1, :])
+    values = np.take_along_axis(here.values, twin, axis=2)
+    gradients = np.take_along_axis(here.gradients, twin[:, :, :, None], axis=2)
+    return values, gradients, found
+
+
+def _parts(mechanism: Mechanism) -> tuple[Array, Array]:
+    t = mechanism.tolerances
+    both = [(float(each.absolute), float(each.fraction)) for each in (t.crank, t.rod, t.offset)]
+    absolute, fraction = np.array(both).T
+    return absolute, fraction

@@ -1,0 +1,301 @@
+"""A quantity under tolerances: its worst case, or the value that a share of all machines keeps."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.loads import require_word
+from ...model.mechanism import Mechanism
+from ...model.tolerance.spreads import Shape, spread
+from ..quantity import Array, Pieces, Quantity, Unit, Values
+from .points import around, corners, followed, limits_of, star, uncertain
+from .quantile import interpolation, linear, linear_quantile, sample, weights
+
+Side = Literal["high", "low"]
+Kind = Literal["worst case", "percentile"]
+
+SAMPLES = 2048
+"""Machines of a percentile."""
+_LEAST = 64
+_MOST = 65536
+_KEPT = 8  # pieces of a worst case that may tie
+_APART = 100.0  # rad, between the labels of different corners
+_STEP = 0.05  # of the limits, see `_linear`
+_FAINT = 1e-15  # weights below are rounding
+_BLOCK = 1 << 22  # numbers of a sample held at once
+
+
+@dataclass(frozen=True)
+class RobustQuantity:
+    """A quantity as it is within the tolerances of crank, rod and offset.
+
+    inner: the quantity. side: which side is bad, "high" where it should be low.
+    kind "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: f at the worst
+    corner of the box, exactly, hence with the second order and all above it; no machine is worse where f is monotone in
+    each dimension within its limits, or convex there (high) or concave (low). A quantity that turns within the limits,
+    as all that depends on |offset| do at zero, may be worse than at all corners on the low side.
+    kind "percentile": the value that a share of all machines keeps, `P(f <= v) = share` (high) or `P(f >= v) = share`
+    (low), errors being independent and spread as `shape` says, in units of the limits T_i = absolute + fraction |x_i|.
+    samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
+
+    The slope of a percentile has small steps where machines change places, greater ones where peaks tie among the
+    machines: a design there may be delivered as "best found" rather than stationary. Infinite, to the bad side, where a
+    corner or a point of the star does not turn fully. Raises `InputError` for options out of range.
+    """
+
+    inner: Quantity
+    side: Side
+    kind: Kind = "percentile"
+    order: int = 2
+    share: float = 0.99
+    samples: int = SAMPLES
+    shape: Shape = "normal"
+    seed: int = 1
+    suffix: str = "robust"
+
+    def __post_init__(self) -> None:
+        require_word("side", self.side, Side)
+        require_options(self.kind, self.order, self.share, self.samples, self.shape)
+
+    @property
+    def name(self) -> str:
+        """Name in problems: "peak_torque_robust"."""
+        return f"{self.inner.name}_{self.suffix}"
+
+    @property
+    def field(self) -> str:
+        """Key in tables and JSON: "peak_torque_robust_Nm"."""
+        symbol = self.unit.symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
+        unit = re.sub(r"[^A-Za-z0-9]+", "_", symbol).strip("_")
+        stem = self.inner.field.removesuffix(f"_{unit}") if unit else self.inner.field
+        return "_".join(part for part in (stem, self.suffix, unit) if part)
+
+    @property
+    def title(self) -> str:
+        """Name for people: "peak torque, 99 % of machines"."""
+        title = self.inner.title.removesuffix(", worst case")
+        whose = "all within tolerances" if self.kind == "worst case" else f"{100.0 * self.share:.6g} % of machines"
+        return f"{title}, {whose}"
+
+    @property
+    def unit(self) -> Unit:
+        """That of the quantity."""
+        return self.inner.unit
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if not uncertain(mechanism):
+            return self.inner.evaluate(mechanism, dimensions, gradients=gradients)
+        found = self.pieces(mechanism, dimensions)
+        values = found.values.min(axis=1) if found.least else found.values.max(axis=1)
+        if not gradients:
+            return Values(values, None)
+        first = (np.argmin if found.least else np.argmax)(found.values, axis=1)
+        return Values(values, found.gradients[np.arange(len(values)), first])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as the greatest of smooth pieces, the least of them on the low side."""
+        dimensions = np.asarray(dimensions, dtype=np.float64)
+        limits_of(mechanism, dimensions)  # refuses what it must
+        columns = uncertain(mechanism)
+        if not columns:
+            found = self.inner.pieces(mechanism, dimensions)
+            return found if self.side == "high" else _lowest(found)
+        if self.kind == "percentile":
+            return self._quantile(mechanism, dimensions, tuple(columns))
+        exact = self._exact if self.order == 2 else self._linear
+        values, slopes, labels = exact(mechanism, dimensions, columns)
+        low = self.side == "low"
+        kept = np.argsort(values if low else -values, axis=1, kind="stable")[:, :_KEPT]
+        return Pieces(
+            np.take_along_axis(values, kept, axis=1),
+            np.take_along_axis(slopes, kept[:, :, None], axis=1),
+            np.take_along_axis(labels, kept, axis=1),
+            least=low,
+        )
+
+    def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
+        """Return the first-order estimate (n,) from values and gradients of the quantity itself.
+
+        For a percentile that of a normal distribution of the same variance. For sorting many designs.
+        """
+        assert inner.gradients is not None
+        limits = limits_of(mechanism, dimensions)
+        steps = inner.gradients[:, :3] * limits
+        sign = 1.0 if self.side == "high" else -1.0
+        if self.kind == "percentile":
+            from scipy.special import ndtri
+
+            width = float(ndtri(self.share)) * np.sqrt((steps**2).sum(axis=1) * float(spread(self.shape).var()))
+        else:
+            width = np.abs(steps).sum(axis=1)
+        return np.where(_inside(dimensions, limits), inner.values + sign * width, sign * np.inf)
+
+    # ---- worst case -----------------------------------------------------------------------------------------------
+
+    def _exact(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
+        here = around(self.inner, mechanism, dimensions, corners(columns))
+        labels = here.labels + _APART * np.arange(here.labels.shape[1])[:, None]
+        if self.side == "high":
+            n, _, _, width = here.gradients.shape
+            return here.values.reshape(n, -1), here.gradients.reshape(n, -1, width), labels.reshape(n, -1)
+        first = np.argmax(here.values, axis=2)[:, :, None]
+        values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
+        slopes = np.take_along_axis(here.gradients, first[:, :, :, None], axis=2)[:, :, 0]
+        corner = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
+        # Infinite where friction locks: nothing is high there.
+        return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, corner
+
+    def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
+        """Return the linear extrapolation of every piece to every corner.
+
+        Directional derivatives are central differences over a small part h of the limits: what they leave is h^2 of the
+        third order, 1/400 of what first order leaves out anyway; and their gradients follow from exact gradients.
+        """
+        signs = corners(columns)
+        here = around(self.inner, mechanism, dimensions, np.concatenate([np.zeros((1, 3)), _STEP * signs]))
+        values, slopes, found = followed(here)
+        centre, slope = values[:, :1], slopes[:, :1]
+        ahead, behind = np.s_[:, 1:], np.s_[:, :0:-1]  # opposite corners are mirrored rows
+        both = found[ahead] & found[behind]
+        with np.errstate(invalid="ignore"):
+            change = (values[ahead] - values[behind]) / (2.0 * _STEP)
+        change_slope = (slopes[ahead] - slopes[behind]) / (2.0 * _STEP)
+        # A peak that vanishes nearby is hardly the highest: its own slope serves.
+        limits = limits_of(mechanism, dimensions)
+        plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
+        values = np.where(np.isfinite(centre), centre + np.where(both, change, plain), -np.inf)
+        slopes = slope + np.where(both[:, :, :, None], change_slope, 0.0)
+        labels = here.labels[:, :1] + _APART * np.arange(len(signs))[:, None]
+        inside = _inside(dimensions, limits)
+        if self.side == "low":
+            values, slopes, labels = values[:, :, :1], slopes[:, :, :1], labels[:, :, :1]  # the highest piece
+        values = np.where(inside[:, None, None], values, np.inf if self.side == "high" else -np.inf)
+        slopes = np.where(inside[:, None, None, None], slopes, 0.0)
+        n, _, _, width = slopes.shape
+        return values.reshape(n, -1), slopes.reshape(n, -1, width), labels.reshape(n, -1)
+
+    # ---- percentile -----------------------------------------------------------------------------------------------
+
+    def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
+        here = around(self.inner, mechanism, dimensions, star(list(columns)))
+        values, slopes, found = followed(here)
+        kept: NDArray[np.bool_] = np.logical_and.reduce(found, axis=1)
+        values = np.where(kept[:, None, :], values, -np.inf)
+        # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
+        top = here.values.max(axis=2)
+        greatest: Array = values.max(axis=2, initial=-np.inf)
+        lost = np.flatnonzero((greatest < top).any(axis=1))
+        place = np.argmax(here.values, axis=2)[:, :, None]
+        values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
+        slopes[lost, :, 0] = np.take_along_axis(here.gradients, place[:, :, :, None], axis=2)[lost, :, 0]
+        kinked = self._kinked(mechanism, dimensions, columns)
+        good = np.isfinite(top).all(axis=1) & ~kinked
+        n, _, _, width = slopes.shape
+        sign = 1.0 if self.side == "high" else -1.0
+        quantiles, gradients = np.full(n, sign * np.inf), np.zeros((n, width))
+        matrix = interpolation(columns, self.shape, self.samples, self.seed)
+        rows = np.flatnonzero(good)
+        step = max(1, _BLOCK // (len(matrix) * values.shape[2]))
+        for begin in range(0, len(rows), step):
+            some = rows[begin : begin + step]
+            quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], columns, matrix)
+        rows = np.flatnonzero(kinked)
+        step = max(1, _BLOCK // (32 * len(matrix)))
+        for begin in range(0, len(rows), step):
+            some = rows[begin : begin + step]
+            quantiles[some], gradients[some] = self._of_machines(mechanism, dimensions[some], columns)
+        return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
+
+    def _kinked(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> NDArray[np.bool_]:
+        """Return whose offset may be zero within the sample: what depends on its size has a kink there."""
+        reach = np.abs(sample(columns, self.shape, self.samples, self.seed)[:, 2]).max()
+        limits = limits_of(mechanism, dimensions)
+        return np.asarray((2 in columns) & (np.abs(dimensions[:, 2]) < reach * limits[:, 2]))
+
+    def _of_machines(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> tuple[Array, Array]:
+        """Return quantiles (n,) and gradients (n, width) from every machine of the sample, evaluated exactly."""
+        here = around(self.inner, mechanism, dimensions, sample(columns, self.shape, self.samples, self.seed))
+        top = np.argmax(here.values, axis=2)[:, :, None]
+        machines = np.take_along_axis(here.values, top, axis=2)[:, :, 0]
+        slopes = np.take_along_axis(here.gradients, top[:, :, :, None], axis=2)[:, :, 0]
+        if self.side == "low":
+            machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
+        order, rank = self._ranked(machines)
+        found = np.take_along_axis(machines, order, axis=1) @ rank
+        slope = np.einsum("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
+        return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
+
+    def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
+        """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
+        share = self.share if self.side == "high" else 1.0 - self.share
+        rank = weights(share, machines.shape[1])
+        used = np.flatnonzero(rank > _FAINT)
+        return np.argsort(machines, axis=1, kind="stable")[:, used], rank[used]
+
+    def _of_sample(self, values: Array, slopes: Array, columns: tuple[int, ...], matrix: Array) -> tuple[Array, Array]:
+        """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
+        absent = ~np.isfinite(values[:, :1])
+        drawn = matrix @ np.where(absent, 0.0, values)  # (n, samples, p)
+        drawn = np.where(absent, -np.inf, drawn)
+        piece = np.argmax(drawn, axis=2)
+        machines = np.take_along_axis(drawn, piece[:, :, None], axis=2)[:, :, 0]
+        order, rank = self._ranked(machines)
+        found = np.take_along_axis(machines, order, axis=1) @ rank
+        which = np.take_along_axis(piece, order, axis=1)
+        slope = np.zeros((len(values), slopes.shape[3]))
+        for p in range(values.shape[2]):
+            share_of = np.einsum("ns,nsq->nq", rank * (which == p), matrix[order])
+            slope += np.einsum("nq,nqd->nd", share_of, slopes[:, :, p])
+        if self.shape != "normal":
+            return found, slope
+        rows = np.arange(len(values))
+        top = np.argmax(values[:, 0], axis=1)
+        ends = linear(columns)
+        control = values[rows, :, top] @ ends.T  # (n, d)
+        drawn = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
+        order, rank = self._ranked(control @ drawn.T)
+        shift = np.einsum("s,nsd->nd", rank, drawn[order])
+        exact, exact_slope = linear_quantile(control, self.share if self.side == "high" else 1.0 - self.share)
+        by_control = (exact_slope - shift) @ ends  # (n, q)
+        found = found + exact - np.einsum("nd,nd->n", shift, control)
+        return found, slope + np.einsum("nq,nqd->nd", by_control, slopes[rows, :, top])
+
+
+def require_options(kind: str, order: int, share: float, samples: int, shape: str) -> None:
+    """Raise `InputError` for options of a robust quantity that are out of range."""
+    require_word("kind", kind, Kind)
+    require_word("shape", shape, Shape)
+    if order not in (1, 2):
+        raise InputError(f"the order of a worst case must be 1 or 2; got {order}")
+    if not 0.5 <= share < 1.0:
+        raise InputError(f"share must be at least 0.5 and below 1; got {share:g}; 0.99 is 99 of 100 machines")
+    if not _LEAST <= samples <= _MOST:
+        raise InputError(f"samples must be {_LEAST} to {_MOST}; got {samples}")
+    if samples * (1.0 - share) < 10.0 and kind == "percentile":
+        raise InputError(
+            f"samples times 1 - share must be at least 10, so that the tail is known; got {samples} samples for a "
+            f"share of {share:g}; raise samples or lower share"
+        )
+
+
+def _inside(dimensions: Array, limits: Array) -> Array:
+    crank, rod, offset = dimensions.T[:3]
+    return np.asarray((crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1)))
+
+
+def _lowest(found: Pieces) -> Pieces:
+    """Return a greatest-of as the one piece that it is."""
+    first = np.argmax(found.values, axis=1)[:, None]
+    return Pieces(
+        np.take_along_axis(found.values, first, axis=1),
+        np.take_along_axis(found.gradients, first[:, :, None], axis=1),
+        np.take_along_axis(found.labels, first, axis=1),
+        least=True,
+    )

@@ -1,0 +1,77 @@
+"""The table [robust] of a job file: objectives and constraints as they are within the tolerances."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from ...model.errors import InputError, JobError
+from ...model.tolerance.spreads import Shape
+from ...objectives.robust.points import uncertain
+from ...objectives.robust.quantity import SAMPLES, Kind
+from ..problem import Problem
+from ..robust import Robust, robust
+from .values import Part
+
+
+class RobustPart(Part):
+    """Tolerances within the optimisation; each quantity by itself. Equalities, targets, position errors stay as is."""
+
+    kind: Kind = Field(
+        "percentile",
+        description="percentile: what a share of all machines keeps; worst case: what all within the limits keep",
+        examples=["percentile"],
+    )
+    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = Field(
+        0.99, description="of the machines, for a percentile", examples=[0.99]
+    )
+    order: Literal[1, 2] = Field(
+        2,
+        description="of a worst case. 1: linear in the errors; 2: second order and above, exact at the worst corner",
+        examples=[2],
+    )
+    spread: Shape = Field(
+        "normal",
+        description="of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
+        examples=["normal"],
+    )
+    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = Field(
+        SAMPLES, description="machines drawn for a percentile, the same for all designs", examples=[SAMPLES]
+    )
+    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = Field(
+        None,
+        description="which objectives and constraints; if left out, all that can be",
+        examples=[["peak_torque", "transmission_angle"]],
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> RobustPart:
+        self.build()
+        return self
+
+    def build(self) -> Robust:
+        """Return the plan as the optimiser has it."""
+        return Robust(
+            kind=self.kind,
+            share=self.share,
+            order=self.order,
+            shape=self.spread,
+            samples=self.samples,
+            quantities=self.quantities,
+        )
+
+
+def robustly(problem: Problem, part: RobustPart | None) -> Problem:
+    """Return the problem made robust if the job asks for it. Raises JobError if it cannot be."""
+    if part is None:
+        return problem
+    if not uncertain(problem.part(0).mechanism):
+        raise JobError(
+            "robust: it needs tolerances of crank, rod or offset; got none (that of the crank angle changes no "
+            'quantity of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
+        )
+    try:
+        return robust(problem, part.build())
+    except InputError as error:
+        raise JobError(f"robust: {error}") from None
