@@ -198,8 +198,7 @@ class RobustQuantity:
         kinked = self._kinked(mechanism, dimensions, columns)
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
-        sign = 1.0 if self.side == "high" else -1.0
-        quantiles, gradients = np.full(n, sign * np.inf), np.zeros((n, width))
+        quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
         matrix = interpolation(columns, self.shape, self.samples, self.seed)
         rows = np.flatnonzero(good)
         step = max(1, _BLOCK // (len(matrix) * values.shape[2]))
@@ -285,7 +284,7 @@ def require_options(kind: str, order: int, share: float, samples: int, shape: st
         )
 
 
-def _inside(dimensions: Array, limits: Array) -> Array:
+def _inside(dimensions: Array, limits: Array) -> NDArray[np.bool_]:
     crank, rod, offset = dimensions.T[:3]
     return np.asarray((crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1)))
 

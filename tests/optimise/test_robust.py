@@ -37,9 +37,10 @@ JOB: dict[str, Any] = {
 
 
 def plain(designs: int = 3) -> Problem:
+    """Below that time ratio two peaks of the torque tie: slow, and for `test_robust_quantity`."""
     return problem(
         {"time_ratio": "maximise", "peak_torque": "minimise"},
-        {"transmission_angle": (degrees(40.0), None), "stroke": (0.08, 0.1)},
+        {"transmission_angle": (degrees(40.0), None), "stroke": (0.08, 0.1), "time_ratio": (1.12, None)},
         mechanism=TOLERANT,
         designs=designs,
         samples=2000,
@@ -47,33 +48,31 @@ def plain(designs: int = 3) -> Problem:
 
 
 @cache
-def front(kind: str, order: int = 2) -> ParetoFront:
+def front(kind: str, order: int) -> ParetoFront:
     return solve(robust(plain(), Robust(kind=kind, order=order)))  # type: ignore[arg-type]
 
 
 def test_100_000_fresh_machines_keep_the_promised_percentile_of_every_design() -> None:
     """The interval of the fresh sample holds the share; what the front's own sample adds is a hundredth of that."""
-    found = realised(front("percentile"), samples=100_000)
-    assert len(found) == 5 * len(front("percentile"))
+    found = realised(front("percentile", 2), samples=100_000)
+    assert len(found) == 5 * len(front("percentile", 2))
     assert (found["share"] == 0.99).all()
     assert ((found["low"] <= 0.99) & (found["high"] >= 0.99)).all()
-    torque = next(q for q in robust_quantities(front("percentile").problem) if q.inner.name == "peak_torque")
-    own = front("percentile").designs
+    torque = next(q for q in robust_quantities(front("percentile", 2).problem) if q.inner.name == "peak_torque")
+    own = front("percentile", 2).designs
     margin = (own["peak_torque_robust_Nm"] - own["peak_torque_Nm"]).to_numpy()
-    assert (sampling_error(torque, front("percentile"), scrambles=4) < 0.005 * margin).all()
+    assert (sampling_error(torque, front("percentile", 2), scrambles=4) < 0.005 * margin).all()
 
 
 def test_all_machines_within_the_limits_keep_the_worst_case() -> None:
-    found = realised(front("worst case"), samples=5_000)
+    found = realised(front("worst case", 2), samples=5_000)
     assert (found["realised"] == 1.0).all()
 
 
 @pytest.mark.parametrize(("kind", "order"), [("percentile", 2), ("worst case", 1), ("worst case", 2)])
 def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, order: int) -> None:
     designs = front(kind, order).designs
-    # Where two peaks tie among the machines, the slope of a percentile has steps as machines change places.
-    assert (designs["residual"] < (1e-2 if kind == "percentile" else 1e-6)).all()
-    assert (designs["status"] == "stationary").mean() > 0.5
+    assert (designs["status"] == "stationary").all()
     assert (designs["least_transmission_angle_robust_deg"] >= 40.0 - 1e-6).all()
     assert (designs["stroke_robust_low_mm"] >= 80.0 - 1e-6).all()
     assert (designs["stroke_robust_high_mm"] <= 100.0 + 1e-6).all()
@@ -83,7 +82,7 @@ def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, ord
 
 
 def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requirements() -> None:
-    cost = robust_cost(front("worst case"))
+    cost = robust_cost(front("worst case", 2))
     assert cost is not None
     assert cost.cost(0, maximised=True) > 0.0
     assert cost.cost(1, maximised=False) > 0.0
@@ -168,7 +167,7 @@ def test_the_schema_describes_the_table_robust() -> None:
 def test_the_figure_shows_nominal_and_robust_front_and_the_cost() -> None:
     from slidercrank.service.figures.robustness import robustness_figure
 
-    figure = robustness_figure(front("percentile"))
+    figure = robustness_figure(front("percentile", 2))
     assert figure is not None
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert len(words) == 3
