@@ -1,19 +1,17 @@
 """How much hypervolume every method has reached after how much time, on the shipped jobs, beside peers; one figure.
 
-The peers are NSGA-II and NSGA-III of pymoo, and MOEA/D of pygmo where that is installed, of pymoo elsewhere.
+The peers are NSGA-II and NSGA-III of pymoo and MOEA/D of pygmo.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from pymoo.algorithms.moo.moead import MOEAD
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.algorithms.moo.nsga3 import NSGA3
 from pymoo.core.callback import Callback
@@ -64,7 +62,12 @@ def compare(
         ideal, span = scaling(best.values)
         whole = best.hypervolume
         courses[given.name] = [
-            Course("auto", *_course([(entry.seconds, entry.hypervolume / whole) for entry in best.history]))
+            Course(
+                "auto",
+                *_course(
+                    [*((entry.seconds, entry.hypervolume / whole) for entry in best.history), (best.seconds, 1.0)]
+                ),
+            )
         ]
         for name in names:
             asked = replace(given, settings=replace(given.settings, method=name, evaluations=evaluations))
@@ -73,7 +76,7 @@ def compare(
             courses[given.name].append(_peer(title, make, given, evaluations or EVALUATIONS, ideal, span, whole))
         rows += [
             Row(f"{given.name}: {course.method} ({course.seconds[-1]:.1f} s) / auto", [float(course.hypervolumes[-1])])
-            for course in courses[given.name]
+            for course in courses[given.name][1:]
         ]
     _draw(courses)
     return rows
@@ -139,10 +142,11 @@ def _directions(objectives: int, partitions: int = 7) -> Array:
     return np.asarray(get_reference_directions("das-dennis", objectives, n_partitions=partitions))
 
 
+_MOEAD = "pygmo MOEA/D"
 _PEERS: dict[str, Callable[[int], Any]] = {
     "pymoo NSGA-II": lambda m: NSGA2(pop_size=100),
     "pymoo NSGA-III": lambda m: NSGA3(_directions(m)),
-    "pymoo MOEA/D": lambda m: MOEAD(_directions(m)),
+    _MOEAD: lambda m: None,
 }
 
 
@@ -190,21 +194,21 @@ def _peer(
     span: Array,
     whole: float,
 ) -> Course:
-    """Return the course of one of pymoo's methods; of larger populations the best 100 count."""
+    """Return the course of a peer; of larger populations the best 100 count."""
 
     def measure(values: Array) -> float:
         values = values[nondominated(values)]
         return hypervolume(values[choose(values, problem.settings.designs)], ideal, span) / whole
 
-    algorithm = make(len(problem.objectives))
-    reduced = _Peer(problem, penalised=span if isinstance(algorithm, MOEAD) else None)
+    reduced = _Peer(problem, penalised=span if title == _MOEAD else None)
     watch = _Watch(measure, ideal + 100.0 * span)
     seed = problem.settings.seed
-    if reduced.penalised is not None and find_spec("pygmo"):
-        title = title.replace("pymoo", "pygmo")
+    if title == _MOEAD:
         _pygmo(reduced, evaluations, seed, watch)
     else:
-        minimize(reduced, algorithm, ("n_eval", evaluations), seed=seed, callback=watch, verbose=False)
+        minimize(
+            reduced, make(len(problem.objectives)), ("n_eval", evaluations), seed=seed, callback=watch, verbose=False
+        )
     return Course(title, *_course(watch.points))
 
 

@@ -40,9 +40,9 @@ def certify(
     """Return a proof of how far a front can be from the true one.
 
     epsilon: to be proven, of the objectives' ranges over the front. seconds: budget; what is proven by then is
-    returned. progress: called between rounds. cancelled: asked between rounds. Raises `InputError` for an empty front
-    and for objectives that cannot be bounded over a range of designs: averages over the cycle, forces under friction,
-    peaks that are not minimised.
+    returned. progress: called between rounds. cancelled: asked between rounds. Raises `InputError` for an empty front,
+    for jobs in which more than the three dimensions varies, and for objectives that cannot be bounded over a range of
+    designs: averages over the cycle, forces under friction, peaks that are not minimised.
     """
     return certify_designs(
         front.problem, front.dimensions, epsilon=epsilon, seconds=seconds, progress=progress, cancelled=cancelled
@@ -59,6 +59,12 @@ def certify_designs(
     cancelled: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Return the same for designs (n, 3) of any origin: crank, rod, offset, m, that meet the job's requirements."""
+    more = [*(item.name for item in problem.mechanism.varying), *problem.choices]
+    if more:
+        raise InputError(
+            f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "
+            "the job and certify that"
+        )
     if not len(dimensions):
         raise InputError("an empty front cannot be certified; its message says why nothing is feasible")
     if not 0.0 < epsilon < 1.0:

@@ -24,8 +24,11 @@ def prove_infeasible(
     """Return whether it is proven that no design of the job's ranges meets all its requirements.
 
     False when a design meets them all, or when the budget ends first: then nothing is known. Requirements that cannot
-    be bounded over a range of designs are not used: the others must contradict each other.
+    be bounded over a range of designs are not used: the others must contradict each other. False, too, where more than
+    the three dimensions varies.
     """
+    if problem.mechanism.varying or problem.choices:
+        return False
     start = time.perf_counter()
     one = np.ones(len(problem.objectives))
     tree = Tree([Boxes(Evaluator(problem, sheet), one, objectives=False) for sheet in sheets(problem)])

@@ -37,7 +37,7 @@ JOB: dict[str, Any] = {
 
 
 def plain(designs: int = 3) -> Problem:
-    """Below that time ratio two peaks of the torque tie: slow, and for `test_robust_quantity`."""
+    """Below that time ratio two peaks of the torque tie: its percentile has steps in its slope there."""
     return problem(
         {"time_ratio": "maximise", "peak_torque": "minimise"},
         {"transmission_angle": (degrees(40.0), None), "stroke": (0.08, 0.1), "time_ratio": (1.12, None)},

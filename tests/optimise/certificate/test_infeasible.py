@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputError
+from slidercrank.model.varying import Varying
+from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.infeasible import prove_infeasible
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
@@ -58,3 +64,12 @@ def test_the_message_of_an_infeasible_job_says_that_it_is_proven() -> None:
 def test_a_budget_that_ends_first_proves_nothing() -> None:
     held: dict[str, Bounds] = {"time_ratio": (1.5, None), "transmission_angle": (degrees(27.47), None)}
     assert not prove_infeasible(problem({"peak_torque": "minimise"}, held), seconds=1e-3)
+
+
+def test_nothing_is_claimed_where_more_than_the_dimensions_varies() -> None:
+    given = problem({"peak_torque": "minimise"}, {"stroke": (10.0, None)})
+    assert prove_infeasible(given)
+    varying = Varying(name="mechanism.slider.mass", sets=(("slider_mass", 1.0),), lower=0.5, upper=2.0)
+    assert not prove_infeasible(replace(given, mechanism=replace(given.mechanism, varying=(varying,))))
+    with pytest.raises(InputError, match=r"over crank, rod and offset; got mechanism\.slider\.mass as well"):
+        certify_designs(replace(given, mechanism=replace(given.mechanism, varying=(varying,))), np.zeros((1, 4)))
