@@ -1,0 +1,367 @@
+"""What every store does, whatever database it is in: jobs, claims, and what a claim writes."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from slidercrank.model.errors import InputError, LeaseLost, QueueFull, RunError
+from slidercrank.service.result import csv_text
+from slidercrank.service.store import Artefact, Claim, Store
+from tests.service.store.contents import (
+    ROWS,
+    TABLES,
+    add,
+    end_lease,
+    everything,
+    generation,
+    progress,
+    result,
+    same,
+)
+
+
+def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
+    claim = store.claim(worker, lease=lease)
+    assert claim is not None
+    return claim
+
+
+def test_a_submitted_job_waits_and_is_what_was_submitted(store: Store) -> None:
+    job = add(store, priority=3, most_attempts=5)
+    assert store.job(job.id) == job
+    assert (job.name, job.state, job.priority, job.most_attempts, job.fence) == ("Feeder", "queued", 3, 5, 0)
+    assert job.submitted == pytest.approx(job.due, abs=1.0)
+    assert store.tables(job.id) == TABLES
+    assert [(event.number, event.kind, event.data["state"]) for event in store.events(job.id)] == [
+        (1, "state", "queued")
+    ]
+
+
+def test_jobs_are_listed_latest_first_in_pages_by_state_and_by_name(store: Store) -> None:
+    numbers = [add(store, name).id for name in ("Feeder", "Sieve", "feeder 100 %")]
+    taken(store)
+    assert [job.id for job in store.jobs()] == numbers[::-1]
+    assert [job.id for job in store.jobs(limit=2)] == numbers[:0:-1]
+    assert [job.id for job in store.jobs(before=numbers[1])] == numbers[:1]
+    assert [job.id for job in store.jobs(states=["queued"])] == numbers[:0:-1]
+    assert [job.id for job in store.jobs(name="FEED")] == [numbers[2], numbers[0]]
+    assert [job.id for job in store.jobs(name="0 %")] == [numbers[2]]
+    assert store.counts() == {"queued": 2, "running": 1}
+
+
+def test_the_highest_priority_is_claimed_first_then_the_oldest(store: Store) -> None:
+    low, first, second = add(store, priority=-1), add(store), add(store)
+    high = add(store, priority=5)
+    assert [taken(store).job.id for _ in range(4)] == [high.id, first.id, second.id, low.id]
+    assert store.claim("first") is None
+
+
+def test_each_job_is_claimed_once_however_many_workers_ask(store: Store, address: str) -> None:
+    numbers = {add(store).id for _ in range(12)}
+    start = threading.Barrier(4)
+
+    def claim_all(worker: int) -> list[int]:
+        with Store(address) as own:
+            start.wait()
+            found = []
+            while (claim := own.claim(f"worker {worker}", lease=60.0)) is not None:
+                found.append(claim.job.id)
+            return found
+
+    with ThreadPoolExecutor(4) as pool:
+        claimed = [number for found in pool.map(claim_all, range(4)) for number in found]
+    assert sorted(claimed) == sorted(numbers)
+
+
+def test_a_job_whose_lease_has_ended_goes_on_from_its_generations(store: Store, address: str) -> None:
+    add(store)
+    lost = taken(store)
+    for number in (1, 2):
+        lost.keep(generation(number))
+        lost.tell(progress(number))
+    lost.keep(generation(3))  # never written: its round was not told
+    assert store.claim("second") is None
+    end_lease(address, lost.job.id)
+    again = taken(store, "second")
+    assert (again.job.id, again.job.fence, again.job.worker) == (lost.job.id, 2, "second")
+    found = again.generations()
+    assert len(found) == again.job.generations == 2
+    assert all(same(one, generation(number)) for number, one in enumerate(found, 1))
+    assert again.job.progress is not None
+    assert again.job.progress["evaluations"] == 32
+    again.keep(generation(3))
+    again.tell(progress(3))
+    assert same(again.generations()[2], generation(3))
+
+
+WRITES: dict[str, Callable[[Claim], None]] = {
+    "tell": lambda claim: claim.tell(progress(2)),
+    "renew": lambda claim: claim.renew(),
+    "say": lambda claim: claim.say("still here"),
+    "put": lambda claim: claim.put(Artefact(name="a", media_type="text/plain", content=b"stale")),
+    "finish": lambda claim: claim.finish(result()),
+    "fail": lambda claim: claim.fail("stale", again=True),
+    "hand_back": lambda claim: claim.hand_back("stale"),
+}
+
+
+@pytest.mark.parametrize("write", WRITES)
+@pytest.mark.parametrize("claimed_again", [False, True])
+def test_a_worker_that_wakes_after_its_lease_writes_nothing(
+    write: str, claimed_again: bool, store: Store, address: str
+) -> None:
+    add(store)
+    paused = taken(store)
+    paused.keep(generation(1))
+    paused.tell(progress(1))
+    paused.keep(generation(2))
+    end_lease(address, paused.job.id)
+    if claimed_again:
+        taken(store, "second")
+    before = everything(address)
+    with pytest.raises(LeaseLost, match="claim 1 of job 1 has lost it"):
+        WRITES[write](paused)
+    assert everything(address) == before
+
+
+def test_every_write_renews_the_lease(store: Store) -> None:
+    job = add(store)
+    claim = taken(store, lease=60.0)
+    claim.lease = 600.0
+    for write in ("tell", "renew", "say", "put"):
+        before = store.job(job.id).lease_until
+        WRITES[write](claim)
+        after = store.job(job.id).lease_until
+        assert before is not None
+        assert after is not None
+        assert after > before
+    assert after > before
+    assert claim.age < 60.0
+
+
+def test_progress_is_written_with_its_generation_or_not_at_all(store: Store, address: str) -> None:
+    job = add(store)
+    claim = taken(store)
+    claim.keep(generation(1))
+    claim.tell(progress(1))
+    before = everything(address)
+    claim.keep(generation(2))
+    claim._generations = 0  # the next generation takes the number of the first, which the database refuses
+    claim.lease = 0.0  # at once, not after many tries
+    with pytest.raises(RunError, match="the store must be a database that can be"):
+        claim.tell(progress(2))
+    assert everything(address) == before
+    assert [event.data["round"] for event in store.events(job.id) if event.kind == "progress"] == [1]
+
+
+@pytest.mark.parametrize("status", ["done", "cancelled", "infeasible"])
+def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> None:
+    job = add(store)
+    with pytest.raises(RunError, match="has no result: it is queued"):
+        store.result(job.id)
+    claim = taken(store)
+    claim.keep(generation(1))
+    found = result(status, [] if status == "infeasible" else None)
+    claim.finish(found, [Artefact(name="versions.json", media_type="application/json", content=b"{}\0")])
+    read = store.result(job.id)
+    assert csv_text(read.designs) == csv_text(found.designs)
+    assert read.record() == found.record()
+    ended = store.job(job.id)
+    assert (ended.state, ended.reason, ended.worker, ended.lease_until) == (status, found.message, None, None)
+    assert ended.finished is not None
+    assert ended.generations == (1 if status == "cancelled" else 0)
+    assert store.artefacts(job.id) == ["versions.json"]
+    assert store.artefact(job.id, "versions.json").content == b"{}\0"
+    assert store.claim("second") is None
+    with pytest.raises(LeaseLost):
+        claim.finish(found)
+
+
+def test_an_error_is_tried_again_later_and_in_the_end_set_aside(store: Store) -> None:
+    job = add(store, most_attempts=2)
+    taken(store).fail("the disk was full", again=True, delay=60.0)
+    waiting = store.job(job.id)
+    assert (waiting.state, waiting.reason) == ("queued", "the disk was full (attempt 1 of 2)")
+    assert waiting.due - waiting.submitted >= 60.0
+    assert store.claim("second") is None
+    store.cancel(job.id)
+    store.resume(job.id)  # due at once, with all its attempts
+    for number in (1, 2):
+        claim = taken(store)
+        assert claim.job.attempts == number
+        claim.fail("the disk was full", again=True)
+    failed = store.job(job.id)
+    assert (failed.state, failed.reason) == ("failed", "the disk was full (attempt 2 of 2)")
+    assert store.claim("second") is None
+
+
+def test_what_cannot_succeed_is_not_tried_again(store: Store) -> None:
+    job = add(store)
+    taken(store).fail("the stroke must be positive", again=False)
+    assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "the stroke must be positive")
+
+
+def test_a_job_that_stops_its_workers_is_set_aside_and_the_next_one_claimed(store: Store, address: str) -> None:
+    poison, good = add(store, most_attempts=2), add(store)
+    for worker in ("first", "second"):
+        assert taken(store, worker).job.id == poison.id
+        end_lease(address, poison.id)
+    assert taken(store, "third").job.id == good.id
+    aside = store.job(poison.id)
+    assert aside.state == "failed"
+    assert "its worker stopped without a word 2 times in a row, the last one was second" in aside.reason
+    assert store.resume(poison.id).attempts == 0
+    assert taken(store).job.id == poison.id
+
+
+def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) -> None:
+    job = add(store, most_attempts=2)
+    for number in range(5):
+        claim = taken(store)
+        claim.keep(generation(number))
+        claim.tell(progress(number))
+        end_lease(address, job.id)
+    assert store.job(job.id).generations == 5
+
+
+def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) -> None:
+    job = add(store, most_attempts=1)
+    for _ in range(3):
+        claim = taken(store)
+        assert claim.job.attempts == 1
+        claim.hand_back("the machine goes down")
+    assert (store.job(job.id).state, store.job(job.id).reason) == ("queued", "the machine goes down")
+    claim = taken(store)
+    claim.keep(generation(1))
+    claim.hand_back("the machine goes down")
+    assert same(taken(store).generations()[0], generation(1))
+
+
+def test_a_waiting_job_is_cancelled_at_once(store: Store) -> None:
+    job = add(store)
+    assert store.cancel(job.id).state == "cancelled"
+    assert store.claim("first") is None
+    assert store.cancel(job.id).events == 2  # a second time changes nothing
+
+
+@pytest.mark.parametrize("hears", ["look", "renew", "tell"])
+def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
+    job = add(store)
+    claim = taken(store)
+    claim.keep(generation(1))
+    claim.tell(progress(1))
+    assert not claim.cancel_asked
+    assert store.cancel(job.id).cancel_asked
+    assert store.cancel(job.id).state == "running"
+    claim.look() if hears == "look" else WRITES[hears](claim)
+    assert claim.cancel_asked
+    claim.finish(result("cancelled"))
+    assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
+    assert not store.resume(job.id).cancel_asked
+    again = taken(store, "second")
+    assert same(again.generations()[0], generation(1))
+    again.finish(result("done", ROWS[:1]))
+    assert len(store.result(job.id).designs) == 1
+    with pytest.raises(InputError, match="only a cancelled or failed job can go on; job 1 is done"):
+        store.resume(job.id)
+    assert store.cancel(job.id).state == "done"
+
+
+def test_only_an_ended_job_is_deleted_and_nothing_of_it_stays(store: Store, address: str) -> None:
+    job = add(store)
+    claim = taken(store)
+    claim.keep(generation(1))
+    with pytest.raises(InputError, match="job 1 is running; cancel it first"):
+        store.delete(job.id)
+    claim.finish(result("cancelled"), [Artefact(name="a", media_type="text/plain", content=b"")])
+    store.delete(job.id)
+    assert all(not rows for rows in everything(address).values())
+    with pytest.raises(InputError, match="there is no job 1"):
+        store.job(job.id)
+    assert add(store).id == job.id + 1  # a number never comes back
+
+
+def test_no_more_jobs_wait_than_may(store: Store) -> None:
+    store.most_queued = 2
+    add(store)
+    add(store)
+    with pytest.raises(QueueFull, match="at most 2 jobs may wait; 2 do"):
+        add(store)
+    taken(store)
+    add(store)
+
+
+def test_a_key_submits_once(store: Store, address: str) -> None:
+    job = add(store, key="today")
+    assert add(store, key="today") == job
+    with pytest.raises(InputError, match="'today' is that of job 1, which differs"):
+        store.submit({**TABLES, "name": "Sieve"}, name="Sieve", key="today")
+    assert add(store).id != add(store).id
+
+    def submit(_: int) -> int:
+        with Store(address) as own:
+            return add(own, key="at once").id
+
+    with ThreadPoolExecutor(4) as pool:
+        assert len(set(pool.map(submit, range(8)))) == 1
+
+
+def test_events_have_no_gaps_whoever_writes_them(store: Store) -> None:
+    job = add(store)
+    claim = taken(store)
+
+    def tell(number: int) -> None:
+        claim.say(f"message {number}")
+        store.cancel(job.id)
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(tell, range(8)))
+    events = store.events(job.id)
+    assert [event.number for event in events] == list(range(1, 12))
+    texts = [event.data["text"] for event in events if event.kind == "message"]
+    assert sorted(texts) == ["asked to stop", *(f"message {number}" for number in range(8))]
+    assert [event.number for event in store.events(job.id, after=4, limit=3)] == [5, 6, 7]
+    assert store.events(job.id, after=11) == []
+
+
+def test_a_file_replaces_the_one_of_its_name(store: Store) -> None:
+    job = add(store)
+    claim = taken(store)
+    for content in (b"old", b"new"):
+        claim.put(Artefact(name="front.csv", media_type="text/csv", content=content))
+    assert store.artefact(job.id, "front.csv") == Artefact(name="front.csv", media_type="text/csv", content=b"new")
+    with pytest.raises(InputError, match="job 1 has no file"):
+        store.artefact(job.id, "back.csv")
+
+
+def test_workers_are_known_while_they_are_there(store: Store) -> None:
+    store.greet("first")
+    store.greet("second")
+    add(store)
+    seen = {worker.id: worker.seen for worker in store.workers()}
+    taken(store, "first").renew()
+    assert [worker.id for worker in store.workers()] == ["first", "second"]
+    assert store.workers()[0].seen > seen["first"]
+    assert 0.0 <= store.workers()[1].silent < 60.0
+    store.part("first")
+    assert [worker.id for worker in store.workers()] == ["second"]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"key": ""}, "''"),
+        ({"key": "a\nb"}, "printable"),
+        ({"most_attempts": 0}, "got 0"),
+        ({"priority": 1001}, "1001"),
+    ],
+)
+def test_a_submission_out_of_bounds_is_refused(options: dict[str, object], words: str, store: Store) -> None:
+    with pytest.raises(InputError, match=words):
+        add(store, **options)
+    with pytest.raises(InputError, match="at most an hour; got 0"):
+        store.claim("first", lease=0.0)
