@@ -15,6 +15,7 @@ def submit(
     priority: int = 0,
     key: str | None = None,
     most_attempts: int = MOST_ATTEMPTS,
+    most_seconds: float | None = None,
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
@@ -24,4 +25,11 @@ def submit(
     from ..optimise.job import parse_job
 
     problem = parse_job(tables, allow_user_code=False)
-    return store.submit(tables, name=problem.name, priority=priority, key=key, most_attempts=most_attempts)
+    return store.submit(
+        tables,
+        name=problem.name,
+        priority=priority,
+        key=key,
+        most_attempts=most_attempts,
+        most_seconds=most_seconds,
+    )

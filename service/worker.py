@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import logging
+import math
 import os
 import secrets
 import socket
@@ -10,11 +12,13 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..model.errors import InputError, LeaseLost, StoreError
 from .result import json_text, result_of
 from .store import LEASE, Artefact, Claim, Store
 
+_log = logging.getLogger(__name__)
 PULSE = 1.0
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 Stop = Callable[[], bool]
@@ -49,18 +53,21 @@ def work(
                 store.greet(name)
                 greeted = time.monotonic()
             claim = store.claim(name, lease=lease)
-        except StoreError:
+        except StoreError as error:
             if drain:
                 raise
+            _log.warning("%s", error)
             claim = None
         if claim is not None:
+            _log.info("job %d: claimed by %s", claim.job.id, name)
             solve_claimed(store, claim, stop)
             taken += 1
         elif drain:
             break
         else:
             time.sleep(PULSE)
-    store.part(name)
+    with contextlib.suppress(StoreError):  # where it cannot be reached, the worker is silent from now on
+        store.part(name)
     return taken
 
 
@@ -88,8 +95,8 @@ def solve_claimed(store: Store, claim: Claim, stop: Stop) -> None:
                 with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
                     claim.hand_back("its worker was interrupted; another one goes on")
                 raise
-    except (LeaseLost, StoreError):
-        return
+    except (LeaseLost, StoreError) as error:
+        _log.warning("job %d: left as it is: %s", claim.job.id, error)
 
 
 class Pulse:
@@ -134,9 +141,18 @@ def _solve(store: Store, claim: Claim, ends: Callable[[], bool]) -> None:
 
     problem = parse_job(store.tables(claim.job.id), allow_user_code=False)
     past = tuple(claim.generations())
-    front = solve(problem, progress=claim.tell, cancelled=ends, resume=past, keep=claim.keep)
+    limit = claim.job.most_seconds or math.inf
+    end = time.monotonic() + limit
+
+    def over() -> bool:
+        return ends() or time.monotonic() >= end
+
+    front = solve(problem, progress=claim.tell, cancelled=over, resume=past, keep=claim.keep)
+    result = result_of(front, f"job {claim.job.id}")
+    if result.status == "cancelled" and not claim.cancel_asked:
+        result = replace(result, message=f"{result.message}; its search took longer than its limit of {limit:g} s")
     versions = Artefact(name="versions.json", media_type="application/json", content=json_text(front.versions).encode())
-    claim.finish(result_of(front, f"job {claim.job.id}"), [versions])
+    claim.finish(result, [versions])
 
 
 def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import ColumnElement, Connection, Double, and_, case, cast, delete, insert, literal, select, update
 
-from ...model.errors import LeaseLost, StoreError
+from ...model.errors import LeaseLost
 from ..result import Result, finite
 from .clock import now
-from .database import Database
+from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event
-from .packing import cells_of, packed, text_of, unpacked
+from .packing import cells_of, packed, plain, text_of, unpacked
 from .records import Artefact, Job
 from .schema import artefacts, designs, generations, jobs, workers
 
@@ -85,7 +85,7 @@ class Claim:
 
     def say(self, text: str) -> None:
         """Add a message to the events of the job."""
-        self._write({}, [("message", {"text": text})])
+        self._write({}, [("message", {"text": plain(text)})])
 
     def put(self, *files: Artefact) -> None:
         """Write files of the job, each in place of one of its name."""
@@ -137,6 +137,7 @@ class Claim:
             connection.execute(insert(artefacts).values(job=self.job.id, at=now(), **row))
 
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
+        reason = plain(reason)
         ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}
         self._write({**ended, **changes}, [state_event(state, reason)], rest)
 
@@ -174,7 +175,7 @@ class Claim:
                     self._change(connection, values, told, rows, rest, tried)
                 self._renewed = started
                 return
-            except StoreError:
+            except Unavailable:
                 if self.age > self.lease:
                     raise
                 tried = True

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
-from sqlalchemy.exc import ArgumentError, DBAPIError
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import InputError, StoreError
@@ -26,6 +26,10 @@ _POSTGRESQL = {
     # A worker that is stopped in the middle of a transaction would otherwise hold its job for good.
     "idle_in_transaction_session_timeout": "10s",
 }
+
+
+class Unavailable(StoreError):
+    """What the database refuses may succeed later: it restarts, its disk is full, another writer is at work."""
 
 
 class Database:
@@ -65,7 +69,8 @@ class Database:
         try:
             yield
         except (DBAPIError, PoolTimeoutError) as error:
-            raise StoreError(
+            kind = Unavailable if _may_pass(error) else StoreError
+            raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
                 f"{_reason(error)}; see that it runs, that the disk has room and that you may write there"
             ) from error
@@ -131,6 +136,7 @@ def _postgresql(url: URL) -> Engine:
     arguments = {
         "options": f"{options} {given if isinstance(given, str) else ' '.join(given)}".strip(),
         "connect_timeout": 10,
+        "tcp_user_timeout": 20_000,  # ms until a machine that is gone counts as gone
         "application_name": "slidercrank",
     }
     kept = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
@@ -140,6 +146,11 @@ def _postgresql(url: URL) -> Engine:
         raise InputError(
             'a store on PostgreSQL needs the package psycopg; it is not installed; pip install "slidercrank[postgres]"'
         ) from error
+
+
+def _may_pass(error: Exception) -> bool:
+    passing = isinstance(error, OperationalError | InterfaceError | PoolTimeoutError)
+    return passing or (isinstance(error, DBAPIError) and error.connection_invalidated)
 
 
 def _reason(error: Exception) -> str:

@@ -15,6 +15,7 @@ from ..result import Cell, Row
 if TYPE_CHECKING:
     from ...optimise.methods.generation import Generation
 
+_LONGEST = 4000
 _ARRAYS = ("sheet", "u", "parents", "values", "violation")
 
 
@@ -45,6 +46,12 @@ def unpacked(content: bytes) -> Generation:
 def text_of(value: Any) -> str:
     """Return strict, compact JSON in ASCII. Raises ValueError for a number that is not finite."""
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
+
+
+def plain(text: str) -> str:
+    """Return a text as every database takes it: without NUL and lone surrogates, and not longer than a page."""
+    text = text.replace("\0", "?").encode(errors="replace").decode()
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 4] + " ..."
 
 
 def cells_of(row: Mapping[str, Cell]) -> str:

@@ -23,8 +23,9 @@ class Job:
 
     state: queued, running, done, infeasible (nothing can meet its rules), cancelled, or failed: set aside, not tried
     again unless someone resumes it. reason: why it is in this state, in a sentence, or empty. attempts: since it last
-    went forward by a generation. due: it is not claimed before. worker, lease_until: of a running one. generations:
-    how many it can go on from. events: how many there are. progress: fields of the latest `Progress`, or None.
+    went forward by a generation. most_seconds: how long its search may take, if there is a limit. due: it is not
+    claimed before. worker, lease_until: of a running one. generations: how many it can go on from. events: how many
+    there are. progress: fields of the latest `Progress`, or None.
     """
 
     id: int
@@ -35,6 +36,7 @@ class Job:
     priority: int
     attempts: int
     most_attempts: int
+    most_seconds: float | None
     cancel_asked: bool
     submitted: float
     due: float

@@ -58,6 +58,7 @@ jobs = Table(
     Column("priority", Integer, nullable=False, server_default="0"),
     Column("attempts", Integer, nullable=False, server_default="0"),
     Column("most_attempts", Integer, nullable=False),
+    Column("most_seconds", Double),
     Column("cancel_asked", Boolean, nullable=False, server_default=false()),
     Column("submitted", Double, nullable=False),
     Column("due", Double, nullable=False),
@@ -75,7 +76,8 @@ jobs = Table(
     Index(None, "state", "priority", "id"),
     sqlite_autoincrement=True,  # the number of a deleted job never comes back
 )
-"""key: of the submission, to recognise a repeated one. due: not to be claimed before. fence: how often it was claimed.
+"""key: of the submission, to recognise a repeated one. most_seconds: how long a
+search may take. due: not to be claimed before. fence: how often it was claimed.
 writes: how often the holder of this claim has written. generations, events: how many there are. progress: the latest.
 result: `Result.record` without designs, with the names of their columns."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Collection, Mapping
 from os import PathLike
 from typing import Any
@@ -17,7 +18,7 @@ from .claiming import any_claimable, claim_next
 from .clock import now
 from .database import Database
 from .events_log import add_events, state_event
-from .packing import row_of, text_of
+from .packing import plain, row_of, text_of
 from .records import ENDED, RESUMABLE, SHOWN, Artefact, Event, Job, State, Worker, job_of
 from .schema import artefacts, designs, events, jobs, workers
 from .schema_version import LOCK, upgrade
@@ -66,28 +67,27 @@ class Store:
         priority: int = 0,
         key: str | None = None,
         most_attempts: int = MOST_ATTEMPTS,
+        most_seconds: float | None = None,
     ) -> Job:
         """Queue a job and return it. The job itself is not read; `submission.submit` checks it first.
 
         tables: of its job file. priority: higher ones are claimed first. key: of this submission; with one that was
         used before, nothing is queued and the job of that time is returned. most_attempts: how often it is tried
-        without going forward before it is set aside.
+        without going forward before it is set aside. most_seconds: how long its search may take; it then ends with what
+        it found, as if it had been cancelled.
 
         Raises `QueueFull`, and `InputError` if the key was used for another job.
         """
-        if most_attempts < 1 or abs(priority) > 1000 or (key is not None and not _key_fits(key)):
-            raise InputError(
-                "a submission needs at least 1 attempt, a priority from -1000 to 1000 and, if any, a key of 1 to 255 "
-                f"printable characters; got {most_attempts}, {priority} and {key!r}"
-            )
+        _require_bounds(priority, key, most_attempts, most_seconds)
         stated = text_of(tables)
         row = {
             "key": key,
-            "name": name,
+            "name": plain(name),
             "tables": stated,
             "state": "queued",
             "priority": priority,
             "most_attempts": most_attempts,
+            "most_seconds": most_seconds,
             "submitted": now(),
             "due": now(),
             "events": 1,
@@ -123,7 +123,7 @@ class Store:
         if states:
             query = query.where(jobs.c.state.in_(states))
         if name:
-            query = query.where(jobs.c.name.icontains(name, autoescape=True))
+            query = query.where(jobs.c.name.icontains(plain(name), autoescape=True))
         if before is not None:
             query = query.where(jobs.c.id < before)
         with self._database.reading() as connection:
@@ -138,9 +138,8 @@ class Store:
     def tables(self, number: int) -> dict[str, Any]:
         """Return the tables of a job's file."""
         with self._database.reading() as connection:
-            found = connection.scalar(select(jobs.c.tables).where(jobs.c.id == number))
-        if found is None:
-            raise _unknown(number)
+            _job(connection, number)
+            found = connection.execute(select(jobs.c.tables).where(jobs.c.id == number)).scalar_one()
         tables: dict[str, Any] = json.loads(found)
         return tables
 
@@ -259,9 +258,9 @@ class Store:
 
 def _job(connection: Connection, number: int, *, lock: bool = False) -> Job:
     query = select(*SHOWN).where(jobs.c.id == number)
-    row = connection.execute(query.with_for_update() if lock else query).first()
+    row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
     if row is None:
-        raise _unknown(number)
+        raise InputError(f"there is no job {number}; list the jobs")
     return job_of(row)
 
 
@@ -272,9 +271,13 @@ def _become(connection: Connection, job: Job, state: State, reason: str, **chang
     return _job(connection, job.id)
 
 
-def _unknown(number: int) -> InputError:
-    return InputError(f"there is no job {number}; list the jobs")
-
-
-def _key_fits(key: str) -> bool:
-    return 0 < len(key) <= 255 and key.isprintable()
+def _require_bounds(priority: int, key: str | None, most_attempts: int, most_seconds: float | None) -> None:
+    if not (abs(priority) <= 1000 and 1 <= most_attempts <= 1000):
+        raise InputError(
+            f"a job has a priority from -1000 to 1000 and 1 to 1000 attempts; got {priority} and {most_attempts}; "
+            "choose within these"
+        )
+    if key is not None and not (0 < len(key) <= 255 and key.isprintable()):
+        raise InputError(f"a key has 1 to 255 printable characters; got {key[:300]!r}; choose another one")
+    if most_seconds is not None and not 0.0 < most_seconds < math.inf:
+        raise InputError(f"a search may take more than 0 s; got a limit of {most_seconds} s; leave it out for no limit")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
@@ -131,15 +132,14 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
 def test_every_write_renews_the_lease(store: Store) -> None:
     job = add(store)
     claim = taken(store, lease=60.0)
-    claim.lease = 600.0
     for write in ("tell", "renew", "say", "put"):
+        claim.lease += 600.0
         before = store.job(job.id).lease_until
         WRITES[write](claim)
         after = store.job(job.id).lease_until
         assert before is not None
         assert after is not None
-        assert after > before
-    assert after > before
+        assert after > before + 300.0
     assert claim.age < 60.0
 
 
@@ -197,6 +197,21 @@ def test_an_error_is_tried_again_later_and_in_the_end_set_aside(store: Store) ->
     failed = store.job(job.id)
     assert (failed.state, failed.reason) == ("failed", "the disk was full (attempt 2 of 2)")
     assert store.claim("second") is None
+
+
+def test_any_text_is_taken(store: Store) -> None:
+    job = add(store, "nul \0 and surrogate \ud800")
+    assert job.name == "nul ? and surrogate ?"
+    assert store.jobs(name="\0") == store.jobs(name="?") == [job]
+    claim = taken(store)
+    claim.say("\0\ud800")
+    claim.fail("\0\ud800" + "x" * 10_000, again=False)
+    failed = store.job(job.id)
+    assert failed.reason.startswith("??xxx")
+    assert len(failed.reason) == 4000
+    for number in (0, -1, 2**63, 10**30):
+        with pytest.raises(InputError, match=f"there is no job {number}"):
+            store.job(number)
 
 
 def test_what_cannot_succeed_is_not_tried_again(store: Store) -> None:
@@ -343,6 +358,7 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
     store.greet("second")
     add(store)
     seen = {worker.id: worker.seen for worker in store.workers()}
+    time.sleep(0.01)  # a clock that counts milliseconds has to go on
     taken(store, "first").renew()
     assert [worker.id for worker in store.workers()] == ["first", "second"]
     assert store.workers()[0].seen > seen["first"]
@@ -354,10 +370,11 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"key": ""}, "''"),
+        ({"key": ""}, "got ''"),
         ({"key": "a\nb"}, "printable"),
-        ({"most_attempts": 0}, "got 0"),
-        ({"priority": 1001}, "1001"),
+        ({"most_attempts": 0}, "got 0 and 0"),
+        ({"priority": 1001}, "got 1001 and 3"),
+        ({"most_seconds": 0.0}, "more than 0 s"),
     ],
 )
 def test_a_submission_out_of_bounds_is_refused(options: dict[str, object], words: str, store: Store) -> None:

@@ -24,6 +24,7 @@ def upgrade() -> None:
         sa.Column("priority", sa.Integer, nullable=False, server_default="0"),
         sa.Column("attempts", sa.Integer, nullable=False, server_default="0"),
         sa.Column("most_attempts", sa.Integer, nullable=False),
+        sa.Column("most_seconds", sa.Double),
         sa.Column("cancel_asked", sa.Boolean, nullable=False, server_default=sa.false()),
         sa.Column("submitted", sa.Double, nullable=False),
         sa.Column("due", sa.Double, nullable=False),
