@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import pytest
 
@@ -377,7 +378,7 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
         ({"most_seconds": 0.0}, "more than 0 s"),
     ],
 )
-def test_a_submission_out_of_bounds_is_refused(options: dict[str, object], words: str, store: Store) -> None:
+def test_a_submission_out_of_bounds_is_refused(options: dict[str, Any], words: str, store: Store) -> None:
     with pytest.raises(InputError, match=words):
         add(store, **options)
     with pytest.raises(InputError, match="at most an hour; got 0"):
