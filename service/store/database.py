@@ -7,6 +7,7 @@ has to be given up half-way because another one wrote meanwhile. PostgreSQL: psy
 from __future__ import annotations
 
 import contextlib
+import sqlite3
 import time
 from collections.abc import Iterator
 from os import PathLike
@@ -68,7 +69,7 @@ class Database:
     def _told(self) -> Iterator[None]:
         try:
             yield
-        except (DBAPIError, PoolTimeoutError) as error:
+        except (DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
@@ -84,7 +85,7 @@ class Database:
                     raw: Any = connection.connection.dbapi_connection
                     mode = raw.execute("PRAGMA journal_mode=WAL").fetchone()[0]
                 break
-            except StoreError as error:
+            except Unavailable as error:
                 if "locked" not in str(error) or time.monotonic() > end:
                     raise
                 time.sleep(0.05)
@@ -149,7 +150,7 @@ def _postgresql(url: URL) -> Engine:
 
 
 def _may_pass(error: Exception) -> bool:
-    passing = isinstance(error, OperationalError | InterfaceError | PoolTimeoutError)
+    passing = isinstance(error, OperationalError | InterfaceError | PoolTimeoutError | sqlite3.OperationalError)
     return passing or (isinstance(error, DBAPIError) and error.connection_invalidated)
 
 

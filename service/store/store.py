@@ -26,6 +26,7 @@ from .schema_version import LOCK, upgrade
 MOST_QUEUED = 10_000
 MOST_ATTEMPTS = 3
 LEASE = 30.0
+_FORGOTTEN = 7 * 86_400.0
 
 
 class Store:
@@ -188,14 +189,16 @@ class Store:
         return Artefact(name=name, media_type=row.media_type, content=bytes(row.content))
 
     def cancel(self, number: int) -> Job:
-        """Cancel a job and return it: at once if it waits, else as soon as its worker hears of it.
+        """Cancel a job and return it: at once if it waits or its worker is gone, else when its worker hears of it.
 
         A cancelled job keeps what it found, and can go on. One that has ended stays as it is.
         """
         with self._database.writing() as connection:
             job = _job(connection, number, lock=True)
-            if job.state == "queued":
-                return _become(connection, job, "cancelled", "cancelled before it was done", finished=now())
+            ended = select(jobs.c.lease_until < now()).where(jobs.c.id == number)
+            if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
+                left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
+                return _become(connection, job, "cancelled", "cancelled before it was done", **left)
             if job.state == "running" and not job.cancel_asked:
                 values = {"cancel_asked": True, "events": job.events + 1}
                 connection.execute(update(jobs).where(jobs.c.id == number).values(values))
@@ -238,10 +241,11 @@ class Store:
         return None if job is None else Claim(self._database, job, lease)
 
     def greet(self, worker: str) -> None:
-        """Note that a worker is there."""
+        """Note that a worker is there; forget those that have been silent for days."""
         with self._database.writing() as connection:
             seen = update(workers).where(workers.c.id == worker).values(seen=now())
             if not connection.execute(seen).rowcount:
+                connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
                 connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
 
     def part(self, worker: str) -> None:

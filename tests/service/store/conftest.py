@@ -29,7 +29,7 @@ def address(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     if request.param == "sqlite":
         return str(tmp_path / "store.db")
     server: postgresql.Cluster = request.getfixturevalue("server")
-    return server.new_database()
+    return server.new_address()
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from sqlalchemy import create_engine
 
-_DATABASES = count()
+_SCHEMAS = count()
 
 
 class Cluster:
@@ -30,18 +30,14 @@ class Cluster:
         self._run("initdb", "--auth=trust", "--username=tests", "--encoding=UTF8", "--no-sync", "--locale=C")
         self.start()
 
-    def address(self, database: str = "postgres") -> str:
-        """Return the address of a database."""
-        return f"postgresql://tests@/{database}?host={self.folder}"
-
-    def new_database(self) -> str:
-        """Return the address of an empty database."""
-        name = f"store_{next(_DATABASES)}"
-        engine = create_engine(self.address().replace("postgresql:", "postgresql+psycopg:"))
-        with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-            connection.exec_driver_sql(f"CREATE DATABASE {name}")
+    def new_address(self) -> str:
+        """Return an address with nothing there: a schema of its own, which takes less time and disk than a database."""
+        name = f"store_{next(_SCHEMAS)}"
+        engine = create_engine(f"postgresql+psycopg://tests@/postgres?host={self.folder}")
+        with engine.begin() as connection:
+            connection.exec_driver_sql(f"CREATE SCHEMA {name}")
         engine.dispose()
-        return self.address(name)
+        return f"postgresql://tests@/postgres?host={self.folder}&options=-csearch_path%3D{name}"
 
     def start(self) -> None:
         """Start the server, and wait until it answers."""

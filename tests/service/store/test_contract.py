@@ -264,6 +264,20 @@ def test_a_waiting_job_is_cancelled_at_once(store: Store) -> None:
     assert store.cancel(job.id).events == 2  # a second time changes nothing
 
 
+def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: Store, address: str) -> None:
+    job = add(store)
+    gone = taken(store)
+    gone.keep(generation(1))
+    gone.tell(progress(1))
+    end_lease(address, job.id)
+    cancelled = store.cancel(job.id)
+    assert (cancelled.state, cancelled.worker, cancelled.generations) == ("cancelled", None, 1)
+    with pytest.raises(LeaseLost):
+        gone.tell(progress(2))
+    store.resume(job.id)
+    assert same(taken(store, "second").generations()[0], generation(1))
+
+
 @pytest.mark.parametrize("hears", ["look", "renew", "tell"])
 def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
     job = add(store)

@@ -74,7 +74,7 @@ def test_commits_of_sqlite_are_on_the_disk_and_writers_take_turns_from_the_begin
 
 
 def test_commits_of_postgresql_are_on_the_disk_and_no_session_sleeps_in_a_transaction(server: Cluster) -> None:
-    database = Database(server.new_database())
+    database = Database(server.new_address())
     with database.reading() as connection:
         names = ("synchronous_commit", "idle_in_transaction_session_timeout", "lock_timeout")
         assert [connection.scalar(text(f"SHOW {name}")) for name in names] == ["on", "10s", "30s"]
@@ -103,6 +103,17 @@ def test_other_addresses_are_refused_without_telling_passwords(address: str) -> 
     with pytest.raises(InputError, match="a store is at postgresql://") as refused:
         Store(address)
     assert "secret" not in str(refused.value)
+
+
+def test_workers_that_never_said_that_they_leave_are_forgotten_in_the_end(store: Store, database: Database) -> None:
+    for worker in ("long gone", "silent"):
+        store.greet(worker)
+    with database.writing() as connection:
+        connection.execute(text("UPDATE workers SET seen = seen - 700000 WHERE id = 'long gone'"))
+    store.greet("silent")
+    assert len(store.workers()) == 2
+    store.greet("new")
+    assert [worker.id for worker in store.workers()] == ["new", "silent"]
 
 
 def test_what_cannot_be_opened_says_so(tmp_path: Path) -> None:
@@ -188,7 +199,7 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
 
 
 def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
-    with Store(server.new_database()) as store:
+    with Store(server.new_address()) as store:
         job = add(store)
         claim = store.claim("first")
         assert claim is not None
