@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 import tomllib
@@ -105,6 +106,8 @@ def test_a_worker_solves_what_waits_and_writes_what_it_found(store: Store, searc
 def test_a_job_that_is_not_valid_is_refused_before_it_is_queued(store: Store) -> None:
     with pytest.raises(JobError, match="objectives"):
         submit(store, {**TABLES, "objectives": {}})
+    with pytest.raises(JobError, match="number"):
+        submit(store, {**TABLES, "mechanism": {"speed": math.nan}})
     own = {"quantity": {"mine": {"function": "os:getcwd", "unit": "mm"}}}
     with pytest.raises(JobError, match="quantity"):
         submit(store, {**TABLES, **own})

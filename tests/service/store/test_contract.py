@@ -325,6 +325,19 @@ def test_no_more_jobs_wait_than_may(store: Store) -> None:
     add(store)
 
 
+def test_submissions_at_the_same_moment_do_not_overfill_the_queue(address: str) -> None:
+    def submit(_: int) -> bool:
+        with Store(address, most_queued=3) as own:
+            try:
+                add(own)
+            except QueueFull:
+                return False
+            return True
+
+    with ThreadPoolExecutor(4) as pool:
+        assert sum(pool.map(submit, range(8))) == 3
+
+
 def test_a_key_submits_once(store: Store, address: str) -> None:
     job = add(store, key="today")
     assert add(store, key="today") == job

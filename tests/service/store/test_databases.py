@@ -16,6 +16,7 @@ from sqlalchemy import Connection, text
 
 from slidercrank.model.errors import InputError, LeaseLost, StoreError
 from slidercrank.service.store import Store
+from slidercrank.service.store.claiming import claim_next
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.schema import metadata
 from tests.service.store.contents import add, end_lease, everything, generation, progress, result
@@ -196,6 +197,19 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
     end_lease(address, job.id)
     with pytest.raises(LeaseLost):  # also when the first try did not reach the database
         claim.tell(progress(1))
+
+
+def test_workers_on_postgresql_do_not_wait_for_each_other(server: Cluster) -> None:
+    with Store(server.new_address()) as store:
+        first, second = add(store), add(store)
+        with store._database.writing() as connection:
+            held = claim_next(connection, "first", 60.0)
+            other = store.claim("second")  # while the first one has not committed yet
+            assert store.claim("third") is None
+        assert held is not None
+        assert other is not None
+        assert (held.id, other.job.id) == (first.id, second.id)
+        assert [store.job(job.id).worker for job in (first, second)] == ["first", "second"]
 
 
 def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
