@@ -15,7 +15,7 @@ from alembic.migration import MigrationContext
 from sqlalchemy import Connection, text
 
 from slidercrank.model.errors import InputError, LeaseLost, StoreError
-from slidercrank.service.store import Store
+from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.claiming import claim_next
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.schema import metadata
@@ -197,6 +197,32 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
     end_lease(address, job.id)
     with pytest.raises(LeaseLost):  # also when the first try did not reach the database
         claim.tell(progress(1))
+
+
+def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_path: Path) -> None:
+    with Store(tmp_path / "store.db") as store:
+        job = add(store)
+        claim = store.claim("first")
+        assert claim is not None
+        before = everything(str(tmp_path / "store.db"))
+        room(store, 50)
+        large = Artefact(name="large", media_type="text/plain", content=b"x" * 10_000_000)
+        claim.lease = 0.05
+        with pytest.raises(StoreError, match="database or disk is full; see that it runs, that the disk has room"):
+            claim.put(large)
+        assert everything(str(tmp_path / "store.db")) == before
+        with store._database.reading() as connection:
+            assert connection.scalar(text("PRAGMA integrity_check")) == "ok"
+        room(store, 100_000)
+        claim.lease = 60.0
+        claim.put(large)
+        assert store.artefact(job.id, "large") == large
+
+
+def room(store: Store, pages: int) -> None:
+    """Let SQLite's file have at most so many pages, as on a disk that is full."""
+    with store._database.writing() as connection:  # one thread has one connection, so that this one is used again
+        connection.execute(text(f"PRAGMA max_page_count={pages}"))
 
 
 def test_workers_on_postgresql_do_not_wait_for_each_other(server: Cluster) -> None:
