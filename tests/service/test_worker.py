@@ -1,4 +1,4 @@
-"""Workers: what they do with the jobs of a store, and with what goes wrong. All searches but the last are made up."""
+"""Workers: what they do with the jobs of a store, and with what goes wrong. All searches are made up."""
 
 from __future__ import annotations
 
@@ -17,8 +17,6 @@ import pytest
 from slidercrank.model.errors import InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.solve import solve
-from slidercrank.service.result import csv_text
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.submission import submit
 from slidercrank.service.worker import Pulse, solve_claimed, work, worker_name
@@ -300,46 +298,3 @@ def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: p
 def test_names_of_workers_differ() -> None:
     assert worker_name() != worker_name()
     assert threading.active_count() < 50  # the pulses of ended jobs are gone
-
-
-def test_a_killed_job_goes_on_and_finds_the_same_designs(store: Store, address: Path, searches: Any) -> None:
-    evolving = {**TABLES, "optimiser": {"method": "nsga2", "samples": 16, "evaluations": 64, "designs": 6, "seed": 4}}
-    whole, killed = submit(store, evolving), submit(store, evolving)
-    lengths: list[int] = []
-
-    class Killed(BaseException):
-        """Stands for the end of the process."""
-
-    def watched(*given: Any, resume: Any, **more: Any) -> ParetoFront:
-        lengths.append(len(resume))
-        return solve(*given, resume=resume, **more)
-
-    def dying(*given: Any, progress: Any, **more: Any) -> ParetoFront:
-        def tell(at: Any) -> None:
-            progress(at)
-            if at.round == 2:
-                raise Killed
-
-        return solve(*given, progress=tell, **more)
-
-    searches(watched)
-    claim = store.claim("first", lease=60.0)
-    assert claim is not None
-    solve_claimed(store, claim, lambda: False)
-    searches(dying)
-    claim = store.claim("second", lease=60.0)
-    assert claim is not None
-    claim.hand_back = lambda reason: None  # type: ignore[method-assign] # the dead do not
-
-    with pytest.raises(Killed):
-        solve_claimed(store, claim, lambda: False)
-    kept = claim.generations()
-    assert len(kept) == 2
-    end_lease(str(address), killed.id)
-    searches(watched)
-    assert work(store, drain=True) == 1
-    assert lengths == [0, 2]
-    one, other = store.result(whole.id), store.result(killed.id)
-    assert (one.status, one.message, one.hypervolume) == (other.status, other.message, other.hypervolume)
-    assert one.designs
-    assert csv_text(one.designs) == csv_text(other.designs)

@@ -11,7 +11,7 @@ from sqlalchemy import select, update
 from slidercrank.optimise.front import Progress
 from slidercrank.optimise.methods.generation import Generation
 from slidercrank.service.result import Result, Row, Wanted
-from slidercrank.service.store import Job, Store
+from slidercrank.service.store import Claim, Job, Store
 from slidercrank.service.store.clock import now
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import jobs, metadata
@@ -26,6 +26,13 @@ ROWS: list[Row] = [
 def add(store: Store, name: str = "Feeder", **options: Any) -> Job:
     """Return a job that was submitted."""
     return store.submit(TABLES, name=name, **options)
+
+
+def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
+    """Return the claim of a job that waits."""
+    claim = store.claim(worker, lease=lease)
+    assert claim is not None
+    return claim
 
 
 def generation(number: int) -> Generation:
