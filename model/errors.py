@@ -5,6 +5,9 @@
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
     |   `-- JobError        a job file that cannot be used
     `-- RunError            a stored run that cannot be read or written
+        |-- StoreError      the database of jobs refuses, or cannot be reached
+        |-- LeaseLost       a job that is another worker's by now
+        `-- QueueFull       as many jobs wait as may wait
 
 Every message says the rule, the value and the remedy.
 """
@@ -30,3 +33,15 @@ class JobError(InputError):
 
 class RunError(SlidercrankError):
     """A stored run that cannot be read or written."""
+
+
+class StoreError(RunError):
+    """The database of jobs refuses, or cannot be reached."""
+
+
+class LeaseLost(RunError):
+    """A job that is another worker's by now, or may be: nothing was written of it."""
+
+
+class QueueFull(RunError):
+    """As many jobs wait as may wait."""

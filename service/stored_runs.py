@@ -68,15 +68,18 @@ def read_run(folder: Path) -> Result:
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
-        result = _result(record, rows, str(folder))
+        result = result_from(record, rows, str(folder))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise RunError(f"the run {folder} is damaged: {type(error).__name__}: {reason}; run its job again") from error
     return result
 
 
-def _result(record: dict[str, Any], rows: list[Row], run: str) -> Result:
-    """Return the result of front.json, with the rows of front.csv, which also have infinities."""
+def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
+    """Return the result of a record as front.json has it, with the rows of front.csv, which also have infinities.
+
+    Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
+    """
     if finite(rows) != record["designs"]:
         raise ValueError("front.csv and front.json differ")
     wanted = tuple(Wanted(**item) for item in record["objectives"])

@@ -1,0 +1,218 @@
+"""A job in the hands of a worker: everything that is written of it goes through its claim."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import ColumnElement, Connection, Double, and_, case, cast, delete, insert, literal, select, update
+
+from ...model.errors import LeaseLost
+from ..result import Result, finite
+from .clock import now
+from .database import Database, Unavailable
+from .events_log import Told, add_events, state_event
+from .packing import cells_of, packed, plain, text_of, unpacked
+from .records import Artefact, Job
+from .schema import artefacts, designs, generations, jobs, workers
+
+if TYPE_CHECKING:
+    from ...optimise.front import Progress
+    from ...optimise.methods.generation import Generation
+
+_PAUSE = 0.25  # s between two tries of a write that the database refused
+Rest = Callable[[Connection], None]
+
+
+class Claim:
+    """The right to write of a job until its lease ends.
+
+    Every write is one transaction that holds only if the fence is still that of this claim and the lease has not ended,
+    by the clock of the database; else nothing is written and `LeaseLost` is raised, also when no other worker has come
+    yet. Every write renews the lease. A write that the database refuses, or whose answer is lost, is tried again for as
+    long as the lease lasts, and takes effect once. Threads may share a claim.
+    """
+
+    def __init__(self, database: Database, job: Job, lease: float) -> None:
+        """Hold a job that was claimed a moment ago. lease: in s."""
+        self.job = job
+        self.lease = lease
+        self.cancel_asked = job.cancel_asked
+        self._database = database
+        self._lock = threading.RLock()
+        self._writes = 0
+        self._attempts = job.attempts
+        self._generations = job.generations
+        self._kept: list[Generation] = []
+        self._renewed = time.monotonic()
+
+    @property
+    def age(self) -> float:
+        """Time since the lease was last renewed, in s."""
+        return time.monotonic() - self._renewed
+
+    def generations(self) -> list[Generation]:
+        """Return what the job has evaluated so far, in order."""
+        query = select(generations.c.content).where(generations.c.job == self.job.id).order_by(generations.c.number)
+        with self._database.reading() as connection:
+            return [unpacked(content) for content in connection.execute(query).scalars()]
+
+    def keep(self, generation: Generation) -> None:
+        """Take in the next generation; it is written with the next progress, or with the end."""
+        with self._lock:
+            self._kept.append(generation)
+
+    def tell(self, progress: Progress) -> None:
+        """Write where the search stands, together with the generations kept since."""
+        data = finite(asdict(progress))
+        self._write({"progress": text_of(data)}, [("progress", data)])
+
+    def renew(self) -> None:
+        """Renew the lease and look whether the job is to be cancelled; writes nothing else."""
+        self._write({}, [], keep=False)
+
+    def look(self) -> None:
+        """Look whether the job is to be cancelled, without writing. Raises `LeaseLost` if another worker has it."""
+        query = select(jobs.c.cancel_asked).where(self._mine, jobs.c.state == "running")
+        with self._database.reading() as connection:
+            asked = connection.scalar(query)
+        if asked is None:
+            raise self._lost()
+        self.cancel_asked = self.cancel_asked or asked
+
+    def say(self, text: str) -> None:
+        """Add a message to the events of the job."""
+        self._write({}, [("message", {"text": plain(text)})])
+
+    def put(self, *files: Artefact) -> None:
+        """Write files of the job, each in place of one of its name."""
+        self._write({}, [], lambda connection: self._put(connection, files))
+
+    def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
+        """Write what was found and end the job, done, infeasible or cancelled, all in one transaction."""
+        record = result.record()
+        del record["designs"]
+        record["columns"] = list(result.designs[0]) if result.designs else []
+        rows = [
+            {"job": self.job.id, "number": number, "cells": cells_of(row)} for number, row in enumerate(result.designs)
+        ]
+
+        def rest(connection: Connection) -> None:
+            connection.execute(delete(designs).where(designs.c.job == self.job.id))
+            if rows:
+                connection.execute(insert(designs), rows)
+            self._put(connection, files)
+            if result.status != "cancelled":  # a cancelled one can go on
+                connection.execute(delete(generations).where(generations.c.job == self.job.id))
+
+        left: dict[str, Any] = {} if result.status == "cancelled" else {"generations": 0}
+        self._end(result.status, result.message, {"result": text_of(record), **left}, rest)
+
+    def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
+        """Give the job back after an error.
+
+        again: whether another attempt may succeed; it is then queued for `delay` s from now on, unless it has used up
+        its attempts. Else it is set aside as failed.
+        """
+        attempts = 0 if self._kept else self._attempts
+        tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
+        if again and attempts < self.job.most_attempts:
+            self._end("queued", f"{reason}{tries}", {"due": now() + cast(literal(delay), Double), "finished": None})
+        else:
+            self._end("failed", f"{reason}{tries}", {})
+
+    def hand_back(self, reason: str) -> None:
+        """Queue the job again as it is, without counting the attempt: its worker stops in an orderly way."""
+        fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
+        self._end("queued", reason, {"finished": None, "attempts": fewer})
+
+    def _put(self, connection: Connection, files: Sequence[Artefact]) -> None:
+        for file in files:
+            own = and_(artefacts.c.job == self.job.id, artefacts.c.name == file.name)
+            connection.execute(delete(artefacts).where(own))
+            row = {"name": file.name, "media_type": file.media_type, "content": file.content}
+            connection.execute(insert(artefacts).values(job=self.job.id, at=now(), **row))
+
+    def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
+        reason = plain(reason)
+        ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}
+        self._write({**ended, **changes}, [state_event(state, reason)], rest)
+
+    def _write(
+        self, changes: dict[str, Any], told: Sequence[Told], rest: Rest | None = None, *, keep: bool = True
+    ) -> None:
+        with self._lock:
+            kept = self._kept if keep else []
+            rows = [
+                {"job": self.job.id, "number": number, "content": packed(generation)}
+                for number, generation in enumerate(kept, self._generations)
+            ]
+            values: dict[str, Any] = {
+                "writes": self._writes + 1,
+                "events": jobs.c.events + len(told),
+                "lease_until": now() + cast(literal(self.lease), Double),
+                "generations": self._generations + len(rows),
+            }
+            if rows:
+                values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
+            self._commit({**values, **changes}, told, rows, rest)
+            self._writes += 1
+            self._generations += len(rows)
+            self._kept = self._kept[len(kept) :]
+            self._attempts = 0 if rows else self._attempts
+
+    def _commit(
+        self, values: dict[str, Any], told: Sequence[Told], rows: list[dict[str, Any]], rest: Rest | None
+    ) -> None:
+        tried = False
+        while True:
+            started = time.monotonic()
+            try:
+                with self._database.writing() as connection:
+                    self._change(connection, values, told, rows, rest, tried)
+                self._renewed = started
+                return
+            except Unavailable:
+                if self.age > self.lease:
+                    raise
+                tried = True
+                time.sleep(_PAUSE)
+
+    def _change(
+        self,
+        connection: Connection,
+        values: dict[str, Any],
+        told: Sequence[Told],
+        rows: list[dict[str, Any]],
+        rest: Rest | None,
+        tried: bool,
+    ) -> None:
+        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes, jobs.c.lease_until > now())
+        row = connection.execute(
+            update(jobs).where(held).values(values).returning(jobs.c.events, jobs.c.cancel_asked)
+        ).first()
+        if row is None:
+            # Where only the answer to an earlier try was lost, the write is there already.
+            if tried and connection.scalar(select(jobs.c.writes).where(self._mine)) == self._writes + 1:
+                return
+            raise self._lost()
+        self.cancel_asked = self.cancel_asked or row.cancel_asked
+        add_events(connection, self.job.id, row.events, told)
+        if rows:
+            connection.execute(insert(generations), rows)
+        connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
+        if rest is not None:
+            rest(connection)
+
+    @property
+    def _mine(self) -> ColumnElement[bool]:
+        return and_(jobs.c.id == self.job.id, jobs.c.fence == self.job.fence)
+
+    def _lost(self) -> LeaseLost:
+        return LeaseLost(
+            f"only the holder of a lease writes of a job; claim {self.job.fence} of job {self.job.id} has lost it; "
+            "leave the job: another worker goes on from what was committed"
+        )

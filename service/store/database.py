@@ -1,0 +1,159 @@
+"""A database by its address, opened so that what was committed survives, and what fails is told in one sentence.
+
+SQLite: write-ahead log, `synchronous=FULL`, and every writing transaction begins with `BEGIN IMMEDIATE`, so that none
+has to be given up half-way because another one wrote meanwhile. PostgreSQL: psycopg 3, `synchronous_commit=on`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+import time
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
+
+from ...model.errors import InputError, StoreError
+
+_PATIENCE = 30.0  # s to wait for other writers
+_POSTGRESQL = {
+    "synchronous_commit": "on",
+    "lock_timeout": "30s",
+    # A worker that is stopped in the middle of a transaction would otherwise hold its job for good.
+    "idle_in_transaction_session_timeout": "10s",
+}
+
+
+class Unavailable(StoreError):
+    """What the database refuses may succeed later: it restarts, its disk is full, another writer is at work."""
+
+
+class Database:
+    """An open database. Both kinds of transaction raise `StoreError` when the database refuses or cannot be reached."""
+
+    def __init__(self, address: str | PathLike[str]) -> None:
+        """Open what is at an address: postgresql://..., sqlite:///file, or the path of a file.
+
+        Raises `InputError` for an address of another kind, `StoreError` where nothing can be opened.
+        """
+        url = _url(address)
+        self.name = url.render_as_string(hide_password=True)
+        self.sqlite = url.get_backend_name() == "sqlite"
+        self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
+        self._reader = self.engine.execution_options(reading=True)
+        if self.sqlite:
+            self._use_write_ahead_log()
+
+    def close(self) -> None:
+        """Close all connections."""
+        self.engine.dispose()
+
+    @contextlib.contextmanager
+    def reading(self) -> Iterator[Connection]:
+        """Enter a transaction that sees one state of the database and keeps no writer waiting."""
+        with self._told(), self._reader.begin() as connection:
+            yield connection
+
+    @contextlib.contextmanager
+    def writing(self) -> Iterator[Connection]:
+        """Enter a transaction that writes; committed at the end, taken back as a whole after an error."""
+        with self._told(), self.engine.begin() as connection:
+            yield connection
+
+    @contextlib.contextmanager
+    def _told(self) -> Iterator[None]:
+        try:
+            yield
+        except (DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
+            kind = Unavailable if _may_pass(error) else StoreError
+            raise kind(
+                f"the store must be a database that can be reached, read and written; {self.name} gave: "
+                f"{_reason(error)}; see that it runs, that the disk has room and that you may write there"
+            ) from error
+
+    def _use_write_ahead_log(self) -> None:
+        """Switch SQLite's log to WAL, which stays with the file; several processes may try at the same moment."""
+        end = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                with self._told(), self.engine.connect() as connection:
+                    raw: Any = connection.connection.dbapi_connection
+                    mode = raw.execute("PRAGMA journal_mode=WAL").fetchone()[0]
+                break
+            except Unavailable as error:
+                if "locked" not in str(error) or time.monotonic() > end:
+                    raise
+                time.sleep(0.05)
+        if mode != "wal":
+            raise StoreError(
+                f"the file of a store must allow SQLite's write-ahead log; {self.name} has the log {mode}; "
+                "put it on a local disk"
+            )
+
+
+def _url(address: str | PathLike[str]) -> URL:
+    text = str(address)
+    if "://" not in text:
+        return URL.create("sqlite", database=str(Path(text)))
+    try:
+        url = make_url(text)
+    except (ArgumentError, ValueError):
+        url = URL.create("unreadable")
+    scheme = url.drivername.partition("+")[0]
+    if scheme in ("postgresql", "postgres"):
+        return url.set(drivername="postgresql+psycopg")
+    if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
+        return url.set(drivername="sqlite")
+    raise InputError(
+        f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
+        "give one of these"
+    )
+
+
+def _sqlite(url: URL) -> Engine:
+    engine = create_engine(url, connect_args={"timeout": _PATIENCE, "isolation_level": None})
+
+    @event.listens_for(engine, "connect")
+    def prepare(connection: Any, _record: Any) -> None:
+        connection.execute("PRAGMA synchronous=FULL")
+        connection.execute("PRAGMA foreign_keys=ON")
+
+    @event.listens_for(engine, "begin")
+    def begin(connection: Connection) -> None:
+        reading = connection.get_execution_options().get("reading", False)
+        connection.exec_driver_sql("BEGIN" if reading else "BEGIN IMMEDIATE")
+
+    return engine
+
+
+def _postgresql(url: URL) -> Engine:
+    options = " ".join(f"-c {name}={value}" for name, value in _POSTGRESQL.items())
+    given = url.query.get("options", "")
+    arguments = {
+        "options": f"{options} {given if isinstance(given, str) else ' '.join(given)}".strip(),
+        "connect_timeout": 10,
+        "tcp_user_timeout": 20_000,  # ms until a machine that is gone counts as gone
+        "application_name": "slidercrank",
+    }
+    kept = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
+    try:
+        return create_engine(url.difference_update_query(["options"]), connect_args=kept, pool_pre_ping=True)
+    except ModuleNotFoundError as error:
+        raise InputError(
+            'a store on PostgreSQL needs the package psycopg; it is not installed; pip install "slidercrank[postgres]"'
+        ) from error
+
+
+def _may_pass(error: Exception) -> bool:
+    passing = isinstance(error, OperationalError | InterfaceError | PoolTimeoutError | sqlite3.OperationalError)
+    return passing or (isinstance(error, DBAPIError) and error.connection_invalidated)
+
+
+def _reason(error: Exception) -> str:
+    cause = error.orig if isinstance(error, DBAPIError) and error.orig is not None else error
+    return " ".join(str(cause).split()) or type(cause).__name__

@@ -1,0 +1,76 @@
+"""Generations, designs and tables of a job as bytes and text, and back, without losing a bit."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError, RunError
+from ..result import Cell, Row
+
+if TYPE_CHECKING:
+    from ...optimise.methods.generation import Generation
+
+_LONGEST = 4000
+_ARRAYS = ("sheet", "u", "parents", "values", "violation")
+
+
+def packed(generation: Generation) -> bytes:
+    """Return a generation as a file of NumPy's .npz form, without pickles."""
+    import numpy as np
+
+    out = io.BytesIO()
+    np.savez(out, **{name: getattr(generation, name) for name in _ARRAYS})
+    return out.getvalue()
+
+
+def unpacked(content: bytes) -> Generation:
+    """Return the generation that `packed` was given. Raises `RunError` if the content is damaged."""
+    import numpy as np
+
+    from ...optimise.methods.generation import Generation
+
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
+            return Generation(*(file[name] for name in _ARRAYS))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, InputError) as error:
+        raise RunError(
+            f"a stored generation must be whole; got {type(error).__name__}: {error}; submit its job anew"
+        ) from error
+
+
+def text_of(value: Any) -> str:
+    """Return strict, compact JSON in ASCII. Raises ValueError for a number that is not finite."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":"))
+
+
+def plain(text: str) -> str:
+    """Return a text as every database takes it: without NUL and lone surrogates, and not longer than a page."""
+    text = text.replace("\0", "?").encode(errors="replace").decode()
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 4] + " ..."
+
+
+def cells_of(row: Mapping[str, Cell]) -> str:
+    """Return the cells of a design as a JSON array: infinities as "inf" and "-inf", what is not defined as null."""
+    return text_of([_stored(cell) for cell in row.values()])
+
+
+def row_of(columns: Sequence[str], cells: str) -> Row:
+    """Return the design that `cells_of` was given; what is not defined as NaN, as in a table read from CSV."""
+    return dict(zip(columns, map(_read, json.loads(cells)), strict=True))
+
+
+def _stored(cell: Cell) -> Cell:
+    if isinstance(cell, float) and not math.isfinite(cell):
+        return None if math.isnan(cell) else repr(cell)
+    return cell
+
+
+def _read(cell: Any) -> Cell:
+    if cell is None:
+        return math.nan
+    return float(cell) if not isinstance(cell, str) or cell in ("inf", "-inf") else cell

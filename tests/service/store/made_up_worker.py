@@ -1,0 +1,49 @@
+"""A worker with a made-up search, for a process of its own that can be killed.
+
+Its search makes `ROUNDS` generations that are the same every time, and finds one design a generation.
+"""
+
+from __future__ import annotations
+
+import time
+
+from slidercrank.model.errors import LeaseLost, StoreError
+from slidercrank.optimise.methods.generation import Generation
+from slidercrank.service.result import Row
+from slidercrank.service.store import Claim, Store
+from slidercrank.service.worker import worker_name
+from tests.service.store.contents import generation, progress, result
+
+ROUNDS = 12
+_ROUND = 0.02  # s that one takes
+
+
+def found(generations: list[Generation]) -> list[Row]:
+    """Return the designs of the generations."""
+    return [{"time_ratio": float(one.u.sum())} for one in generations]
+
+
+def solve(claim: Claim) -> None:
+    """Go on with a job, to its end."""
+    generations = claim.generations()
+    for number in range(len(generations), ROUNDS):
+        time.sleep(_ROUND)
+        generations.append(generation(number))
+        claim.keep(generations[-1])
+        claim.tell(progress(number + 1))
+    claim.finish(result(rows=found(generations)))
+
+
+def main(address: str, lease: float) -> None:
+    """Solve jobs for ever."""
+    store = Store(address)
+    name = worker_name()
+    while True:
+        try:
+            claim = store.claim(name, lease=lease)
+            if claim is not None:
+                solve(claim)
+                continue
+        except (LeaseLost, StoreError):
+            pass
+        time.sleep(_ROUND)

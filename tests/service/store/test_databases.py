@@ -1,0 +1,255 @@
+"""How databases are opened, what their tables are, and what happens when they refuse."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import Connection, text
+
+from slidercrank.model.errors import InputError, LeaseLost, StoreError
+from slidercrank.service.store import Artefact, Store
+from slidercrank.service.store.claiming import claim_next
+from slidercrank.service.store.database import Database, Unavailable
+from slidercrank.service.store.schema import metadata
+from tests.service.store.contents import add, end_lease, everything, generation, progress, result
+from tests.service.store.postgresql import Cluster
+
+
+@pytest.fixture
+def database(address: str) -> Iterator[Database]:
+    """Return the database of an empty store, once of each kind."""
+    Store(address).close()
+    opened = Database(address)
+    yield opened
+    opened.close()
+
+
+def test_the_migrated_tables_are_those_that_the_code_knows(database: Database) -> None:
+    with database.reading() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True, "compare_server_default": False})
+        assert compare_metadata(context, metadata) == []
+
+
+def test_a_store_of_a_later_release_is_refused_and_left_as_it_is(database: Database, address: str) -> None:
+    with database.writing() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(StoreError, match="has version 9999, this software knows 0001"):
+        Store(address)
+    with database.reading() as connection:
+        assert connection.scalar(text("SELECT version_num FROM alembic_version")) == "9999"
+
+
+def test_many_may_open_a_new_store_at_the_same_moment(address: str) -> None:
+    def open_and_add(_: int) -> int:
+        with Store(address) as store:
+            return add(store).id
+
+    with ThreadPoolExecutor(6) as pool:
+        assert sorted(pool.map(open_and_add, range(6))) == [1, 2, 3, 4, 5, 6]
+
+
+def test_commits_of_sqlite_are_on_the_disk_and_writers_take_turns_from_the_beginning(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    Store(file).close()
+    one, other = Database(file), Database(f"sqlite:///{file}")
+    with one.reading() as connection:
+        pragmas = ("journal_mode", "synchronous", "foreign_keys")
+        assert [connection.scalar(text(f"PRAGMA {name}")) for name in pragmas] == ["wal", 2, 1]
+    with other.engine.connect() as impatient:
+        impatient.exec_driver_sql("PRAGMA busy_timeout=0")  # of the connection that goes back into the pool
+    with one.writing():  # has written nothing yet
+        with other.reading() as connection:
+            assert connection.scalar(text("SELECT count(*) FROM jobs")) == 0
+        with pytest.raises(Unavailable, match="database is locked"), other.writing():
+            pass
+    one.close()
+    other.close()
+
+
+def test_commits_of_postgresql_are_on_the_disk_and_no_session_sleeps_in_a_transaction(server: Cluster) -> None:
+    database = Database(server.new_address())
+    with database.reading() as connection:
+        names = ("synchronous_commit", "idle_in_transaction_session_timeout", "lock_timeout")
+        assert [connection.scalar(text(f"SHOW {name}")) for name in names] == ["on", "10s", "30s"]
+    database.close()
+
+
+def test_the_clock_goes_on_within_a_transaction(database: Database) -> None:
+    from sqlalchemy import select
+
+    from slidercrank.service.store.clock import now
+
+    with database.writing() as connection:
+        first = connection.scalar(select(now()))
+        second = first
+        while second == first:
+            second = connection.scalar(select(now()))
+    assert first is not None
+    assert second is not None
+    assert 1.7e9 < first < second < first + 30.0
+
+
+@pytest.mark.parametrize(
+    "address", ["mysql://root:secret@there/jobs", "sqlite://", "sqlite:///:memory:", "://", "a://b:c"]
+)
+def test_other_addresses_are_refused_without_telling_passwords(address: str) -> None:
+    with pytest.raises(InputError, match="a store is at postgresql://") as refused:
+        Store(address)
+    assert "secret" not in str(refused.value)
+
+
+def test_workers_that_never_said_that_they_leave_are_forgotten_in_the_end(store: Store, database: Database) -> None:
+    for worker in ("long gone", "silent"):
+        store.greet(worker)
+    with database.writing() as connection:
+        connection.execute(text("UPDATE workers SET seen = seen - 700000 WHERE id = 'long gone'"))
+    store.greet("silent")
+    assert len(store.workers()) == 2
+    store.greet("new")
+    assert [worker.id for worker in store.workers()] == ["new", "silent"]
+
+
+def test_what_cannot_be_opened_says_so(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="unable to open database file"):
+        Store(tmp_path / "nowhere" / "store.db")
+    (tmp_path / "letter.txt").write_text("Dear Sir or Madam, " * 100)
+    with pytest.raises(StoreError, match="file is not a database"):
+        Store(tmp_path / "letter.txt")
+
+
+def test_a_server_out_of_reach_says_so_without_telling_passwords(tmp_path: Path) -> None:
+    pytest.importorskip("psycopg")
+    with pytest.raises(StoreError, match="the store must be a database that can be reached") as refused:
+        Store(f"postgresql://me:secret@/jobs?host={tmp_path}")
+    assert "secret" not in str(refused.value)
+
+
+def test_without_psycopg_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "psycopg", None)
+    with pytest.raises(InputError, match=r'pip install "slidercrank\[postgres\]"'):
+        Store("postgresql://me@there/jobs")
+
+
+class Failing:
+    """Lets writing transactions fail, before or after they are committed."""
+
+    def __init__(self, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.left = 0
+        self.after_commit = False
+        self._writing = store._database.writing
+        monkeypatch.setattr(store._database, "writing", self.writing)
+        monkeypatch.setattr("slidercrank.service.store.claim._PAUSE", 0.0)
+
+    @contextlib.contextmanager
+    def writing(self) -> Iterator[Connection]:
+        fails = self.left > 0
+        self.left -= fails
+        if fails and not self.after_commit:
+            raise Unavailable("the disk is full")
+        with self._writing() as connection:
+            yield connection
+        if fails:
+            raise Unavailable("the server went away before it answered")
+
+
+@pytest.mark.parametrize("after_commit", [False, True])
+def test_a_write_that_fails_for_a_while_takes_effect_once(
+    after_commit: bool, store: Store, address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = add(store)
+    failing = Failing(store, monkeypatch)
+    claim = store.claim("first")
+    assert claim is not None
+    failing.after_commit = after_commit
+    for number in (1, 2, 3):
+        failing.left = 3 - after_commit
+        claim.keep(generation(number))
+        claim.tell(progress(number))
+    failing.left = 1
+    claim.finish(result())
+    assert failing.left == 0
+    kinds = [event.data.get("state", event.kind) for event in store.events(job.id)]
+    assert kinds == ["queued", "running", "progress", "progress", "progress", "done"]
+    assert len(everything(address)["designs"]) == 2
+
+
+def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    job = add(store)
+    claim = store.claim("first")
+    assert claim is not None
+    failing = Failing(store, monkeypatch)
+    failing.left = sys.maxsize
+    claim.lease = 0.05
+    before = everything(address)
+    with pytest.raises(StoreError, match="the disk is full"):
+        claim.tell(progress(1))
+    assert everything(address) == before
+    failing.left = 1
+    claim.lease = 60.0
+    end_lease(address, job.id)
+    with pytest.raises(LeaseLost):  # also when the first try did not reach the database
+        claim.tell(progress(1))
+
+
+def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_path: Path) -> None:
+    with Store(tmp_path / "store.db") as store:
+        job = add(store)
+        claim = store.claim("first")
+        assert claim is not None
+        before = everything(str(tmp_path / "store.db"))
+        room(store, 50)
+        large = Artefact(name="large", media_type="text/plain", content=b"x" * 10_000_000)
+        claim.lease = 0.05
+        with pytest.raises(StoreError, match="database or disk is full; see that it runs, that the disk has room"):
+            claim.put(large)
+        assert everything(str(tmp_path / "store.db")) == before
+        with store._database.reading() as connection:
+            assert connection.scalar(text("PRAGMA integrity_check")) == "ok"
+        room(store, 100_000)
+        claim.lease = 60.0
+        claim.put(large)
+        assert store.artefact(job.id, "large") == large
+
+
+def room(store: Store, pages: int) -> None:
+    """Let SQLite's file have at most so many pages, as on a disk that is full."""
+    with store._database.writing() as connection:  # one thread has one connection, so that this one is used again
+        connection.execute(text(f"PRAGMA max_page_count={pages}"))
+
+
+def test_workers_on_postgresql_do_not_wait_for_each_other(server: Cluster) -> None:
+    with Store(server.new_address()) as store:
+        first, second = add(store), add(store)
+        with store._database.writing() as connection:
+            held = claim_next(connection, "first", 60.0)
+            other = store.claim("second")  # while the first one has not committed yet
+            assert store.claim("third") is None
+        assert held is not None
+        assert other is not None
+        assert (held.id, other.job.id) == (first.id, second.id)
+        assert [store.job(job.id).worker for job in (first, second)] == ["first", "second"]
+
+
+def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
+    with Store(server.new_address()) as store:
+        job = add(store)
+        claim = store.claim("first")
+        assert claim is not None
+        for number in (1, 2, 3):
+            claim.keep(generation(number))
+            claim.tell(progress(number))
+            if number < 3:
+                server.stop()
+                server.start()
+        claim.finish(result())
+        assert store.job(job.id).state == "done"
+        rounds: list[Any] = [event.data["round"] for event in store.events(job.id) if event.kind == "progress"]
+        assert rounds == [1, 2, 3]

@@ -1,0 +1,300 @@
+"""Workers: what they do with the jobs of a store, and with what goes wrong. All searches are made up."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from slidercrank.model.errors import InputError, JobError, StoreError
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.problem import Problem
+from slidercrank.service.store import Claim, Store
+from slidercrank.service.submission import submit
+from slidercrank.service.worker import Pulse, solve_claimed, work, worker_name
+from tests.service import fronts
+from tests.service.store.contents import end_lease, generation, progress
+
+TABLES = tomllib.loads(fronts.JOB)
+ROUNDS = 3
+Search = Callable[..., ParetoFront]
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> Path:
+    """Return where the store of a test is."""
+    return tmp_path / "store.db"
+
+
+@pytest.fixture
+def store(address: Path) -> Iterator[Store]:
+    """Return an empty store."""
+    with Store(address) as opened:
+        yield opened
+
+
+@pytest.fixture
+def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
+    """Return what puts another search in the place of `solve`."""
+    return lambda search: monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
+
+
+def found(problem: Problem, status: str) -> ParetoFront:
+    """Return a front of one design, as a search finds it."""
+    return ParetoFront(
+        problem=problem,
+        status=status,  # type: ignore[arg-type]
+        message="1 design",
+        designs=pd.DataFrame({"crank_mm": [140.0], "time_ratio": [1.5], "least_transmission_angle_deg": [45.0]}),
+        dimensions=np.array([[0.14, 0.4, 0.05]]),
+        values=np.array([[-1.5, -0.8]]),
+        goals=((np.array([0.0, 1.0]), np.array([[1.0], [-1.0]])),),
+        active=(np.zeros((0, 1)),),
+        hypervolume=0.5,
+        history=(),
+        evaluations=48,
+        seconds=0.1,
+        seed=1,
+        versions={"slidercrank": "0"},
+    )
+
+
+def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep: Any) -> ParetoFront:
+    """Keep `ROUNDS` generations, beginning after those given."""
+    from tests.service.store.contents import progress as at
+
+    for number in range(len(resume), ROUNDS):
+        if cancelled():
+            return found(problem, "cancelled")
+        keep(generation(number))
+        progress(at(number + 1))
+    return found(problem, "done")
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end, "it did not come about within 30 s"
+        time.sleep(0.005)
+
+
+def test_a_worker_solves_what_waits_and_writes_what_it_found(store: Store, searches: Any) -> None:
+    searches(search)
+    jobs = [submit(store, TABLES), submit(store, TABLES, priority=1)]
+    assert work(store, name="first", drain=True) == 2
+    for job in jobs:
+        assert (store.job(job.id).state, store.job(job.id).reason) == ("done", "1 design")
+        assert store.result(job.id).designs[0]["crank_mm"] == 140.0
+        assert store.result(job.id).knee == 0
+        assert store.artefact(job.id, "versions.json").content == b'{\n  "slidercrank": "0"\n}\n'
+        kinds = [event.data.get("state", event.kind) for event in store.events(job.id)]
+        assert kinds == ["queued", "running", "progress", "progress", "progress", "done"]
+    assert store.workers() == []
+
+
+def test_a_job_that_is_not_valid_is_refused_before_it_is_queued(store: Store) -> None:
+    with pytest.raises(JobError, match="objectives"):
+        submit(store, {**TABLES, "objectives": {}})
+    with pytest.raises(JobError, match="number"):
+        submit(store, {**TABLES, "mechanism": {"speed": math.nan}})
+    own = {"quantity": {"mine": {"function": "os:getcwd", "unit": "mm"}}}
+    with pytest.raises(JobError, match="quantity"):
+        submit(store, {**TABLES, **own})
+    assert store.jobs() == []
+
+
+def test_wrong_input_is_not_tried_again(store: Store, searches: Any) -> None:
+    def refuse(*_: Any, **_more: Any) -> ParetoFront:
+        raise InputError("the method shgo takes one objective")
+
+    searches(refuse)
+    job = submit(store, TABLES)
+    assert work(store, drain=True) == 1
+    assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "the method shgo takes one objective")
+
+
+def test_an_error_is_tried_again_from_where_the_job_was(
+    store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+    resumed: list[int] = []
+
+    def stumble(problem: Problem, *, resume: Any, progress: Any, **more: Any) -> ParetoFront:
+        resumed.append(len(resume))
+
+        def tell(at: Any) -> None:
+            progress(at)
+            if at.round == 2:
+                raise MemoryError
+
+        return search(problem, resume=resume, progress=tell, **more)
+
+    searches(stumble)
+    job = submit(store, TABLES, most_attempts=1)
+    assert work(store, drain=True) == 2
+    assert resumed == [0, 2]
+    assert store.job(job.id).state == "done"
+    reasons = [event.data["reason"] for event in store.events(job.id) if event.data.get("state") == "queued"]
+    assert reasons == ["", "MemoryError"]
+    assert b"raise MemoryError" in store.artefact(job.id, "error.txt").content
+
+
+def test_an_error_that_stays_sets_the_job_aside(store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+
+    def fall(*_: Any, **_more: Any) -> ParetoFront:
+        raise RuntimeError("no way")
+
+    searches(fall)
+    job = submit(store, TABLES)
+    assert work(store, drain=True) == 3
+    assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "RuntimeError: no way (attempt 3 of 3)")
+
+
+def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> None:
+    searches(search)
+    job = submit(store, TABLES, most_attempts=1)
+    asked: list[bool] = []
+
+    def stop() -> bool:
+        asked.append(True)
+        return len(asked) > 3  # once before the job, then before each of its rounds
+
+    assert work(store, stop=stop) == 1
+    waiting = store.job(job.id)
+    assert (waiting.state, waiting.reason, waiting.generations, waiting.attempts) == (
+        *("queued", "its worker stopped; another one goes on", 2),
+        0,
+    )
+    assert work(store, drain=True) == 1
+    assert store.job(job.id).state == "done"
+
+
+def test_an_interrupted_worker_hands_its_job_back(store: Store, searches: Any) -> None:
+    def interrupt(*_: Any, keep: Any, **_more: Any) -> ParetoFront:
+        keep(generation(0))
+        raise KeyboardInterrupt
+
+    searches(interrupt)
+    job = submit(store, TABLES)
+    with pytest.raises(KeyboardInterrupt):
+        work(store, drain=True)
+    assert (store.job(job.id).state, store.job(job.id).generations) == ("queued", 1)
+
+
+def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> None:
+    job = submit(store, TABLES)
+
+    def long(problem: Problem, *, cancelled: Any, keep: Any, **_: Any) -> ParetoFront:
+        keep(generation(0))
+        store.cancel(job.id)
+        until(cancelled)
+        return found(problem, "cancelled")
+
+    searches(long)
+    assert work(store, lease=1.0, drain=True) == 1
+    ended = store.job(job.id)
+    assert (ended.state, ended.reason, ended.generations) == ("cancelled", "1 design", 1)
+    assert len(store.result(job.id).designs) == 1
+
+
+def test_a_search_ends_at_its_limit_of_time_with_what_it_found(store: Store, searches: Any) -> None:
+    def long(problem: Problem, *, cancelled: Any, **_: Any) -> ParetoFront:
+        until(cancelled)
+        return found(problem, "cancelled")
+
+    searches(long)
+    job = submit(store, TABLES, most_seconds=0.05)
+    assert work(store, drain=True) == 1
+    ended = store.job(job.id)
+    assert (ended.state, ended.reason) == ("cancelled", "1 design; its search took longer than its limit of 0.05 s")
+
+
+def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> None:
+    submit(store, TABLES)
+    claim = store.claim("first", lease=1.0)
+    assert claim is not None
+    with Pulse(claim) as pulse:
+        first = until_after = store.job(claim.job.id).lease_until
+        assert first is not None
+
+        def renewed() -> bool:
+            nonlocal until_after
+            until_after = store.job(claim.job.id).lease_until
+            return until_after is not None and until_after > first + 1.5
+
+        until(renewed)
+        assert not pulse.lost
+    claim.tell(progress(1))
+
+
+def test_a_worker_that_wakes_after_its_lease_leaves_the_job_to_the_next(
+    store: Store, address: Path, searches: Any
+) -> None:
+    job = submit(store, TABLES)
+    second: list[Claim] = []
+
+    def paused(problem: Problem, *, cancelled: Any, keep: Any, progress: Any, **more: Any) -> ParetoFront:
+        def tell(at: Any) -> None:
+            if at.round == 2:
+                end_lease(str(address), job.id)
+                claim = store.claim("second", lease=60.0)
+                assert claim is not None
+                second.append(claim)
+            progress(at)
+
+        return search(problem, cancelled=cancelled, keep=keep, progress=tell, **more)
+
+    searches(paused)
+    assert work(store, name="first", drain=True) == 1
+    assert (store.job(job.id).worker, store.job(job.id).generations) == ("second", 1)
+    searches(search)
+    solve_claimed(store, second[0], lambda: False)
+    assert store.job(job.id).state == "done"
+    assert [event.data["round"] for event in store.events(job.id) if event.kind == "progress"] == [1, 2, 3]
+
+
+def test_a_paused_search_learns_between_its_writes_that_its_lease_was_lost(
+    store: Store, address: Path, searches: Any
+) -> None:
+    job = submit(store, TABLES)
+
+    def paused(*_: Any, cancelled: Any, **_more: Any) -> ParetoFront:
+        end_lease(str(address), job.id)
+        assert store.claim("second", lease=60.0) is not None
+        until(cancelled)
+        raise AssertionError("a search of which the lease is lost has nothing to find")
+
+    searches(paused)
+    claim = store.claim("first", lease=1.0)
+    assert claim is not None
+    solve_claimed(store, claim, lambda: False)
+    assert (store.job(job.id).state, store.job(job.id).worker) == ("running", "second")
+
+
+def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slidercrank.service.worker.PULSE", 0.0)
+    asked: list[bool] = []
+
+    def away(*_: Any, **_more: Any) -> None:
+        asked.append(True)
+        raise StoreError("the server restarts")
+
+    monkeypatch.setattr(store, "claim", away)
+    assert work(store, stop=lambda: len(asked) >= 3) == 0
+    with pytest.raises(StoreError, match="the server restarts"):
+        work(store, drain=True)
+
+
+def test_names_of_workers_differ() -> None:
+    assert worker_name() != worker_name()
+    assert threading.active_count() < 50  # the pulses of ended jobs are gone
