@@ -80,9 +80,8 @@ class Result:
         }
 
 
-def result_of(front: ParetoFront, run: str) -> Result:
-    """Return what a run found from its front."""
-    found = len(front) > 0
+def wanted_of(front: ParetoFront) -> list[Wanted]:
+    """Return the objectives of a front as they are shown."""
     wanted = []
     for objective in front.objectives:
         of = front.problem.quantity(objective.quantity)
@@ -97,13 +96,19 @@ def result_of(front: ParetoFront, run: str) -> Result:
                 target=target,
             )
         )
+    return wanted
+
+
+def result_of(front: ParetoFront, run: str) -> Result:
+    """Return what a run found from its front."""
+    found = len(front) > 0
     several = found and len(front.objectives) > 1
     return Result(
         run=run,
         name=front.problem.name,
         status=front.status,
         message=front.message,
-        objectives=tuple(wanted),
+        objectives=tuple(wanted_of(front)),
         designs=rows_of(front.designs.to_dict("list")),
         hypervolume=float(front.hypervolume),
         evaluations=int(front.evaluations),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from ...model.errors import InputError
 from ...model.transient import drive as model
-from ..units import closest, shown
+from .kinds import Kinds
 from .values import AngularSpeed, Inertia, Part, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
 
 
@@ -77,48 +75,24 @@ class TableMotor(Part):
 
 
 # The key that tells a kind of motor, in the order in which kinds are told apart.
-_KINDS: dict[str, type[Part]] = {
-    "torque": ConstantMotor,
-    "stall_torque": LineMotor,
-    "rated_torque": RatedMotor,
-    "speeds": TableMotor,
-}
-_CHOICE = (
-    "{ torque }, { stall_torque, no_load_speed }, { rated_torque, rated_speed, no_load_speed } or { speeds, torques }"
+_KINDS = Kinds(
+    {
+        "torque": ConstantMotor,
+        "stall_torque": LineMotor,
+        "rated_torque": RatedMotor,
+        "speeds": TableMotor,
+    },
+    "{ torque }, { stall_torque, no_load_speed }, { rated_torque, rated_speed, no_load_speed } or { speeds, torques }",
+    "leave out one of the two",
 )
-
-
-def _one_kind(value: object) -> object:
-    """Refuse a motor that is no table, of no kind, or of several kinds."""
-    if isinstance(value, Part):
-        return value
-    if not isinstance(value, Mapping):
-        raise InputError(f"must be a table such as {_CHOICE}; got {shown(value)}")
-    kinds = [key for key in _KINDS if key in value]
-    if not kinds:
-        keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
-        near = [closest(key, _KINDS) for key in value if isinstance(key, str)]
-        meant = next((f"; did you mean {key}?" for key in near if key), "")
-        raise InputError(f"must be one of {_CHOICE}; got {keys}{meant}")
-    if len(kinds) > 1:
-        raise InputError(f"must be of one kind; got {' and '.join(kinds)}; leave out one of the two")
-    return value
-
-
-def _kind(value: object) -> str:
-    if isinstance(value, Part):
-        return next(f"({key})" for key, kind in _KINDS.items() if isinstance(value, kind))
-    known = value if isinstance(value, Mapping) else ()
-    return next((f"({key})" for key in _KINDS if key in known), "")
-
 
 AnyMotor = Annotated[
     Annotated[ConstantMotor, Tag("(torque)")]
     | Annotated[LineMotor, Tag("(stall_torque)")]
     | Annotated[RatedMotor, Tag("(rated_torque)")]
     | Annotated[TableMotor, Tag("(speeds)")],
-    Discriminator(_kind),
-    BeforeValidator(_one_kind),
+    Discriminator(_KINDS.tag),
+    BeforeValidator(_KINDS.one),
 ]
 
 

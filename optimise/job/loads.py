@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -19,7 +18,8 @@ from pydantic import (
 from ...model import loads as model
 from ...model.errors import InputError
 from ...model.loads import Datum, During
-from ..units import closest, shown
+from ..units import shown
+from .kinds import Kinds
 from .values import Angle, Damping, Force, Length, Part, Resistance, Stiffness
 
 _DURING: Any = Field("cycle", description="when the load acts", examples=["outward stroke"])
@@ -154,43 +154,19 @@ class AngleLoad(Part):
 
 
 # The key that tells a kind of load, in the order in which kinds are told apart.
-_KINDS: dict[str, type[Part]] = {
-    "opposes": OpposingForce,
-    "direction": DirectedForce,
-    "stiffness": SpringLoad,
-    "viscous": ViscousLoad,
-    "positions": PositionLoad,
-    "crank_angles": AngleLoad,
-}
-_CHOICE = (
+_KINDS = Kinds(
+    {
+        "opposes": OpposingForce,
+        "direction": DirectedForce,
+        "stiffness": SpringLoad,
+        "viscous": ViscousLoad,
+        "positions": PositionLoad,
+        "crank_angles": AngleLoad,
+    },
     "{ force, opposes }, { force, direction }, { stiffness, free_position }, { viscous }, "
-    "{ positions, forces } or { crank_angles, forces }"
+    "{ positions, forces } or { crank_angles, forces }",
+    "give each its own [[load]], loads add up",
 )
-
-
-def _one_kind(value: object) -> object:
-    """Refuse a load that is no table, of no kind, or of several kinds."""
-    if isinstance(value, Part):
-        return value
-    if not isinstance(value, Mapping):
-        raise InputError(f"must be a table such as {_CHOICE}; got {shown(value)}")
-    kinds = [key for key in _KINDS if key in value]
-    if not kinds:
-        keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
-        near = [closest(key, _KINDS) for key in value if isinstance(key, str)]
-        meant = next((f"; did you mean {key}?" for key in near if key), "")
-        raise InputError(f"must be one of {_CHOICE}; got {keys}{meant}")
-    if len(kinds) > 1:
-        raise InputError(f"must be of one kind; got {' and '.join(kinds)}; give each its own [[load]], loads add up")
-    return value
-
-
-def _kind(value: object) -> str:
-    if isinstance(value, Part):
-        return next(f"({key})" for key, kind in _KINDS.items() if isinstance(value, kind))
-    known = value if isinstance(value, Mapping) else ()
-    return next((f"({key})" for key in _KINDS if key in known), "")
-
 
 Load = Annotated[
     Annotated[OpposingForce, Tag("(opposes)")]
@@ -199,6 +175,6 @@ Load = Annotated[
     | Annotated[ViscousLoad, Tag("(viscous)")]
     | Annotated[PositionLoad, Tag("(positions)")]
     | Annotated[AngleLoad, Tag("(crank_angles)")],
-    Discriminator(_kind),
-    BeforeValidator(_one_kind),
+    Discriminator(_KINDS.tag),
+    BeforeValidator(_KINDS.one),
 ]

@@ -24,6 +24,7 @@ from .mechanism import MechanismPart, TolerancesPart
 from .own import Declared, QuantityPart, folders_of, named
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
 from .robust import RobustPart, robustly
+from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart, require_target
 from .values import Part
@@ -171,19 +172,7 @@ class Job(Part):
     sections: SectionsPart | None = Field(
         None,
         description="material, pins and safety of crank and rod, for the sizing of their sections",
-        examples=[
-            {
-                "material": {
-                    "density": "7850 kg/m^3",
-                    "elasticity": "207 GPa",
-                    "yield_strength": "350 MPa",
-                    "ultimate_strength": "520 MPa",
-                    "endurance": "150 MPa",
-                    "bearing_pressure": "20 MPa",
-                },
-                "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
-            }
-        ],
+        examples=[SECTIONS],
     )
     optimiser: OptimiserPart = Field(
         OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]

@@ -9,6 +9,19 @@ from pydantic import Field, model_validator
 from ..convex.section_limits import Material, SectionLimits
 from .values import Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure
 
+EXAMPLE = {
+    "material": {
+        "density": "7850 kg/m^3",
+        "elasticity": "207 GPa",
+        "yield_strength": "350 MPa",
+        "ultimate_strength": "520 MPa",
+        "endurance": "150 MPa",
+        "bearing_pressure": "20 MPa",
+    },
+    "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
+}
+"""The least that the table holds."""
+
 
 class MaterialPart(Part):
     """What crank and rod are made of."""
@@ -45,22 +58,8 @@ class PinsPart(Part):
 class SectionsPart(Part):
     """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
 
-    material: MaterialPart = Field(
-        description="of crank and rod",
-        examples=[
-            {
-                "density": "7850 kg/m^3",
-                "elasticity": "207 GPa",
-                "yield_strength": "350 MPa",
-                "ultimate_strength": "520 MPa",
-                "endurance": "150 MPa",
-                "bearing_pressure": "20 MPa",
-            }
-        ],
-    )
-    pins: PinsPart = Field(
-        description="diameters", examples=[{"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"}]
-    )
+    material: MaterialPart = Field(description="of crank and rod", examples=[EXAMPLE["material"]])
+    pins: PinsPart = Field(description="diameters", examples=[EXAMPLE["pins"]])
     width: PositiveRange = Field(
         (5e-3, 0.2), description="in the plane of motion: what can be made", examples=[["10 mm", "80 mm"]]
     )

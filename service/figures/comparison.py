@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ..result import Wanted
 from .scatter import MOST
-from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, place, unit_text, with_unit, write
+from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, unit_text, with_unit, write
+from .triangle import triangle
 
 # Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -52,21 +53,9 @@ def comparison_matrix(
     below = _NOTE * len(notes) + 0.2 if notes else 0.0
     bottom = _BOTTOM + below
     figure = new_figure(width, bottom + count * (side + _GAP) + _TOP + key)
-    for row in range(count):
-        for column in range(row + 1):
-            panel = place(
-                figure,
-                _LEFT + column * (side + _GAP),
-                bottom + (count - 1 - row) * (side + _GAP),
-                side,
-                side,
-            )
-            _panel(panel, runs, column, row + 1)
-            panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
-            if column == 0:
-                panel.set_ylabel(_label(objectives[row + 1]), fontsize=SMALL)
-            if row == count - 1:
-                panel.set_xlabel(_label(objectives[column]), fontsize=SMALL)
+    labels = [_label(objective) for objective in objectives[:MOST]]
+    for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
+        _panel(panel, runs, across, up)
     height = figure.get_size_inches()[1]
     write(figure, 0.2, height - 0.3, title, fontsize=TITLE, weight="bold")
     for line, note in enumerate(notes):

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ...optimise.front import ParetoFront
 from ...optimise.robust import robust_quantities
 from ...optimise.robust_cost import robust_cost
-from ..result import Wanted
+from ..result import wanted_of
 from .comparison import Drawn, comparison_matrix
 from .style import unit_text
 
@@ -23,24 +23,10 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
     found = robust_cost(front)
     if found is None:
         return None
-    wanted = []
-    for objective in front.objectives:
-        of = front.problem.quantity(objective.quantity)
-        target = None if objective.target is None else objective.target * of.unit.factor
-        wanted.append(
-            Wanted(
-                quantity=of.name,
-                sense=objective.sense,
-                column=of.field,
-                title=of.title,
-                unit=of.unit.symbol,
-                target=target,
-            )
-        )
     first = robust_quantities(front.problem)[0]
     kind = first.kind if first.kind == "worst case" else f"{100.0 * first.share:.6g} % of machines"
     inner = {quantity.name: quantity.inner.title for quantity in robust_quantities(front.problem)}
-    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted]
+    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted_of(front)]
     runs = [
         Drawn("nominal front, without errors", found.nominal),
         Drawn(f"robust front, within tolerances ({kind})", found.robust),

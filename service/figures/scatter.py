@@ -23,6 +23,7 @@ from .style import (
     place,
     write,
 )
+from .triangle import triangle
 
 MOST = 6
 """Objectives drawn at most: beyond, the panels are too small to read."""
@@ -43,21 +44,9 @@ def scatter_matrix(front: ParetoFront) -> Figure:
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
     figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
-    for row in range(count):
-        for column in range(row + 1):
-            panel = place(
-                figure,
-                _LEFT + column * (side + _GAP),
-                _BOTTOM + (count - 1 - row) * (side + _GAP),
-                side,
-                side,
-            )
-            points = _panel(panel, axes[column], axes[row + 1], axes[0].values, marked)
-            panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
-            if column == 0:
-                panel.set_ylabel(_label(axes[row + 1]), fontsize=SMALL)
-            if row == count - 1:
-                panel.set_xlabel(_label(axes[column]), fontsize=SMALL)
+    labels = [_label(axis) for axis in axes]
+    for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
+        points = _panel(panel, axes[across], axes[up], axes[0].values, marked)
     # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
     x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
     y = _BOTTOM + (count - 1) * (side + _GAP) + side

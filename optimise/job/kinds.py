@@ -1,0 +1,42 @@
+"""Parts of a job that come in kinds, told apart by a key that each kind alone has: loads, motors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+from ..units import closest, shown
+from .values import Part
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """The kinds of a part, each by its key. choice: all of them, for messages. remedy: where a table is of several."""
+
+    parts: Mapping[str, type[Part]]
+    choice: str
+    remedy: str
+
+    def one(self, value: object) -> object:
+        """Return the value; refuse one that is no table, of no kind, or of several kinds."""
+        if isinstance(value, Part):
+            return value
+        if not isinstance(value, Mapping):
+            raise InputError(f"must be a table such as {self.choice}; got {shown(value)}")
+        found = [key for key in self.parts if key in value]
+        if not found:
+            keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
+            near = [closest(key, self.parts) for key in value if isinstance(key, str)]
+            meant = next((f"; did you mean {key}?" for key in near if key), "")
+            raise InputError(f"must be one of {self.choice}; got {keys}{meant}")
+        if len(found) > 1:
+            raise InputError(f"must be of one kind; got {' and '.join(found)}; {self.remedy}")
+        return value
+
+    def tag(self, value: object) -> str:
+        """Return the tag of a table's kind, its key in brackets; empty for a table of no kind."""
+        if isinstance(value, Part):
+            return next(f"({key})" for key, kind in self.parts.items() if isinstance(value, kind))
+        known = value if isinstance(value, Mapping) else ()
+        return next((f"({key})" for key in self.parts if key in known), "")
