@@ -3,6 +3,7 @@
     SlidercrankError
     |-- InputError          a value that breaks a rule; also a ValueError
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
+    |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   `-- JobError        a job file that cannot be used
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
@@ -25,6 +26,10 @@ class InputError(SlidercrankError, ValueError):
 
 class AssemblyError(InputError):
     """A linkage that cannot be assembled at some crank angle that is asked for."""
+
+
+class ForeignRecords(InputError):
+    """Records of another search, or of other versions, from which this one cannot go on."""
 
 
 class JobError(InputError):

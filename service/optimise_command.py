@@ -20,7 +20,7 @@ from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ..optimise.front import ParetoFront, Progress
-    from ..optimise.methods.generation import Generation
+    from ..optimise.ledger import Record
     from ..optimise.problem import Problem
 
 NOTHING_FEASIBLE, INTERRUPTED = 3, 130
@@ -47,15 +47,14 @@ def optimise(
 ) -> None:
     """Find the Pareto front of a job.
 
-    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops after the round that is
-    under way and keeps what was found. Evolutionary methods and plain sampling can then go on with --resume, in the
-    folder of that run, and end as if they had never stopped.
+    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops within about a second and
+    keeps what was found. The run can then go on with --resume, in its folder, and ends as if it had never stopped.
     """
     from ..optimise.job import files_beside
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
-    past: list[Generation] = []
+    past: list[Record] = []
     if job is not None:
         problem = _problem(job, designs, seed)
         folder = RunFolder(runs_place(runs), problem.name)
