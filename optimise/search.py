@@ -108,7 +108,11 @@ class Run:
     pile: Pile | None = None
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive, *more: Array) -> None:
-        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive."""
+        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive.
+
+        Of the last archive with designs the front is made if the search is told to end.
+        """
+        self.archive = archive if len(archive) else self.archive
         values = np.concatenate([archive.values, *more])
         values = values[nondominated(values)]
         self.fronts.append(values[:: 1 + len(values) // _SHOWN])

@@ -124,7 +124,6 @@ def search(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         end, top, violation = _end(evaluators[index], descents[index], u)
         if violation <= FEASIBLE:
             archive.take(index, end[None], np.array([[top * scale]]))
-            run.archive = archive
         run.tell("descending", evaluators, archive)
     return archive
 

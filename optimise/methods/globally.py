@@ -75,7 +75,7 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
     Constraints by the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
     Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
     """
-    archive = run.archive = Archive.empty(1)
+    archive = Archive.empty(1)
     for index, evaluator in enumerate(evaluators):
         archive.screen(
             index, evaluator, np.zeros((1, 0)) if evaluator.dimension == 0 else np.zeros((0, evaluator.dimension))
@@ -136,7 +136,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
     ends short of the optimum, so that the epigraph form (`scalar`) goes on from there.
     """
-    archive = run.archive = Archive.empty(1)
+    archive = Archive.empty(1)
     run.rounds = 1 + len(evaluators)
     for index, evaluator in enumerate(evaluators):
         if evaluator.dimension == 0:

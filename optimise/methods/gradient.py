@@ -47,7 +47,6 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
             u, scaled = optimum
             archive.take(index, u[None], scaled[None] * span + ideal)
             archive.feasible += 1
-            run.archive = archive
         run.tell("descending", evaluators, archive)
     return archive
 

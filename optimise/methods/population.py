@@ -40,7 +40,6 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     allowed = budget(problem)
     run.rounds = max(1, allowed // size)
     seen = _Seen(problem, evaluators)
-    run.archive = seen.archive
     past: list[Generation] = []
     count = 0
     while True:

@@ -8,9 +8,9 @@
     nsga2, nsga3, tpe, cmaes, random, sobol     evolutionary and model-based methods, plain sampling
 
 A method is a function of its name, `search(problem, evaluators, run) -> Archive`. It takes its budget from
-`budget(problem)`, tells the run of every round, and lets the run know its archive as it grows. Its costly steps go
-through the ledger of the run, see `ledger`: by that it can be stopped within a moment, and go on. What it returns is
-delivered as it was found, without the polish of the default: that keeps methods independent checks of one another.
+`budget(problem)` and tells the run of every round. Its costly steps go through the ledger, see `ledger`: by that it can
+be stopped within a moment, and go on. What it returns is delivered as it was found, without the polish of the default:
+that keeps methods independent checks of one another.
 """
 
 from __future__ import annotations

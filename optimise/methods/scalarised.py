@@ -143,7 +143,6 @@ class _Front:
         values = scaled * self.span + self.ideal
         self.archive.take(index, found[None], values[None])
         self.archive.feasible += 1
-        self.run.archive = self.archive
         return values
 
     def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
