@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError, RunError
+from slidercrank.service.finding_runs import find_run
 from slidercrank.service.result import result_of
 from slidercrank.service.run_folder import MARK
-from slidercrank.service.stored_runs import find_run, read_run
+from slidercrank.service.stored_runs import read_run
 from tests.service import fronts
 
 NAMES = ("20260101-100000-sieve", "20260101-100000-sieve-2", "20260102-090000-feeder", "20260102-090001-feeder")
