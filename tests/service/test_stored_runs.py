@@ -103,7 +103,7 @@ def test_a_run_is_read_under_the_path_where_it_is_now(stored: Path, tmp_path: Pa
 
 def test_an_unfinished_run_says_so_although_all_files_are_there(stored: Path) -> None:
     (stored / MARK).write_text("Started 2026-01-31 10:00:00. The run still goes on, or was interrupted.\n")
-    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; run its"):
+    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; go on with"):
         read_run(stored)
 
 
