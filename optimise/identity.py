@@ -17,7 +17,7 @@ from .ledger import Identity
 from .problem import Problem
 
 _COMPUTE = ("slidercrank", "numpy", "scipy", "numba", "moocore", "optuna", "cmaes")
-_LEFT_OUT = ("folders",)  # where an own function lies: a job may be moved
+_LEFT_OUT = ("folders",)  # where the function of an own quantity lies: a job may be moved
 
 
 @cache
@@ -34,10 +34,10 @@ def versions() -> dict[str, str]:
 
 
 def identity_of(problem: Problem) -> Identity:
-    """Return whose records a search of this problem keeps. A budget may be raised in between, nothing else changed."""
+    """Return whose records a search of this problem keeps. In between its name may change and its budget be raised."""
     settings = replace(problem.settings, evaluations=None)
     digest = hashlib.blake2b(digest_size=16)
-    for part in _parts(replace(problem, settings=settings)):
+    for part in _parts(replace(problem, settings=settings, name="")):
         digest.update(part)
     return Identity(digest.hexdigest(), json.dumps({name: _version(name) for name in _COMPUTE}))
 
