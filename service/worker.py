@@ -9,10 +9,11 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
 from ..model.errors import InputError, LeaseLost, StoreError
+from .allowed_quantities import require_allowed
 from .job_limits import Budget, within
 from .logs import about
 from .pulse import PULSE, Pulse, Stop
@@ -45,6 +46,7 @@ def work(
     most_running: int | None = None,
     limits: Limits = NO_LIMITS,
     grace: float | None = None,
+    allowed_quantities: Collection[str] = (),
 ) -> int:
     """Solve jobs of a store one after the other, and return how many were taken on.
 
@@ -52,7 +54,8 @@ def work(
     stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
     the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
     limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
-    in s that a round has to end after `stop`, too; see `Pulse`.
+    in s that a round has to end after `stop`, too; see `Pulse`. allowed_quantities: functions, "module:function", that
+    jobs may name as quantities.
 
     While the database cannot be reached, it is tried again every second.
     """
@@ -72,7 +75,7 @@ def work(
                 _log.warning("%s", error)
                 claim = None
             if claim is not None:
-                solve_claimed(store, claim, stop, limits=limits, grace=grace)
+                solve_claimed(store, claim, stop, limits=limits, grace=grace, allowed_quantities=allowed_quantities)
                 taken += 1
             elif drain:
                 break
@@ -84,57 +87,72 @@ def work(
 
 
 def solve_claimed(
-    store: Store, claim: Claim, stop: Stop, *, limits: Limits = NO_LIMITS, grace: float | None = None
+    store: Store,
+    claim: Claim,
+    stop: Stop,
+    *,
+    limits: Limits = NO_LIMITS,
+    grace: float | None = None,
+    allowed_quantities: Collection[str] = (),
 ) -> None:
     """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
 
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
-    limits, grace: see `work`.
+    The options are those of `work`.
     """
+    limits = within(claim.job.limits, limits)
     with about(job=claim.job.id):
         _log.info("claimed")
         try:
-            _solve_with_pulse(store, claim, stop, within(claim.job.limits, limits), grace)
+            with Pulse(claim, memory=limits.memory, stop=stop, grace=grace) as pulse:
+                _end(claim, lambda: _solve(store, claim, Budget(limits), allowed_quantities, pulse, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
 
 
-def _solve_with_pulse(store: Store, claim: Claim, stop: Stop, limits: Limits, grace: float | None) -> None:
-    with Pulse(claim, memory=limits.memory, stop=stop, grace=grace) as pulse:
-        try:
-            _solve(store, claim, Budget(limits), lambda: _ends(claim, pulse, stop))
-        except Stopped:
-            claim.hand_back("its worker stopped; another one goes on")
-            _log.info("handed back")
-        except InputError as error:
-            claim.fail(str(error), again=False)
-            _log.warning("failed: %s", error)
-        except (LeaseLost, StoreError):
-            raise
-        except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
-            claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
-            reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-            claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
-            _log.warning("stopped by an error", exc_info=error)
-        except BaseException:
-            with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
-                claim.hand_back("its worker was interrupted; another one goes on")
-            raise
+def _end(claim: Claim, solve: Callable[[], None]) -> None:
+    """Solve a job, and give it back with the reason when that does not succeed."""
+    try:
+        solve()
+    except Stopped:
+        claim.hand_back("its worker stopped; another one goes on")
+        _log.info("handed back")
+    except InputError as error:
+        claim.fail(str(error), again=False)
+        _log.warning("failed: %s", error)
+    except (LeaseLost, StoreError):
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
+        claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
+        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
+        _log.warning("stopped by an error", exc_info=error)
+    except BaseException:
+        with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
+            claim.hand_back("its worker was interrupted; another one goes on")
+        raise
 
 
-def _solve(store: Store, claim: Claim, budget: Budget, ends: Callable[[], bool]) -> None:
+def _solve(
+    store: Store, claim: Claim, budget: Budget, allowed_quantities: Collection[str], pulse: Pulse, stop: Stop
+) -> None:
     from ..optimise.job import parse_job
     from ..optimise.solve import solve
 
-    problem = parse_job(store.tables(claim.job.id), allow_user_code=False)
+    tables = store.tables(claim.job.id)
+    require_allowed(tables, allowed_quantities)
+    problem = parse_job(tables, allow_user_code=bool(allowed_quantities))
     past = tuple(claim.generations())
 
     def tell(at: Progress) -> None:
         claim.tell(at)
         budget.count(at.evaluations)
 
-    front = solve(problem, progress=tell, cancelled=lambda: ends() or budget.spent(), resume=past, keep=claim.keep)
+    def over() -> bool:
+        return _ends(claim, pulse, stop) or budget.spent()
+
+    front = solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep)
     result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)

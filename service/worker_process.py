@@ -40,6 +40,7 @@ class WorkerSettings:
     most_running: int | None = None
     limits: Limits = NO_LIMITS
     grace: float = GRACE
+    allowed_quantities: tuple[str, ...] = ()
     log_format: Format = "text"
 
     def line(self) -> bytes:
@@ -50,7 +51,8 @@ class WorkerSettings:
     def read(cls, line: bytes) -> WorkerSettings:
         """Return the settings of a line."""
         fields = json.loads(line)
-        return cls(**{**fields, "limits": Limits(**fields["limits"])})
+        allowed = tuple(fields["allowed_quantities"])
+        return cls(**{**fields, "limits": Limits(**fields["limits"]), "allowed_quantities": allowed})
 
 
 def main() -> int:
@@ -74,6 +76,7 @@ def main() -> int:
                 most_running=settings.most_running,
                 limits=settings.limits,
                 grace=settings.grace,
+                allowed_quantities=settings.allowed_quantities,
             )
     except _Ended:
         return 0
