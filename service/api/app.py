@@ -8,7 +8,7 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 
 from ..store import Store
-from . import events, health, jobs
+from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema
 from .event_feed import Feed
 from .metrics import Metrics, Timed
 from .openapi import describe
@@ -43,7 +43,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.feed = Feed(store)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (jobs, events, health):
+    for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     describe(app)
 
