@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 
-from fastapi import APIRouter, FastAPI
+from fastapi import FastAPI
 from starlette.middleware import Middleware
 
 from ..store import Store
@@ -17,14 +15,14 @@ from .openapi import describe
 from .problems import answer_problems, problem_responses
 from .rate_limit import RateLimit
 from .security import Guard
-from .settings import Settings
+from .settings import DEFAULT, Settings
 from .strict_input import StrictInput
 
 PREFIX = "/api/v1"
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
 
 
-def create_app(store: Store, settings: Settings = Settings()) -> FastAPI:
+def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     """Return the application of a store, which whoever serves it opens and closes."""
     app = FastAPI(
         title="slidercrank",
@@ -32,6 +30,7 @@ def create_app(store: Store, settings: Settings = Settings()) -> FastAPI:
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # its pages come from other sites
         redoc_url=None,
+        generate_unique_id_function=lambda route: route.name,
         middleware=[
             Middleware(Timed),
             Middleware(Guard, settings=settings),
@@ -47,6 +46,11 @@ def create_app(store: Store, settings: Settings = Settings()) -> FastAPI:
     for part in (jobs, events, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     describe(app)
+
+    @app.get("/", include_in_schema=False)
+    async def show_way() -> dict[str, str]:
+        return {"name": app.title, "version": app.version, "description": f"{PREFIX}/openapi.json"}
+
     return app
 
 

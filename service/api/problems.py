@@ -12,8 +12,9 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
-from ...model.errors import InputError, QueueFull, RunError, SlidercrankError, StoreError
+from ...model.errors import InputError, NotFound, QueueFull, RunError, SlidercrankError, StoreError
 
 _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -24,6 +25,7 @@ _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (QueueFull, HTTPStatus.SERVICE_UNAVAILABLE),
     (StoreError, HTTPStatus.SERVICE_UNAVAILABLE),
     (RunError, HTTPStatus.CONFLICT),  # what is asked of a job is not there yet
+    (NotFound, HTTPStatus.NOT_FOUND),
     (InputError, HTTPStatus.UNPROCESSABLE_ENTITY),
 )
 _RETRY = {"Retry-After": "5"}
@@ -61,8 +63,7 @@ def answer_problems(app: FastAPI) -> None:
 
 def status_of(error: SlidercrankError) -> HTTPStatus:
     """Return the status that says of which kind an exception is."""
-    return next(status for kind, status in (*_STATUS, (SlidercrankError, HTTPStatus.INTERNAL_SERVER_ERROR))
-                if isinstance(error, kind))
+    return next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
 
 
 async def _refused(_request: Request, error: Exception) -> Response:
@@ -83,13 +84,23 @@ async def _not_valid(_request: Request, error: Exception) -> Response:
 
 async def _http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
-    detail = error.detail
+    detail, headers = error.detail, error.headers
     if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
         detail = "a request names a place of the API; there is nothing here; see /api/v1/openapi.json"
     elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        allowed = (error.headers or {}).get("Allow", "another method")
-        detail = f"this place does not know the method; got {request.method}; use {allowed}"
-    return problem(error.status_code, detail, error.headers)
+        headers = {"Allow": ", ".join(_methods(request))}
+        detail = f"this place does not know the method; got {request.method}; use {headers['Allow']}"
+    return problem(error.status_code, detail, headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """Return the methods that a place knows: the framework names those of the first endpoint there only."""
+
+    def known(method: str) -> bool:
+        scope = {**request.scope, "method": method}
+        return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
+
+    return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if known(method)]
 
 
 def _sentence(details: Mapping[str, Any]) -> str:

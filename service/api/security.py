@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import hmac
 import logging
-from collections.abc import MutableMapping
 from http import HTTPStatus
 from urllib.parse import parse_qs, urlsplit
 
@@ -80,28 +79,41 @@ class Guard:
         host = headers.getlist("host")
         if "*" not in self.hosts and (len(host) != 1 or _name(host[0]) not in self.hosts):
             names = ", ".join(sorted(self.hosts))
-            return problem(HTTPStatus.FORBIDDEN, f"the service is called by one of its names, {names}; "
-                           f"got Host {host[0][:100] if host else 'missing'!r}; use one, or serve with --host")
+            return problem(
+                HTTPStatus.FORBIDDEN,
+                f"the service is called by one of its names, {names}; "
+                f"got Host {host[0][:100] if host else 'missing'!r}; use one, or serve with --host",
+            )
         for origin in headers.getlist("origin"):
             if not _same(origin, host[0] if host else ""):
-                return problem(HTTPStatus.FORBIDDEN, f"a page of another site may not ask; got Origin {origin[:100]!r}; "
-                               "open the page of the service itself")
+                return problem(
+                    HTTPStatus.FORBIDDEN,
+                    f"a page of another site may not ask; got Origin {origin[:100]!r}; "
+                    "open the page of the service itself",
+                )
         if self.token is None or scope["path"] == OPEN:
             return None
         if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
             return self._let_in(scope)
         if not self._knows(connection):
-            return problem(HTTPStatus.UNAUTHORIZED, "a request carries the token of the service; got none or a wrong "
-                           "one; send it as Authorization: Bearer TOKEN, or open the address that the service printed",
-                           {"WWW-Authenticate": "Bearer"})
+            return problem(
+                HTTPStatus.UNAUTHORIZED,
+                "a request carries the token of the service; got none or a wrong "
+                "one; send it as Authorization: Bearer TOKEN, or open the address that the service printed",
+                {"WWW-Authenticate": "Bearer"},
+            )
         return None
 
     def _let_in(self, scope: Scope) -> Response:
         """Return the answer to an address with a token: a cookie, and the same address without it."""
         given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
         if len(given) != 1 or not self._right(given[0]):
-            return problem(HTTPStatus.UNAUTHORIZED, "the address carries the token of the service; got a wrong one; "
-                           "open the address that the service printed last", {"WWW-Authenticate": "Bearer"})
+            return problem(
+                HTTPStatus.UNAUTHORIZED,
+                "the address carries the token of the service; got a wrong one; "
+                "open the address that the service printed last",
+                {"WWW-Authenticate": "Bearer"},
+            )
         response = RedirectResponse("/", HTTPStatus.SEE_OTHER)
         secure = scope.get("scheme") == "https"
         response.set_cookie(self.cookie, given[0], httponly=True, samesite="strict", secure=secure, path="/")
@@ -132,6 +144,6 @@ def _same(origin: str, host: str) -> bool:
     return parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
 
 
-def _protect(headers: MutableMapping[str, str]) -> None:
+def _protect(headers: MutableHeaders) -> None:
     for name, value in _HEADERS.items():
         headers.setdefault(name, value)
