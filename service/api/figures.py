@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, HTTPException, Path, Response
+from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
+from ...model.errors import NotFound
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
 from .turns import DRAWING, in_turn
@@ -17,7 +18,7 @@ _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 def _drawn(settings: SettingsDep) -> None:
     if not settings.figures:
-        raise HTTPException(404, "this service draws no figures; ask whoever runs it to start it with figures")
+        raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
 
 
 router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)])
@@ -106,6 +107,6 @@ def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
         return content
 
 
-def _unknown(name: str, names: list[str]) -> HTTPException:
+def _unknown(name: str, names: list[str]) -> NotFound:
     choice = f"choose from {', '.join(names)}, design_1 and so on" if names else "the front has no designs to draw"
-    return HTTPException(404, f"the front has no figure {name!r}; {choice}")
+    return NotFound(f"the front has no figure {name!r}; {choice}")

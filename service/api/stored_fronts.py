@@ -9,8 +9,9 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
-from fastapi import Depends, HTTPException, Path, Request
+from fastapi import Depends, Path, Request
 
+from ...model.errors import NotFound
 from ..result import Result, Row
 from ..store import Job, Store
 from ..stored_designs import StoredDesign, design_of, front_of
@@ -52,11 +53,11 @@ class StoredFront:
         return front_of(self.problem, self.result)
 
     def row(self, number: int) -> Row:
-        """Return a design by its number, counted from 1."""
+        """Return a design by its number, counted from 1. Raises `NotFound`."""
         count = len(self.result.designs)
         if number > count:
             designs = f"designs 1 to {count}" if count else "no designs"
-            raise HTTPException(404, f"job {self.job.id} has {designs}; got {number}; see the designs of the job")
+            raise NotFound(f"job {self.job.id} has {designs}; got {number}; see the designs of the job")
         return self.result.designs[number - 1]
 
     def design(self, number: int) -> StoredDesign:
@@ -75,7 +76,7 @@ class StoredFronts:
         self._reading = threading.Lock()
 
     def of(self, number: int) -> StoredFront:
-        """Return the front of a job. Raises `InputError` for a job that is not there, `RunError` without a result."""
+        """Return the front of a job. Raises `NotFound` for a job that is not there, `RunError` without a result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
         with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
@@ -107,4 +108,4 @@ def _front(number: JobNumber, fronts: Annotated[StoredFronts, Depends(_fronts)])
 
 
 FrontDep = Annotated[StoredFront, Depends(_front)]
-"""The front of the job in the path."""
+"""The front of the job in the path, with its designs."""
