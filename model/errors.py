@@ -3,7 +3,8 @@
     SlidercrankError
     |-- InputError          a value that breaks a rule; also a ValueError
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
-    |   `-- JobError        a job file that cannot be used
+    |   |-- JobError        a job file that cannot be used
+    |   `-- NotFound        what was asked for by its name or number is not there
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
         |-- LeaseLost       a job that is another worker's by now
@@ -29,6 +30,10 @@ class AssemblyError(InputError):
 
 class JobError(InputError):
     """A job file that cannot be used."""
+
+
+class NotFound(InputError):
+    """What was asked for by its name or number is not there."""
 
 
 class RunError(SlidercrankError):

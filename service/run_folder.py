@@ -46,6 +46,11 @@ def slug(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:40].rstrip("-") or "run"
 
 
+def run_name(name: str) -> str:
+    """Return the name of a folder for a run that begins now: the time, then the name of its job."""
+    return f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}"
+
+
 class RunFolder:
     """A run being written. Every method raises `RunError` when the disk refuses.
 
@@ -64,7 +69,7 @@ class RunFolder:
             hidden.mkdir()
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run still goes on, or was interrupted.\n")
-                self.path = _rename(hidden, place / f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}")
+                self.path = _rename(hidden, place / run_name(name))
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise

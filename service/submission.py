@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .store import MOST_ATTEMPTS, Job, Store
+from .result import json_text
+from .store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
 
 
 def submit(
@@ -15,9 +16,12 @@ def submit(
     priority: int = 0,
     key: str | None = None,
     most_attempts: int = MOST_ATTEMPTS,
-    most_seconds: float | None = None,
+    limits: Limits = NO_LIMITS,
+    source: Artefact | None = None,
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
+
+    source: the job file as it was given, "job.toml" or "job.json"; without one it is made from the tables.
 
     Raises `JobError` for a job that is not valid, or that names functions of its own: workers do not run those of
     others.
@@ -31,5 +35,11 @@ def submit(
         priority=priority,
         key=key,
         most_attempts=most_attempts,
-        most_seconds=most_seconds,
+        limits=limits,
+        files=[source or job_json(tables)],
     )
+
+
+def job_json(tables: Mapping[str, Any]) -> Artefact:
+    """Return the file "job.json" of a job given by its tables."""
+    return Artefact(name="job.json", media_type="application/json", content=json_text(tables).encode())

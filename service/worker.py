@@ -141,14 +141,14 @@ def _solve(store: Store, claim: Claim, ends: Callable[[], bool]) -> None:
 
     problem = parse_job(store.tables(claim.job.id), allow_user_code=False)
     past = tuple(claim.generations())
-    limit = claim.job.most_seconds or math.inf
+    limit = claim.job.limits.seconds or math.inf
     end = time.monotonic() + limit
 
     def over() -> bool:
         return ends() or time.monotonic() >= end
 
     front = solve(problem, progress=claim.tell, cancelled=over, resume=past, keep=claim.keep)
-    result = result_of(front, f"job {claim.job.id}")
+    result = result_of(front, claim.job.run)
     if result.status == "cancelled" and not claim.cancel_asked:
         result = replace(result, message=f"{result.message}; its search took longer than its limit of {limit:g} s")
     versions = Artefact(name="versions.json", media_type="application/json", content=json_text(front.versions).encode())

@@ -15,9 +15,10 @@ from ..result import Result, finite
 from .clock import now
 from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event
-from .packing import cells_of, packed, plain, text_of, unpacked
+from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
 from .records import Artefact, Job
-from .schema import artefacts, designs, generations, jobs, workers
+from .schema import designs, generations, jobs, workers
+from .submitting import put_files
 
 if TYPE_CHECKING:
     from ...optimise.front import Progress
@@ -89,7 +90,7 @@ class Claim:
 
     def put(self, *files: Artefact) -> None:
         """Write files of the job, each in place of one of its name."""
-        self._write({}, [], lambda connection: self._put(connection, files))
+        self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
 
     def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
         """Write what was found and end the job, done, infeasible or cancelled, all in one transaction."""
@@ -104,12 +105,13 @@ class Claim:
             connection.execute(delete(designs).where(designs.c.job == self.job.id))
             if rows:
                 connection.execute(insert(designs), rows)
-            self._put(connection, files)
+            put_files(connection, self.job.id, files)
             if result.status != "cancelled":  # a cancelled one can go on
                 connection.execute(delete(generations).where(generations.c.job == self.job.id))
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"generations": 0}
-        self._end(result.status, result.message, {"result": text_of(record), **left}, rest)
+        found = {"result": text_of(record), "summary": text_of(summary_of(result))}
+        self._end(result.status, result.message, {**found, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Give the job back after an error.
@@ -128,13 +130,6 @@ class Claim:
         """Queue the job again as it is, without counting the attempt: its worker stops in an orderly way."""
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
         self._end("queued", reason, {"finished": None, "attempts": fewer})
-
-    def _put(self, connection: Connection, files: Sequence[Artefact]) -> None:
-        for file in files:
-            own = and_(artefacts.c.job == self.job.id, artefacts.c.name == file.name)
-            connection.execute(delete(artefacts).where(own))
-            row = {"name": file.name, "media_type": file.media_type, "content": file.content}
-            connection.execute(insert(artefacts).values(job=self.job.id, at=now(), **row))
 
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
         reason = plain(reason)

@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, RunError
-from ..result import Cell, Row
+from ..result import Cell, Result, Row, finite
 
 if TYPE_CHECKING:
     from ...optimise.methods.generation import Generation
 
 _LONGEST = 4000
+_POINTS = 64
 _ARRAYS = ("sheet", "u", "parents", "values", "violation")
 
 
@@ -62,6 +63,34 @@ def cells_of(row: Mapping[str, Cell]) -> str:
 def row_of(columns: Sequence[str], cells: str) -> Row:
     """Return the design that `cells_of` was given; what is not defined as NaN, as in a table read from CSV."""
     return dict(zip(columns, map(_read, json.loads(cells)), strict=True))
+
+
+def summary_of(result: Result) -> dict[str, Any]:
+    """Return what a list shows of a result: counts, the best value of each objective, a few points of the front.
+
+    axes: the columns of the first two objectives, or of the only one; points: their values, of at most 64 designs.
+    """
+    axes = [wanted.column for wanted in result.objectives[:2]]
+    best = {
+        wanted.column: result.designs[result.extremes[wanted.quantity]][wanted.column]
+        for wanted in result.objectives
+        if wanted.quantity in result.extremes
+    }
+    return {
+        "designs": len(result.designs),
+        "hypervolume": finite(result.hypervolume),
+        "evaluations": result.evaluations,
+        "seconds": finite(result.seconds),
+        "best": finite(best),
+        "axes": axes,
+        "points": [[finite(row[axis]) for axis in axes] for row in _spread(result.designs)],
+    }
+
+
+def _spread(rows: Sequence[Row]) -> list[Row]:
+    """Return at most `_POINTS` rows, evenly spread, with the first and the last."""
+    count = min(len(rows), _POINTS)
+    return [rows[i * (len(rows) - 1) // max(count - 1, 1)] for i in range(count)]
 
 
 def _stored(cell: Cell) -> Cell:
