@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from ..model.errors import InputError, LeaseLost, StoreError
@@ -151,8 +151,12 @@ def _solve(store: Store, claim: Claim, ends: Callable[[], bool]) -> None:
     result = result_of(front, claim.job.run)
     if result.status == "cancelled" and not claim.cancel_asked:
         result = replace(result, message=f"{result.message}; its search took longer than its limit of {limit:g} s")
-    versions = Artefact(name="versions.json", media_type="application/json", content=json_text(front.versions).encode())
-    claim.finish(result, [versions])
+    claim.finish(result, [versions_file(front.versions)])
+
+
+def versions_file(versions: Mapping[str, str]) -> Artefact:
+    """Return the file of what computed a result."""
+    return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
 def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:
