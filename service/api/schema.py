@@ -1,0 +1,51 @@
+"""Jobs before anything runs: their schema, and what is understood of one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
+
+router = APIRouter(tags=["jobs"])
+
+
+class Stated(BaseModel):
+    """A job."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    job: dict[str, Any] = Field(description="the tables of a job file")
+
+
+class Understood(BaseModel):
+    """What was understood of a job, in words."""
+
+    name: str = Field(examples=["Feeder"])
+    given: list[str] = Field(examples=[["crank speed 2400 rpm (counter-clockwise)"]])
+    tolerances: list[str] = Field(examples=[["crank 0.05 mm"]])
+    costs: list[str] = Field(examples=[[]])
+    variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])
+    rules: list[str] = Field(examples=[["rod to offset 3.2"]])
+    objectives: list[str] = Field(examples=[["minimise peak torque"]])
+    unknowns: int = Field(examples=[3])
+    degrees_of_freedom: int = Field(examples=[2])
+    eliminated: list[str] = Field(examples=[["rod_to_offset"]])
+    search: str = Field(examples=["auto, at most 100 designs, seed 1"])
+
+
+@router.get("/schema", summary="The JSON Schema of jobs")
+def schema() -> dict[str, Any]:
+    """Give the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
+    from ...optimise.job import job_schema
+
+    return job_schema()
+
+
+@router.post("/check", summary="What is understood of a job")
+def check(stated: Stated) -> Understood:
+    """Check a job and say in words what was understood; nothing is queued."""
+    from ...optimise.job import parse_job
+    from ..summary import summarise
+
+    return Understood(**summarise(parse_job(stated.job, allow_user_code=False)))
