@@ -9,7 +9,7 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 from ..model.errors import InputError, LeaseLost, StoreError
@@ -156,9 +156,13 @@ def _solve(
     result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)
-    versions = Artefact(name="versions.json", media_type="application/json", content=json_text(front.versions).encode())
-    claim.finish(result, [versions])
+    claim.finish(result, [versions_file(front.versions)])
     _log.info("%s: %s", result.status, result.message)
+
+
+def versions_file(versions: Mapping[str, str]) -> Artefact:
+    """Return the file of what computed a result."""
+    return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
 def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:

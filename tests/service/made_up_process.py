@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +20,10 @@ import numpy as np
 
 from slidercrank.optimise.methods.generation import Generation
 from slidercrank.service import worker
+from slidercrank.service.job_limits import Budget
 from slidercrank.service.pulse import Pulse, Stop
 from slidercrank.service.result import Result, Wanted
-from slidercrank.service.store import Claim
+from slidercrank.service.store import Claim, Store
 from slidercrank.service.worker_process import main
 
 ROUNDS = 20
@@ -41,7 +43,9 @@ class Progress:
     seconds: float
 
 
-def solve(_store: object, claim: Claim, _budget: object, _allowed: object, pulse: Pulse, stop: Stop) -> None:
+def solve(
+    store: Store, claim: Claim, budget: Budget, allowed_quantities: Collection[str], pulse: Pulse, stop: Stop
+) -> None:
     """Go on with a job, to its end."""
     for number in range(claim.job.generations, ROUNDS):
         if worker._ends(claim, pulse, stop):
