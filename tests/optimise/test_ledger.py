@@ -15,7 +15,7 @@ from slidercrank.optimise.front import ParetoFront, Progress
 from slidercrank.optimise.identity import identity_of
 from slidercrank.optimise.ledger import Cancelled, Identity, Ledger, Numbers, Record
 from slidercrank.optimise.methods.registry import METHODS, NAMES
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem import Problem, Sense
 from slidercrank.optimise.robust import Robust, robust
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, shipped
@@ -155,7 +155,8 @@ def test_a_kill_in_a_round_loses_no_more_than_the_step_under_way(monkeypatch: py
 def test_a_job_without_a_feasible_design_goes_on_bit_for_bit(method: str) -> None:
     held: dict[str, Bounds] = {"stroke": (0.18, 0.2), "time_ratio": (1.5, None), "transmission_angle": (1.0, None)}
     alone = method == "slsqp"
-    given = problem({"peak_torque": "minimise"} | ({} if alone else {"footprint": "minimise"}), held, designs=4)
+    wanted: dict[str, Sense | float] = {"peak_torque": "minimise"}
+    given = problem(wanted if alone else {**wanted, "footprint": "minimise"}, held, designs=4)
     samples = {"samples": 64} if method != "slsqp" else {}
     given = replace(given, settings=replace(given.settings, method=method, **samples))
     kept: list[Record] = []
