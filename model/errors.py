@@ -9,7 +9,8 @@
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
         |-- LeaseLost       a job that is another worker's by now
-        `-- QueueFull       as many jobs wait as may wait
+        |-- QueueFull       as many jobs wait as may wait
+        `-- ServiceError    a service elsewhere refuses, or does not answer
 
 Every message says the rule, the value and the remedy.
 """
@@ -55,3 +56,7 @@ class LeaseLost(RunError):
 
 class QueueFull(RunError):
     """As many jobs wait as may wait."""
+
+
+class ServiceError(RunError):
+    """A service elsewhere refuses, or does not answer."""

@@ -54,7 +54,8 @@ def optimise(
     The run is in the store too, where `jobs` and the service see it.
     """
     from .own_run import told
-    from .worker import Pulse, versions_file
+    from .pulse import Pulse
+    from .worker import versions_file
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .claim import Claim
 from .records import NO_LIMITS, Artefact, Event, Job, Limits, State, Worker
 from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
+from .watching import News
 
 __all__ = [
     "LEASE",
@@ -16,6 +17,7 @@ __all__ = [
     "Event",
     "Job",
     "Limits",
+    "News",
     "State",
     "Store",
     "Worker",

@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from ...model.errors import InputError, NotFound
-from ..result import Result, Row, finite
+from ..result import Result
 from ..run_folder import run_name
 from ..stored_runs import result_from
 from .claim import Claim
@@ -18,12 +18,13 @@ from .claiming import any_claimable, claim_next, running
 from .clock import now
 from .database import Database
 from .events_log import add_events
-from .packing import plain, row_of
+from .packing import plain, rows_of
 from .records import ENDED, NO_LIMITS, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
 from .rows import become, damaged, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, jobs, workers
 from .schema_version import upgrade
 from .submitting import add_job, in_hand, require_bounds, require_room, submitted_before, take_turns
+from .watching import News, longest_wait, news_of
 
 MOST_QUEUED = 10_000
 MOST_ATTEMPTS = 3
@@ -151,6 +152,11 @@ class Store:
             found = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
         return {row.state: int(row[1]) for row in found}
 
+    def longest_wait(self) -> float:
+        """Return for how long, in s, the oldest job that a worker may claim has been waiting; 0 if none waits."""
+        with self._database.reading() as connection:
+            return longest_wait(connection)
+
     def tables(self, number: int) -> dict[str, Any]:
         """Return the tables of a job's file."""
         with self._database.reading() as connection:
@@ -169,6 +175,11 @@ class Store:
             Event(job=number, number=row.number, at=row.at, kind=row.kind, data=json.loads(row.data)) for row in found
         ]
 
+    def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
+        """Return what is new in jobs, given by the number of an event of each, after which at most `limit` are told."""
+        with self._database.reading() as connection:
+            return news_of(connection, after, limit)
+
     def record(self, number: int) -> dict[str, Any]:
         """Return what a job found as `Result.record` has it, with the names of the columns in place of the designs.
 
@@ -185,8 +196,7 @@ class Store:
             found = connection.execute(cells).scalars().all()
         try:
             columns = stored.pop("columns")
-            rows: list[Row] = [row_of(columns, text) for text in found]
-            return result_from({**stored, "designs": finite(rows)}, rows, str(stored["run"]))
+            return result_from(stored, rows_of(columns, found), str(stored["run"]))
         except (ValueError, KeyError, TypeError) as error:
             raise damaged(number, error) from error
 
