@@ -6,12 +6,15 @@ import json
 import time
 
 from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
+from sqlalchemy.exc import DatabaseError
 
 from .clock import now
 from .database import Database
 from .schema import designs, events, generations, jobs
 
 _MOST = 5  # of a kind that are named
+_SETTINGS = ("fsync", "full_page_writes")
+"""Of PostgreSQL: without them what was committed may not outlive a crash."""
 
 
 def damages(database: Database) -> list[str]:
@@ -38,7 +41,10 @@ def server_version(database: Database) -> str:
 
 
 def _of_sqlite(connection: Connection) -> list[str]:
-    found = [str(row[0]) for row in connection.execute(text(f"PRAGMA integrity_check({_MOST})"))]
+    try:
+        found = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
+    except DatabaseError as error:  # it goes no further
+        return [str(error.orig)]
     if found != ["ok"]:
         return found
     rows = connection.execute(text("PRAGMA foreign_key_check")).all()
@@ -59,7 +65,7 @@ def _of_postgresql(connection: Connection) -> list[str]:
     )
     if failures:
         found.append(f"{failures} pages failed their checksum; restore a backup")
-    off = [name for name in ("fsync", "full_page_writes") if connection.scalar(text(f"SHOW {name}")) != "on"]
+    off = [name for name in _SETTINGS if connection.scalar(text(f"SHOW {name}")) != "on"]
     return [*found, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
 
 
