@@ -27,6 +27,8 @@ def read_run(folder: Path) -> Result:
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
+        if finite(rows) != record["designs"]:
+            raise ValueError("front.csv and front.json differ")
         result = result_from(record, rows, str(folder))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
@@ -35,12 +37,10 @@ def read_run(folder: Path) -> Result:
 
 
 def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
-    """Return the result of a record as front.json has it, with the rows of front.csv, which also have infinities.
+    """Return the result of a record as front.json has it, designs apart, with the rows of its designs.
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
-    if finite(rows) != record["designs"]:
-        raise ValueError("front.csv and front.json differ")
     wanted = tuple(Wanted(**item) for item in record["objectives"])
     result = Result(
         run=run,

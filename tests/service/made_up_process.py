@@ -14,11 +14,10 @@ import sys
 import time
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from slidercrank.optimise.methods.generation import Generation
+from slidercrank.optimise.ledger import Identity, Record
 from slidercrank.service import worker
 from slidercrank.service.job_limits import Budget
 from slidercrank.service.pulse import Pulse, Stop
@@ -52,7 +51,7 @@ def solve(
             claim.finish(_result("cancelled"))
             return
         time.sleep(0.05)
-        claim.keep(_generation(number))
+        claim.keep(_record(number))
         claim.tell(Progress("evolving", number + 1, ROUNDS, 4 * number, number, 0.5, 0.05 * number))  # type: ignore[arg-type]
         if claim.job.name == "greedy":
             taken = np.ones(300_000_000, dtype=np.uint8)
@@ -62,9 +61,8 @@ def solve(
     claim.finish(_result("done"))
 
 
-def _generation(number: int) -> Generation:
-    some: Any = np.full(4, number)
-    return Generation(sheet=some, u=np.zeros((4, 3)), parents=some, values=np.ones((4, 2)), violation=np.zeros(4))
+def _record(number: int) -> Record:
+    return Record(Identity("0f" * 16, "{}"), number, number, 0.05 * number, np.arange(4, dtype=np.int64))
 
 
 def _result(status: str) -> Result:
