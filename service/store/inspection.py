@@ -6,10 +6,10 @@ import json
 import time
 
 from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
-from sqlalchemy.exc import DatabaseError
 
+from ...model.errors import StoreError
 from .clock import now
-from .database import Database
+from .database import Database, Unavailable
 from .schema import designs, events, generations, jobs
 
 _MOST = 5  # of a kind that are named
@@ -18,10 +18,18 @@ _SETTINGS = ("fsync", "full_page_writes")
 
 
 def damages(database: Database) -> list[str]:
-    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences."""
-    with database.reading() as connection:
-        found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
-        return found or _miscounts(connection)  # a damaged file need not be counted
+    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences.
+
+    Raises `StoreError` if it cannot be reached.
+    """
+    try:
+        with database.reading() as connection:
+            found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
+            return found or _miscounts(connection)  # a damaged file need not be counted
+    except Unavailable:
+        raise
+    except StoreError as error:  # a file may be too damaged to be looked through
+        return [str(error)]
 
 
 def clock_ahead(database: Database) -> float:
@@ -41,10 +49,7 @@ def server_version(database: Database) -> str:
 
 
 def _of_sqlite(connection: Connection) -> list[str]:
-    try:
-        found = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
-    except DatabaseError as error:  # it goes no further
-        return [str(error.orig)]
+    found = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
     if found != ["ok"]:
         return found
     rows = connection.execute(text("PRAGMA foreign_key_check")).all()

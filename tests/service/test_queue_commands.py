@@ -37,9 +37,7 @@ def store(runs: Path) -> Iterator[Store]:
 
 def solved(store: Store, monkeypatch: pytest.MonkeyPatch, status: str = "done") -> None:
     """Let a worker solve what waits, with a made-up search."""
-    from dataclasses import replace
-
-    front = replace(fronts.front(designs=4), status=status) if status == "done" else fronts.empty_front(status, "none")
+    front = fronts.front(designs=4) if status == "done" else fronts.empty_front(status, "none")
     fronts.found(monkeypatch, front)
     work(store, drain=True)
 
