@@ -19,17 +19,10 @@ from slidercrank.service.client import Client
 from slidercrank.service.client_connection import Connection
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, served, solved_in
+from tests.service.api.fixed_front import Solved, served
 from tests.service.store.contents import progress
 
 TABLES = tomllib.loads(fronts.JOB)
-
-
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a solved job."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +30,6 @@ def reader(solved: Solved) -> Iterator[Client]:
     """Return a client of its service."""
     with served(solved.store) as address, Client(address) as client:
         yield client
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    """Return an empty store."""
-    with Store(tmp_path / "store.db") as opened:
-        yield opened
 
 
 @pytest.fixture
