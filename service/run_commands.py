@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from ..model.errors import InputError
+from .finding_runs import find_run
 from .optimise_command import NOTHING_FEASIBLE, Json, Runs, show_result
 from .result import Result, csv_text, json_text
 from .run_folder import runs_place, write_file
 from .screen import console, give, say
-from .stored_runs import find_run, read_run
+from .stored_runs import read_run
 from .tables import ROWS, show_design, show_front
 
 Run = Annotated[

@@ -7,7 +7,6 @@
         figures/        PNG files
         versions.json   of this software and of what computed the numbers
         log.txt         what happened when
-        generations.npz only while the run can go on from them: what it has evaluated
         UNFINISHED      only until everything else is on the disk
 
 The folder appears under its name with UNFINISHED already in it, and losing that file is the last thing that happens.
@@ -23,7 +22,7 @@ import shutil
 import time
 import traceback
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -104,14 +103,21 @@ class RunFolder:
         with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
             file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {line}\n")
 
-    def keep_job(self, job: Path, beside: Sequence[Path] = ()) -> None:
-        """Copy the job file, and the files beside it that it names, under their own names."""
-        with disk(self.path):
-            _write(self.path / f"job{job.suffix.lower()}", job.read_bytes())
-            for file in beside:
-                kept = self.path / file.relative_to(job.parent)
+    def rename(self, name: str) -> None:
+        """Give the folder another name. Raises `RunError` where that is taken."""
+        if name != self.path.name:
+            with disk(self.path.parent):
+                self.path = self.path.rename(self.path.with_name(name))
+
+    def keep_files(self, files: Mapping[str, bytes]) -> None:
+        """Write files under their names, which may lead into folders but not out of this one."""
+        for name, content in files.items():
+            kept = self.path / name
+            if not kept.resolve().is_relative_to(self.path.resolve()):
+                raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
+            with disk(self.path):
                 kept.parent.mkdir(parents=True, exist_ok=True)
-                _write(kept, file.read_bytes())
+                _write(kept, content)
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""

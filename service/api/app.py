@@ -16,6 +16,7 @@ from .problems import answer_problems, problem_responses
 from .rate_limit import RateLimit
 from .security import Guard
 from .settings import DEFAULT, Settings
+from .stored_fronts import StoredFronts
 from .strict_input import StrictInput
 
 PREFIX = "/api/v1"
@@ -41,6 +42,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.settings = settings
     app.state.submissions = RateLimit(settings.submissions_per_minute)
     app.state.feed = Feed(store)
+    app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
     for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):

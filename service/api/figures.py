@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, HTTPException, Path, Response
+from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
+from ...model.errors import NotFound
+from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
 from .turns import DRAWING, in_turn
@@ -17,10 +19,10 @@ _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 def _drawn(settings: SettingsDep) -> None:
     if not settings.figures:
-        raise HTTPException(404, "this service draws no figures; ask whoever runs it to start it with figures")
+        raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
 
 
-router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)])
+router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)], responses=problem_responses(409))
 
 Name = Annotated[
     str,
@@ -47,8 +49,8 @@ class FiguresModel(BaseModel):
     figures: list[FigureModel]
 
 
-@router.get("/jobs/{number}/figures", summary="Figures of a front")
-def figures(found: FrontDep) -> FiguresModel:
+@router.get("/jobs/{number}/figures")
+def list_figures(found: FrontDep) -> FiguresModel:
     """List the figures of the whole front; the sheet of every design is at `figures/design_{number}.png` or `.svg`."""
     from ..figures.of_front import front_figures
 
@@ -59,22 +61,20 @@ def figures(found: FrontDep) -> FiguresModel:
 
 @router.get(
     "/jobs/{number}/figures/{name}.png",
-    summary="A figure as PNG",
     response_class=Response,
     responses={200: {"content": {"image/png": {}}}},
 )
-def png(found: FrontDep, name: Name) -> Response:
+def draw_png(found: FrontDep, name: Name) -> Response:
     """Draw a figure."""
     return Response(_image(found, name, "png"), media_type="image/png")
 
 
 @router.get(
     "/jobs/{number}/figures/{name}.svg",
-    summary="A figure as SVG",
     response_class=Response,
     responses={200: {"content": {"image/svg+xml": {}}}},
 )
-def svg(found: FrontDep, name: Name) -> Response:
+def draw_svg(found: FrontDep, name: Name) -> Response:
     """Draw a figure."""
     # Opened by itself it is a document: it runs nothing and fetches nothing.
     policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}
@@ -106,6 +106,6 @@ def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
         return content
 
 
-def _unknown(name: str, names: list[str]) -> HTTPException:
+def _unknown(name: str, names: list[str]) -> NotFound:
     choice = f"choose from {', '.join(names)}, design_1 and so on" if names else "the front has no designs to draw"
-    return HTTPException(404, f"the front has no figure {name!r}; {choice}")
+    return NotFound(f"the front has no figure {name!r}; {choice}")

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Collection
+from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query
+from fastapi import APIRouter, Query
 from pydantic import BaseModel, BeforeValidator, Field
 
-from ...model.errors import InputError
+from ...model.errors import InputError, NotFound
 from ..choosing import chosen_rows, none_meets
 from ..columns import find_column
 from ..picking_options import picked_row
 from ..result import Row, finite
+from .models import JobNumber
+from .problems import problem_responses
+from .state import StoreDep
 from .stored_fronts import FrontDep
 
-router = APIRouter(tags=["fronts"])
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 Cells = dict[str, float | str | None]
 """A design: numbers and words by column; null for what is infinite or not defined."""
 
 Where = Annotated[
-    list[str],
+    list[Annotated[str, Field(max_length=500)]],
     Query(
         max_length=50,
         description='only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward"; '
@@ -80,16 +84,19 @@ class PickedModel(BaseModel):
     design: Cells = Field(examples=[{"crank_mm": 40.0, "peak_torque_Nm": 1.8, "slow_stroke": "inward"}])
 
 
-@router.get("/jobs/{number}/front", summary="What a job found, without its designs")
-def front(found: FrontDep) -> FrontModel:
+@router.get("/jobs/{number}/front")
+def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
-    record = found.result.record()
-    count = len(record.pop("designs"))
-    return FrontModel(**record, job=found.job.id, count=count, columns=columns_of(found.result.designs))
+    record = finite(store.record(number))
+    summary = store.job(number).summary
+    # Only results of the first stores have no summary.
+    count = len(store.result(number).designs) if summary is None else summary["designs"]
+    keys = record.pop("columns")
+    return FrontModel(**record, job=number, count=count, columns=[column_model(key, keys) for key in keys])
 
 
-@router.get("/jobs/{number}/pick", summary="One design chosen from a front")
-def pick(
+@router.get("/jobs/{number}/pick")
+def pick_design(
     found: FrontDep,
     knee: Annotated[
         bool,
@@ -115,11 +122,11 @@ def pick(
     if not (knee or topsis is not None or lexicographic is not None):
         raise InputError("a design is chosen by knee, topsis or lexicographic; got none of them; give one")
     if not result.designs:
-        raise HTTPException(404, result.message)
+        raise NotFound(result.message)
     rows = chosen_rows(result, where)
     row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
-        raise HTTPException(404, none_meets(result, where))
+        raise NotFound(none_meets(result, where))
     return PickedModel(job=found.job.id, number=row + 1, design=finite(result.designs[row]))
 
 
@@ -128,7 +135,7 @@ def columns_of(designs: list[Row]) -> list[ColumnModel]:
     return [column_model(key, designs[0]) for key in designs[0]] if designs else []
 
 
-def column_model(key: str, keys: dict[str, Any]) -> ColumnModel:
+def column_model(key: str, keys: Collection[str]) -> ColumnModel:
     """Return a column by its key."""
     column = find_column(key, keys)
     return ColumnModel(key=column.key, title=column.title, unit=column.unit)

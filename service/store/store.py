@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from ...model.errors import InputError, NotFound
-from ..result import Result, Row, finite
+from ..result import Result
 from ..run_folder import run_name
 from ..stored_runs import result_from
 from .claim import Claim
@@ -18,7 +18,7 @@ from .claiming import any_claimable, claim_next, running
 from .clock import now
 from .database import Database
 from .events_log import add_events
-from .packing import plain, row_of
+from .packing import plain, rows_of
 from .records import ENDED, NO_LIMITS, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
 from .rows import become, damaged, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, jobs, workers
@@ -196,8 +196,7 @@ class Store:
             found = connection.execute(cells).scalars().all()
         try:
             columns = stored.pop("columns")
-            rows: list[Row] = [row_of(columns, text) for text in found]
-            return result_from({**stored, "designs": finite(rows)}, rows, str(stored["run"]))
+            return result_from(stored, rows_of(columns, found), str(stored["run"]))
         except (ValueError, KeyError, TypeError) as error:
             raise damaged(number, error) from error
 

@@ -17,9 +17,10 @@ import pytest
 from slidercrank.model.errors import InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
+from slidercrank.service.pulse import Pulse
 from slidercrank.service.store import Claim, Limits, Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import Pulse, solve_claimed, work, worker_name
+from slidercrank.service.worker import solve_claimed, work, worker_name
 from tests.service import fronts
 from tests.service.store.contents import end_lease, generation, progress
 
