@@ -61,10 +61,10 @@ def solved_in(place: Path) -> Iterator[Solved]:
 
 
 @contextlib.contextmanager
-def served(store: Store, settings: Settings = DEFAULT) -> Iterator[str]:
+def served(store: Store, settings: Settings = DEFAULT, *, port: int = 0) -> Iterator[str]:
     """Serve a store on loopback while entered; yield the address."""
-    config = uvicorn.Config(create_app(store, settings), host="127.0.0.1", port=0, log_level="error")
-    server = uvicorn.Server(config)
+    options: dict[str, Any] = {"host": "127.0.0.1", "port": port, "log_level": "error", "timeout_graceful_shutdown": 1}
+    server = uvicorn.Server(uvicorn.Config(create_app(store, settings), **options))
     thread = threading.Thread(target=server.run, name="server of a test")
     thread.start()
     end = time.monotonic() + 30.0
