@@ -161,7 +161,7 @@ def test_a_thousand_submissions_with_one_key_make_one_job(serve: Serve, store: S
 
 @pytest.mark.parametrize("key", ["", "x" * 256, "a b", "\x80"])
 def test_a_key_that_is_none_is_refused(shared: httpx.Client, key: str) -> None:
-    headers = {"Idempotency-Key": key.encode("latin-1")}
+    headers = [(b"Idempotency-Key", key.encode("latin-1"))]
     refused(shared.post("/jobs", json={"job": EXAMPLE}, headers=headers), 422)
 
 
