@@ -144,7 +144,8 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     )
     connection.execute(
         text(
-            "WITH RECURSIVE counted(number) AS (SELECT 1 UNION ALL SELECT number + 1 FROM counted WHERE number < :events) "
+            "WITH RECURSIVE counted(number) AS "
+            "(SELECT 1 UNION ALL SELECT number + 1 FROM counted WHERE number < :events) "
             "INSERT INTO events (job, number, at, kind, data) "
             "SELECT jobs.id, counted.number, jobs.started + counted.number, 'progress', jobs.progress "
             "FROM jobs CROSS JOIN counted"

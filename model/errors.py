@@ -3,6 +3,7 @@
     SlidercrankError
     |-- InputError          a value that breaks a rule; also a ValueError
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
+    |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
     |   `-- NotFound        what was asked for by its name or number is not there
     `-- RunError            a stored run that cannot be read or written
@@ -27,6 +28,10 @@ class InputError(SlidercrankError, ValueError):
 
 class AssemblyError(InputError):
     """A linkage that cannot be assembled at some crank angle that is asked for."""
+
+
+class ForeignRecords(InputError):
+    """Records of another search, or of other versions, from which this one cannot go on."""
 
 
 class JobError(InputError):

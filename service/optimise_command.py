@@ -49,12 +49,13 @@ def optimise(
 ) -> None:
     """Find the Pareto front of a job.
 
-    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops after the round that is
-    under way and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
+    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops within about a second
+    and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
     The run is in the store too, where `jobs` and the service see it.
     """
     from .own_run import told
-    from .worker import Pulse, versions_file
+    from .pulse import Pulse
+    from .worker import versions_file
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)

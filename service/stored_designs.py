@@ -42,7 +42,8 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
     part = problem.part(variant)
     values = _values(row, _factors(part.mechanism))
     mechanism = part.mechanism.at(values[3:])
-    return StoredDesign(part, values, mechanism, Linkage(*values[:3], mechanism.branch))
+    crank, rod, offset = values[:3]
+    return StoredDesign(part, values, mechanism, Linkage(crank, rod, offset, mechanism.branch))
 
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:

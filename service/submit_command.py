@@ -47,22 +47,19 @@ def submit(
 
     It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
     """
-    from ..optimise.job import load_job
-    from ..optimise.job.file import read
-    from ..optimise.job.target_motion import with_points
+    from ..optimise.job import load_job, read_job
     from .job_record import job_record
     from .result import json_text
     from .store import Limits
     from .submission import submit as put_in
 
     load_job(job, allow_user_code=False)  # for its messages, which name the file
-    tables = with_points(read(job), job.parent)
     most = None if memory is None else size_of(memory, "--memory")
     limits = Limits(seconds=seconds, evaluations=evaluations, memory=most)
     with open_store(store) as opened:
         queued = put_in(
             opened,
-            tables,
+            read_job(job),
             priority=priority,
             key=key,
             most_attempts=attempts,

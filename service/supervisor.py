@@ -13,14 +13,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from .pulse import EXHAUSTED
-from .worker_process import REFUSED, WorkerSettings
+from .worker_process import MARGIN, REFUSED, WorkerSettings
 
 _log = logging.getLogger(__name__)
 WORKER = (sys.executable, "-m", "slidercrank.service.worker_process")
 _LOOK = 0.1  # s between two looks at the processes
 _FIRST, _LONGEST = 0.5, 30.0  # s before a process that ended soon is started again: doubled from one to the other
 _SOON = 60.0  # s; one that ran for longer is started again as if it had never ended
-_MARGIN = 2.0  # s beyond its own time to stop that a process has before it is killed
 
 
 @dataclass
@@ -120,7 +119,7 @@ class Supervisor:
         running = [place.process for place in self._places if place.process is not None]
         for process in running:
             _release(process)
-        end = time.monotonic() + self.settings.grace + _MARGIN
+        end = time.monotonic() + self.settings.grace + MARGIN
         for process in running:
             try:
                 process.wait(max(0.0, end - time.monotonic()))

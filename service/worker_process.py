@@ -24,7 +24,8 @@ from .worker import work
 
 GRACE = 10.0
 """Time that a worker has to stop, s; then its job is handed back wherever its search is."""
-_MARGIN = 5.0  # s
+MARGIN = 5.0
+"""Time beyond its grace after which a worker that has not stopped is ended, s."""
 REFUSED = 2
 """Exit code of a worker that can do nothing as it was started."""
 _log = logging.getLogger(__name__)
@@ -122,7 +123,7 @@ def _wait_for_end(stop: threading.Event, grace: float) -> None:
     while os.read(0, 64):
         pass
     stop.set()
-    time.sleep(grace + _MARGIN)
+    time.sleep(grace + MARGIN)
     leave(1)
 
 

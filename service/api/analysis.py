@@ -18,6 +18,9 @@ from ..options import length_option, speed_option
 from ..result import Row, finite
 from ..topics import ALL, TOPICS, chosen_topics
 from .fronts import ColumnModel
+from .given_jobs import given_problem
+from .problems import problem_responses
+from .state import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
 from .turns import SIMULATING, in_turn
 
@@ -25,12 +28,13 @@ if TYPE_CHECKING:
     from ...model.linkage import Linkage
     from ...model.mechanism import Mechanism
 
-router = APIRouter(tags=["designs"])
+router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
 _LONGEST = 30.0  # s, for the topics of one design
 
 Show = Annotated[
-    list[str], Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable")
+    list[Annotated[str, Field(max_length=500)]],
+    Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
 _EXAMPLE = {"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1.7, "slow_stroke": "inward"}
 
@@ -88,8 +92,8 @@ class WhatIf(BaseModel):
     show: list[str] = Field([], max_length=20, examples=[["balance"]])
 
 
-@router.get("/jobs/{number}/designs/{design}/analysis", summary="All numbers of a design")
-def analysis(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
+@router.get("/jobs/{number}/designs/{design}/analysis")
+def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
     topics = chosen_topics(show, job=True)
     stored = found.design(design)
@@ -98,8 +102,8 @@ def analysis(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAn
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
 
 
-@router.get("/jobs/{number}/designs/{design}/curves", summary="Curves of a design over the cycle")
-def curves(
+@router.get("/jobs/{number}/designs/{design}/curves")
+def show_curves(
     found: FrontDep,
     design: DesignNumber,
     angles: Annotated[int, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced")] = 360,
@@ -119,14 +123,13 @@ def curves(
     )
 
 
-@router.post("/analyse", summary="All numbers of any design for a job")
-def analyse(asked: WhatIf) -> AnalysisModel:
+@router.post("/analyse")
+def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
     from ...model.linkage import Linkage
-    from ...optimise.job import parse_job
 
     topics = chosen_topics(asked.show, job=True)
-    problem = parse_job(asked.job, asked.values, allow_user_code=False)
+    problem = given_problem(asked.job, settings.allowed_quantities, asked.values)
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))

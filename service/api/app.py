@@ -8,7 +8,7 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 
 from ..store import Store
-from . import events, health, jobs
+from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema
 from .event_feed import Feed
 from .metrics import Metrics, Timed
 from .openapi import describe
@@ -16,6 +16,7 @@ from .problems import answer_problems, problem_responses
 from .rate_limit import RateLimit
 from .security import Guard
 from .settings import DEFAULT, Settings
+from .stored_fronts import StoredFronts
 from .strict_input import StrictInput
 
 PREFIX = "/api/v1"
@@ -41,9 +42,10 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.settings = settings
     app.state.submissions = RateLimit(settings.submissions_per_minute)
     app.state.feed = Feed(store)
+    app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (jobs, events, health):
+    for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     describe(app)
 

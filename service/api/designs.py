@@ -11,9 +11,10 @@ from ..choosing import chosen_rows
 from ..columns import find_columns
 from ..result import finite
 from .fronts import Cells, ColumnModel, Where, columns_of
+from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
-router = APIRouter(tags=["fronts"])
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 MOST_ROWS = 1000
 
@@ -41,8 +42,8 @@ class DesignModel(BaseModel):
     design: Cells = Field(examples=[_EXAMPLE])
 
 
-@router.get("/jobs/{number}/designs", summary="Designs of a front, page by page")
-def designs(
+@router.get("/jobs/{number}/designs")
+def list_designs(
     found: FrontDep,
     where: Where = [],  # noqa: B006 - the framework copies it
     sort: Annotated[
@@ -76,8 +77,8 @@ def designs(
     )
 
 
-@router.get("/jobs/{number}/designs/{design}", summary="One design")
-def one_design(found: FrontDep, design: DesignNumber) -> DesignModel:
+@router.get("/jobs/{number}/designs/{design}")
+def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
     return DesignModel(job=found.job.id, number=design, columns=columns_of([row]), design=finite(row))

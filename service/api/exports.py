@@ -9,9 +9,10 @@ from fastapi import APIRouter, HTTPException, Response
 
 from ..result import csv_text, json_text
 from ..run_folder import slug
+from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
-router = APIRouter(tags=["fronts"])
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 
 def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
@@ -21,11 +22,10 @@ def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes
 
 @router.get(
     "/jobs/{number}/export.csv",
-    summary="All designs as CSV",
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}}},
 )
-def csv(found: FrontDep) -> Response:
+def export_csv(found: FrontDep) -> Response:
     """Give every design with all its quantities at full precision.
 
     A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
@@ -36,22 +36,20 @@ def csv(found: FrontDep) -> Response:
 
 @router.get(
     "/jobs/{number}/export.json",
-    summary="A front with all its designs as JSON",
     response_class=Response,
     responses={200: {"content": {"application/json": {}}}},
 )
-def json(found: FrontDep) -> Response:
+def export_json(found: FrontDep) -> Response:
     """Give the whole front, as `slidercrank export --json` does."""
     return _file(found, "json", "application/json", json_text(found.result.record()))
 
 
 @router.get(
     "/jobs/{number}/export.parquet",
-    summary="All designs as Parquet",
     response_class=Response,
-    responses={200: {"content": {"application/vnd.apache.parquet": {}}}},
+    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **problem_responses(501)},
 )
-def parquet(found: FrontDep) -> Response:
+def export_parquet(found: FrontDep) -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
     if find_spec("pyarrow") is None:
         raise HTTPException(

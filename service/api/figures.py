@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import NotFound
+from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
 from .turns import DRAWING, in_turn
@@ -21,7 +22,7 @@ def _drawn(settings: SettingsDep) -> None:
         raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
 
 
-router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)])
+router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)], responses=problem_responses(409))
 
 Name = Annotated[
     str,
@@ -48,8 +49,8 @@ class FiguresModel(BaseModel):
     figures: list[FigureModel]
 
 
-@router.get("/jobs/{number}/figures", summary="Figures of a front")
-def figures(found: FrontDep) -> FiguresModel:
+@router.get("/jobs/{number}/figures")
+def list_figures(found: FrontDep) -> FiguresModel:
     """List the figures of the whole front; the sheet of every design is at `figures/design_{number}.png` or `.svg`."""
     from ..figures.of_front import front_figures
 
@@ -60,22 +61,20 @@ def figures(found: FrontDep) -> FiguresModel:
 
 @router.get(
     "/jobs/{number}/figures/{name}.png",
-    summary="A figure as PNG",
     response_class=Response,
     responses={200: {"content": {"image/png": {}}}},
 )
-def png(found: FrontDep, name: Name) -> Response:
+def draw_png(found: FrontDep, name: Name) -> Response:
     """Draw a figure."""
     return Response(_image(found, name, "png"), media_type="image/png")
 
 
 @router.get(
     "/jobs/{number}/figures/{name}.svg",
-    summary="A figure as SVG",
     response_class=Response,
     responses={200: {"content": {"image/svg+xml": {}}}},
 )
-def svg(found: FrontDep, name: Name) -> Response:
+def draw_svg(found: FrontDep, name: Name) -> Response:
     """Draw a figure."""
     # Opened by itself it is a document: it runs nothing and fetches nothing.
     policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}

@@ -13,16 +13,18 @@ from ..choosing import chosen_rows, none_meets
 from ..columns import find_column
 from ..picking_options import picked_row
 from ..result import Row, finite
+from .models import JobNumber
+from .problems import problem_responses
 from .state import StoreDep
-from .stored_fronts import FrontDep, JobNumber
+from .stored_fronts import FrontDep
 
-router = APIRouter(tags=["fronts"])
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 Cells = dict[str, float | str | None]
 """A design: numbers and words by column; null for what is infinite or not defined."""
 
 Where = Annotated[
-    list[str],
+    list[Annotated[str, Field(max_length=500)]],
     Query(
         max_length=50,
         description='only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward"; '
@@ -82,8 +84,8 @@ class PickedModel(BaseModel):
     design: Cells = Field(examples=[{"crank_mm": 40.0, "peak_torque_Nm": 1.8, "slow_stroke": "inward"}])
 
 
-@router.get("/jobs/{number}/front", summary="What a job found, without its designs")
-def front(number: JobNumber, store: StoreDep) -> FrontModel:
+@router.get("/jobs/{number}/front")
+def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
     record = finite(store.record(number))
     summary = store.job(number).summary
@@ -93,8 +95,8 @@ def front(number: JobNumber, store: StoreDep) -> FrontModel:
     return FrontModel(**record, job=number, count=count, columns=[column_model(key, keys) for key in keys])
 
 
-@router.get("/jobs/{number}/pick", summary="One design chosen from a front")
-def pick(
+@router.get("/jobs/{number}/pick")
+def pick_design(
     found: FrontDep,
     knee: Annotated[
         bool,

@@ -70,7 +70,8 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
             "examples": {"feeder": {"summary": "A feeder", "value": _EXAMPLE_TOML}},
         },
     }
-    schema["paths"]["/api/v1/jobs"]["post"]["requestBody"] = {"required": True, "content": content}
+    for path in ("/api/v1/jobs", "/api/v1/check"):
+        schema["paths"][path]["post"]["requestBody"] = {"required": True, "content": content}
     for path in ("/api/v1/jobs", "/api/v1/jobs/{number}/clone"):
         created = schema["paths"][path]["post"]["responses"]["201"]
         created["links"] = {name: {"operationId": name, "parameters": _OF_THE_JOB} for name in _LINKED}

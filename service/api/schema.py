@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from fastapi import APIRouter, Depends
+from pydantic import BaseModel, Field
+
+from .given_jobs import given_problem
+from .job_requests import Asked, asked_for
+from .problems import problem_responses
+from .state import SettingsDep
 
 router = APIRouter(tags=["jobs"])
-
-
-class Stated(BaseModel):
-    """A job."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    job: dict[str, Any] = Field(description="the tables of a job file")
 
 
 class Understood(BaseModel):
@@ -34,18 +31,17 @@ class Understood(BaseModel):
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 
 
-@router.get("/schema", summary="The JSON Schema of jobs")
-def schema() -> dict[str, Any]:
+@router.get("/schema")
+def show_schema() -> dict[str, Any]:
     """Give the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
     from ...optimise.job import job_schema
 
     return job_schema()
 
 
-@router.post("/check", summary="What is understood of a job")
-def check(stated: Stated) -> Understood:
-    """Check a job and say in words what was understood; nothing is queued."""
-    from ...optimise.job import parse_job
+@router.post("/check", responses=problem_responses(415))
+def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
+    """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
     from ..summary import summarise
 
-    return Understood(**summarise(parse_job(stated.job, allow_user_code=False)))
+    return Understood(**summarise(given_problem(asked.tables, settings.allowed_quantities)))

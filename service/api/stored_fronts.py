@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
+from ..allowed_quantities import require_allowed
 from ..result import Result, Row
 from ..store import Job, Store
 from ..stored_designs import StoredDesign, design_of, front_of
+from .models import JobNumber
 
 if TYPE_CHECKING:
     from ...optimise.front import ParetoFront
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 100 MB."""
 
-JobNumber = Annotated[int, Path(ge=1, le=2**63 - 1, description="number of a job", examples=[7])]
 DesignNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
 ]
@@ -32,19 +33,17 @@ DesignNumber = Annotated[
 class StoredFront:
     """The front of a job that has ended, with what is made of it when it is first needed."""
 
-    def __init__(self, job: Job, result: Result, tables: Callable[[], dict[str, Any]]) -> None:
-        """Take a job, what it found, and what gives its tables."""
+    def __init__(self, job: Job, result: Result, problem: Callable[[], Problem]) -> None:
+        """Take a job, what it found, and what reads the problem that it stated."""
         self.job = job
         self.result = result
         self.images: dict[tuple[str, str], bytes] = {}
-        self._tables = tables
+        self._read = problem
 
     @cached_property
     def problem(self) -> Problem:
         """The problem that the job stated, with the seed of its search. Raises `JobError`."""
-        from ...optimise.job import parse_job
-
-        problem = parse_job(self._tables(), allow_user_code=False)
+        problem = self._read()
         return replace(problem, settings=replace(problem.settings, seed=self.result.seed))
 
     @cached_property
@@ -68,9 +67,10 @@ class StoredFront:
 class StoredFronts:
     """The fronts that were asked for last, a bounded number of designs. Threads may share it."""
 
-    def __init__(self, store: Store, *, most_designs: int = MOST_DESIGNS) -> None:
-        """Read from a store."""
+    def __init__(self, store: Store, *, allowed: Collection[str] = (), most_designs: int = MOST_DESIGNS) -> None:
+        """Read from a store. allowed: functions, "module:function", that its jobs may name as quantities."""
         self._store = store
+        self._allowed = allowed
         self._most = most_designs
         self._kept: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
         self._reading = threading.Lock()
@@ -82,12 +82,19 @@ class StoredFronts:
         with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
             front = self._kept.get(key)
             if front is None:
-                front = StoredFront(job, self._store.result(number), lambda: self._store.tables(number))
+                front = StoredFront(job, self._store.result(number), lambda: self._problem(number))
                 if job.finished is not None:
                     self._keep(key, front)
             else:
                 self._kept.move_to_end(key)
         return front
+
+    def _problem(self, number: int) -> Problem:
+        from ...optimise.job import parse_job
+
+        tables = self._store.tables(number)
+        require_allowed(tables, self._allowed)
+        return parse_job(tables, allow_user_code=bool(self._allowed))
 
     def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
         self._kept[key] = front
@@ -96,10 +103,7 @@ class StoredFronts:
 
 
 async def _fronts(request: Request) -> StoredFronts:
-    state = request.app.state
-    if not hasattr(state, "fronts"):
-        state.fronts = StoredFronts(state.store)
-    fronts: StoredFronts = state.fronts
+    fronts: StoredFronts = request.app.state.fronts
     return fronts
 
 

@@ -115,14 +115,12 @@ def require_moderate(value: Any, most_depth: int) -> None:
         depth += 1
         below = list[Any]()
         for item in level:
-            if isinstance(item, dict):
-                below += [*item, *item.values()]
-            elif isinstance(item, list):
-                below += item
-            else:
+            if not isinstance(item, dict | list):
                 _require_plain(item)
-        if below and depth > most_depth:
-            raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it")
+            elif depth > most_depth:
+                raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it")
+            else:
+                below += [*item, *item.values()] if isinstance(item, dict) else item
         level = below
 
 

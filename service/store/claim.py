@@ -22,7 +22,7 @@ from .submitting import put_files
 
 if TYPE_CHECKING:
     from ...optimise.front import Progress
-    from ...optimise.methods.generation import Generation
+    from ...optimise.ledger import Record
 
 _PAUSE = 0.25  # s between two tries of a write that the database refused
 Rest = Callable[[Connection], None]
@@ -47,7 +47,7 @@ class Claim:
         self._writes = 0
         self._attempts = job.attempts
         self._generations = job.generations
-        self._kept: list[Generation] = []
+        self._kept: list[Record] = []
         self._renewed = time.monotonic()
 
     @property
@@ -55,19 +55,19 @@ class Claim:
         """Time since the lease was last renewed, in s."""
         return time.monotonic() - self._renewed
 
-    def generations(self) -> list[Generation]:
+    def generations(self) -> list[Record]:
         """Return what the job has evaluated so far, in order."""
         query = select(generations.c.content).where(generations.c.job == self.job.id).order_by(generations.c.number)
         with self._database.reading() as connection:
             return [unpacked(content) for content in connection.execute(query).scalars()]
 
-    def keep(self, generation: Generation) -> None:
-        """Take in the next generation; it is written with the next progress, or with the end."""
+    def keep(self, record: Record) -> None:
+        """Take in the next record; it is written with the next progress, or with the end."""
         with self._lock:
-            self._kept.append(generation)
+            self._kept.append(record)
 
     def tell(self, progress: Progress) -> None:
-        """Write where the search stands, together with the generations kept since."""
+        """Write where the search stands, together with the records kept since."""
         data = finite(asdict(progress))
         self._write({"progress": text_of(data)}, [("progress", data)])
 
@@ -142,8 +142,8 @@ class Claim:
         with self._lock:
             kept = self._kept if keep else []
             rows = [
-                {"job": self.job.id, "number": number, "content": packed(generation)}
-                for number, generation in enumerate(kept, self._generations)
+                {"job": self.job.id, "number": number, "content": packed(record)}
+                for number, record in enumerate(kept, self._generations)
             ]
             values: dict[str, Any] = {
                 "writes": self._writes + 1,

@@ -1,4 +1,4 @@
-"""Generations, designs and tables of a job as bytes and text, and back, without losing a bit."""
+"""Records, designs and tables of a job as bytes and text, and back, without losing a bit."""
 
 from __future__ import annotations
 
@@ -9,38 +9,53 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ...model.errors import InputError, RunError
+from ...model.errors import RunError
 from ..result import Cell, Result, Row, finite
 
 if TYPE_CHECKING:
-    from ...optimise.methods.generation import Generation
+    from ...optimise.ledger import Record
 
 _LONGEST = 4000
+_FORM = 1
 _POINTS = 64
-_ARRAYS = ("sheet", "u", "parents", "values", "violation")
 
 
-def packed(generation: Generation) -> bytes:
-    """Return a generation as a file of NumPy's .npz form, without pickles."""
+def packed(record: Record) -> bytes:
+    """Return a record of a search as a file of NumPy's .npz form, without pickles."""
     import numpy as np
 
     out = io.BytesIO()
-    np.savez(out, **{name: getattr(generation, name) for name in _ARRAYS})
+    np.savez(
+        out,
+        form=np.array(_FORM),
+        problem=np.array(record.identity.problem),
+        versions=np.array(record.identity.versions),
+        counts=np.array([record.number, record.told], dtype=np.int64),
+        seconds=np.array(record.seconds),
+        words=record.words,
+    )
     return out.getvalue()
 
 
-def unpacked(content: bytes) -> Generation:
-    """Return the generation that `packed` was given. Raises `RunError` if the content is damaged."""
+def unpacked(content: bytes) -> Record:
+    """Return the record that `packed` was given. Raises `RunError` if the content is damaged."""
     import numpy as np
 
-    from ...optimise.methods.generation import Generation
+    from ...optimise.ledger import Identity, Record
 
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as file:
-            return Generation(*(file[name] for name in _ARRAYS))
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, InputError) as error:
+            if file["form"] != _FORM:
+                raise ValueError(f"its form is {file['form']}, not {_FORM}")
+            number, told = file["counts"].tolist()
+            words = file["words"]
+            if words.dtype != np.int64 or words.ndim != 1:
+                raise ValueError(f"its words are {words.dtype} of {words.ndim} dimensions")
+            identity = Identity(str(file["problem"]), str(file["versions"]))
+            return Record(identity, number, told, float(file["seconds"]), words)
+    except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise RunError(
-            f"a stored generation must be whole; got {type(error).__name__}: {error}; submit its job anew"
+            f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job anew"
         ) from error
 
 

@@ -14,7 +14,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.job import read_job
-from slidercrank.optimise.methods.generation import Generation
+from slidercrank.optimise.ledger import Record
 from slidercrank.optimise.solve import solve
 from slidercrank.service.result import csv_text
 from slidercrank.service.run_folder import MARK, RunFolder
@@ -45,11 +45,11 @@ def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def after(count: int, *, killed: bool) -> None:
         def stopped(*given: Any, keep: Any, **options: Any) -> ParetoFront:
-            seen: list[Generation] = []
+            seen: list[Record] = []
 
-            def counted(generation: Generation) -> None:
-                keep(generation)
-                seen.append(generation)
+            def counted(record: Record) -> None:
+                keep(record)
+                seen.append(record)
                 if killed and len(seen) == count:
                     raise Killed
 

@@ -14,12 +14,10 @@ from typing import Any
 import httpx
 import pytest
 import uvicorn
-from fastapi import FastAPI
 from typer.testing import CliRunner
 
-from slidercrank.service.api import analysis, designs, exports, figures, fronts, schema
-from slidercrank.service.api.problems import answer_problems
-from slidercrank.service.api.settings import Settings
+from slidercrank.service.api.app import create_app
+from slidercrank.service.api.settings import DEFAULT, Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.result import Result, Row
 from slidercrank.service.store import Store
@@ -29,7 +27,6 @@ from slidercrank.service.worker import work
 from tests.service import fronts as made
 
 API = "/api/v1"
-DEFAULT = Settings()
 
 
 @dataclass(frozen=True)
@@ -66,7 +63,7 @@ def solved_in(place: Path) -> Iterator[Solved]:
 @contextlib.contextmanager
 def served(store: Store, settings: Settings = DEFAULT) -> Iterator[str]:
     """Serve a store on loopback while entered; yield the address."""
-    config = uvicorn.Config(app_of(store, settings), host="127.0.0.1", port=0, log_level="error", lifespan="off")
+    config = uvicorn.Config(create_app(store, settings), host="127.0.0.1", port=0, log_level="error")
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, name="server of a test")
     thread.start()
@@ -86,16 +83,6 @@ def client_of(store: Store, settings: Settings = DEFAULT) -> Iterator[httpx.Clie
     """Serve a store on loopback while entered; yield a client of it."""
     with served(store, settings) as address, httpx.Client(base_url=address, timeout=60.0) as client:
         yield client
-
-
-def app_of(store: Store, settings: Settings) -> FastAPI:
-    """Return an application of what reads results."""
-    app = FastAPI()
-    app.state.store, app.state.settings = store, settings
-    answer_problems(app)
-    for part in (fronts, designs, analysis, figures, exports, schema):
-        app.include_router(part.router, prefix=API)
-    return app
 
 
 def put_in(store: Store, result: Result, tables: dict[str, Any], **changes: Any) -> int:
