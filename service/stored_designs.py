@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from ..model.errors import RunError
 from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
+from ..model.varying import Varying
 from ..objectives.varying_column import varying_column
-from ..optimise.problem import Problem, Variant, choice_field
+from ..optimise.problem import Problem, Range, Variant, choice_field
 from .result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
 
 def _outside(variant: Variant, values: Sequence[float]) -> float:
     """Return how far values are out of the ranges of a variant, as a share of each."""
-    ranges = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
+    ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
     return max(
         max(of.lower - value, value - of.upper, 0.0) / max(abs(of.lower), abs(of.upper), 1e-300)
         for of, value in zip(ranges, values, strict=True)

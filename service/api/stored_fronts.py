@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...optimise.problem import Problem
 
 MOST_DESIGNS = 40_000
-"""Designs kept at hand, of all fronts together; 100 MB."""
+"""Designs kept at hand, of all fronts together; 140 MB."""
 _MOST_IMAGES = 24  # of a front, 100 kB each
 
 DesignNumber = Annotated[
