@@ -64,7 +64,16 @@ class Verdict:
         )
 
 
-KINDS_OF_WRONG = ("lost", "ended twice", "designs differ", "results differ", "stale writes", "rounds amiss", "late")
+KINDS_OF_WRONG = (
+    "lost",
+    "ended twice",
+    "designs differ",
+    "results differ",
+    "stale writes",
+    "rounds amiss",
+    "events missed",
+    "late",
+)
 
 
 def judge(
@@ -102,7 +111,8 @@ def _judge_end(verdict: Verdict, number: int, state: str, events: Sequence[Event
         verdict.violate("lost", f"job {number} is {state}")
     told = [event.data["state"] for event in events if event.kind == "state" and event.data["state"] in _ENDED]
     ended = [change.state for change in audit if change.was != change.state and change.state in _ENDED]
-    if len(told) > 1 or len(ended) > 1:
+    resumed = sum(event.data.get("reason") == "resumed" for event in events)
+    if len(told) > 1 + resumed or len(ended) > 1 + resumed:
         verdict.violate("ended twice", f"job {number}: events {told}, changes {ended}")
     if [event.number for event in events] != list(range(1, len(events) + 1)):
         verdict.violate("rounds amiss", f"the events of job {number} have gaps")
@@ -146,14 +156,9 @@ def _judge_rounds(verdict: Verdict, number: int, events: Sequence[Event], noted:
             if again > 1:
                 verdict.violate("rounds amiss", f"job {number}: claim {note.fence} begins {again} rounds back")
         latest[note.fence] = note.number
-    before = 0
-    for event in events:
-        if event.data.get("state") == "running":
-            before = 0  # a search tells anew from 1 when it goes on
-        elif event.kind == "progress":
-            if event.data["round"] != before + 1:
-                verdict.violate("rounds amiss", f"job {number}: round {event.data['round']} told after {before}")
-            before = event.data["round"]
+    rounds = [event.data["round"] for event in events if event.kind == "progress"]
+    if rounds != list(range(1, len(rounds) + 1)):
+        verdict.violate("rounds amiss", f"job {number}: its events tell of rounds {rounds}")
 
 
 def _time_resumptions(
