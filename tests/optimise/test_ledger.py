@@ -14,6 +14,7 @@ from slidercrank.optimise import identity, ledger
 from slidercrank.optimise.front import ParetoFront, Progress
 from slidercrank.optimise.identity import identity_of
 from slidercrank.optimise.ledger import Cancelled, Identity, Ledger, Numbers, Record
+from slidercrank.optimise.methods import starts
 from slidercrank.optimise.methods.registry import METHODS, NAMES
 from slidercrank.optimise.problem import Problem
 from slidercrank.optimise.robust import Robust, robust
@@ -24,24 +25,28 @@ from tests.optimise.problems import Bounds, degrees, problem, shipped
 HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
 LIMITED: dict[str, Bounds] = HELD | {"peak_slider_speed": (None, 4.0)}
 SETTINGS: dict[str, dict[str, int]] = {
-    "auto": {"samples": 256},
+    "auto": {"samples": 128},
     "slsqp": {},
     "trust_constr": {},
     "differential_evolution": {"evaluations": 1_000},
     "shgo": {"evaluations": 64},
     "minimax": {"evaluations": 2_000},
-    "epsilon_constraint": {"evaluations": 16_700},
-    "chebyshev": {"evaluations": 16_700},
-    "nbi": {"evaluations": 16_700},
+    "epsilon_constraint": {"evaluations": 800},
+    "chebyshev": {"evaluations": 800},
+    "nbi": {"evaluations": 800},
     "tpe": {"samples": 8, "evaluations": 40},
     "cmaes": {"samples": 6, "evaluations": 60},
 }
 
 
+SLOW = ("trust_constr", "shgo", "minimax")
+
+
 @pytest.fixture(autouse=True)
 def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keep every step at once, so that runs can be cut within their rounds."""
+    """Keep every step at once, so that runs can be cut within their rounds; start from few samples."""
     monkeypatch.setattr(ledger, "PAUSE", 0.0)
+    monkeypatch.setattr(starts, "SAMPLES", 512)
 
 
 def asked(method: str) -> Problem:
@@ -51,8 +56,8 @@ def asked(method: str) -> Problem:
         {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
         LIMITED,
         crank=(0.05, 0.15),
-        rod=(0.2, 0.6),
-        offset=(-0.1, 0.15),
+        rod=0.4 if method in SLOW else (0.2, 0.6),
+        offset=(0.01, 0.15) if method in SLOW else (-0.1, 0.15),
         designs=6,
     )
     settings = SETTINGS.get(method, {"samples": 16, "evaluations": 80})
