@@ -4,6 +4,7 @@
     |-- InputError          a value that breaks a rule; also a ValueError
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
     |   `-- JobError        a job file that cannot be used
+    |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
         |-- LeaseLost       a job that is another worker's by now
@@ -29,6 +30,10 @@ class AssemblyError(InputError):
 
 class JobError(InputError):
     """A job file that cannot be used."""
+
+
+class EngineError(SlidercrankError):
+    """The processes or the cluster that evaluate designs cannot be used, or are lost."""
 
 
 class RunError(SlidercrankError):

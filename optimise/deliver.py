@@ -16,10 +16,10 @@ from .front import ParetoFront, Status
 from .gradients import without_gradient
 from .hypervolume import choose, hypervolume, scaling
 from .pile import STATIONARY, Pile
-from .polish import polish, project
 from .problem import Problem, choice_field
 from .sampling import apart
 from .search import Archive, Run
+from .spread import polish, project
 from .stationarity import Array, multipliers
 
 ROUNDS = 4

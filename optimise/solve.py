@@ -10,6 +10,7 @@ import numpy as np
 from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, empty, planned
 from .elimination import Sheet, sheets
+from .engine.engine import Engine
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
@@ -30,6 +31,7 @@ def solve(
     cancelled: Callable[[], bool] | None = None,
     resume: Sequence[Generation] = (),
     keep: Callable[[Generation], None] | None = None,
+    engine: Engine | None = None,
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
@@ -38,13 +40,14 @@ def solve(
     keep: called with each generation as soon as it is evaluated, by the methods that go generation by generation.
     resume: all generations that an earlier run of this problem kept, in order, however many; the run goes on from them
     and gives what it would have given without a stop, bit for bit.
+    engine: where heavy work is done, in this process by default; it does not show in the front. Who gives it closes it.
     """
     require_fit(problem)
     if resume:
         require_resumable(problem)
     method = problem.settings.method
     require_gradients(problem)
-    evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
+    evaluators = [Evaluator(problem, sheet, engine) for sheet in sheets(problem)]
     if method == "auto":
         run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
         archive = explore(problem, evaluators, run)
