@@ -14,19 +14,20 @@ from rich.table import Table
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured, several times, and the limit that its median must keep."""
+    """What was measured, several times, and the limit that its median must keep; or its greatest figure, if `worst`."""
 
     what: str
     figures: list[float]
     at_least: float | None = None
     at_most: float | None = None
+    worst: bool = False
 
     def kept(self) -> bool | None:
-        """Whether the median keeps the limit; None without one."""
+        """Whether the limit is kept; None without one."""
         if self.at_least is not None:
             return median(self.figures) >= self.at_least
         if self.at_most is not None:
-            return median(self.figures) <= self.at_most
+            return (max if self.worst else median)(self.figures) <= self.at_most
         return None
 
     def cells(self) -> tuple[str, str, str, str, str]:

@@ -3,12 +3,15 @@
     SlidercrankError
     |-- InputError          a value that breaks a rule; also a ValueError
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
-    |   `-- JobError        a job file that cannot be used
+    |   |-- ForeignRecords  records of another search, from which this one cannot go on
+    |   |-- JobError        a job file that cannot be used
+    |   `-- NotFound        what was asked for by its name or number is not there
     |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
         |-- LeaseLost       a job that is another worker's by now
-        `-- QueueFull       as many jobs wait as may wait
+        |-- QueueFull       as many jobs wait as may wait
+        `-- ServiceError    a service elsewhere refuses, or does not answer
 
 Every message says the rule, the value and the remedy.
 """
@@ -28,8 +31,16 @@ class AssemblyError(InputError):
     """A linkage that cannot be assembled at some crank angle that is asked for."""
 
 
+class ForeignRecords(InputError):
+    """Records of another search, or of other versions, from which this one cannot go on."""
+
+
 class JobError(InputError):
     """A job file that cannot be used."""
+
+
+class NotFound(InputError):
+    """What was asked for by its name or number is not there."""
 
 
 class EngineError(SlidercrankError):
@@ -50,3 +61,7 @@ class LeaseLost(RunError):
 
 class QueueFull(RunError):
     """As many jobs wait as may wait."""
+
+
+class ServiceError(RunError):
+    """A service elsewhere refuses, or does not answer."""

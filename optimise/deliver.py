@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from importlib.metadata import PackageNotFoundError, version
-from platform import python_version
+import time
 
 import numpy as np
 import pandas as pd
@@ -15,11 +14,12 @@ from .evaluation import Evaluator, constraints_of
 from .front import ParetoFront, Status
 from .gradients import without_gradient
 from .hypervolume import choose, hypervolume, scaling
+from .identity import versions
 from .pile import STATIONARY, Pile
 from .problem import Problem, choice_field
+from .recorded import polished, projected
 from .sampling import apart
 from .search import Archive, Run
-from .spread import polish, project
 from .stationarity import Array, multipliers
 
 ROUNDS = 4
@@ -29,6 +29,8 @@ BATCH = 64
 _POOL = 2000  # greedy choice among more would take longer than it gains
 _STARTS = 24  # for the best value of a single objective
 _EXTREMES = 6  # for the best value of one objective among several
+_MOMENT = 0.3  # s, for designs of a search that was told to end
+_BATCH = 16  # of these at a time
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
@@ -37,28 +39,23 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     several = len(problem.objectives) > 1
     rows = _choice(problem, archive) if several else _spread(archive, 0, _STARTS)
     starts = by_sheet(evaluators, archive.sheet, archive.u, rows)
-    stopped = run.stop()
-    if stopped:  # before the first batch: what was screened, as it is
-        for index, u in starts:
-            pile.add(index, evaluators[index], polish(evaluators[index], u, pile.span, iterations=0))
-    elif several:
+    if several:
         starts += _extremes(evaluators, archive, pile.span)
+    run.pile = pile
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
-                stopped = stopped or run.stop()
-                if not stopped:
-                    batch = u[begin : begin + BATCH]
-                    pile.add(index, evaluators[index], polish(evaluators[index], batch, pile.span))
-                    run.tell("polishing", evaluators, archive, pile.values)
-        if stopped or attempt == ROUNDS - 1 or not len(pile):
+                batch = u[begin : begin + BATCH]
+                pile.add(index, evaluators[index], polished(evaluators[index], batch, pile.span))
+                run.tell("polishing", evaluators, archive, pile.values)
+        if attempt == ROUNDS - 1 or not len(pile):
             break
         starts = challengers(problem, evaluators, archive, pile, attempt)
         if not starts:
             break
     if not len(pile):
         return None
-    return _assemble(problem, evaluators, pile, run, "cancelled" if stopped or run.stop() else "done")
+    return _assemble(problem, evaluators, pile, run, "done")
 
 
 def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
@@ -70,10 +67,38 @@ def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, ru
     rows = _choice(problem, archive) if len(problem.objectives) > 1 else np.arange(min(len(archive), _STARTS))
     for index, u in by_sheet(evaluators, archive.sheet, archive.u, rows):
         valid = u[evaluators[index].valid(u)]
-        pile.add(index, evaluators[index], project(evaluators[index], valid, pile.span))
+        pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
     if not len(pile):
         return None
-    return _assemble(problem, evaluators, pile, run, "cancelled" if run.stop() else "done")
+    return _assemble(problem, evaluators, pile, run, "done")
+
+
+def so_far(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
+    """Return the front of what a search has found that was told to end: what it has polished, else as it was found.
+
+    Takes in no more than what a moment is enough for, the best of each objective first.
+    """
+    run.ledger.close()
+    pile, archive = run.pile, run.archive
+    if (pile is None or not len(pile)) and archive is not None and len(archive):
+        pile = Pile(span_of(problem, archive.values))
+        end = time.perf_counter() + _MOMENT
+        for rows in _batches(archive, _choice(problem, archive)):
+            for index, u in by_sheet(evaluators, archive.sheet, archive.u, rows):
+                valid = u[evaluators[index].valid(u)]
+                pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
+            if len(pile) and time.perf_counter() > end:
+                break
+    if pile is None or not len(pile):
+        return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
+    return _assemble(problem, evaluators, pile, run, "cancelled")
+
+
+def _batches(archive: Archive, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Return rows of an archive in batches, the best of each objective first."""
+    best = np.argmin(archive.values[rows], axis=0)
+    order = np.array(list(dict.fromkeys([*best.tolist(), *range(len(rows))])), dtype=np.int64)
+    return np.split(rows[order], range(_BATCH, len(rows), _BATCH))
 
 
 def span_of(problem: Problem, values: Array) -> Array:
@@ -114,7 +139,7 @@ def _spread(archive: Archive, column: int, count: int) -> NDArray[np.int64]:
 def _extremes(evaluators: list[Evaluator], archive: Archive, span: Array) -> list[tuple[int, Array]]:
     """Return, for each objective, designs improved in it alone."""
     return [
-        (index, polish(evaluators[index], u, span, chosen=(column,)).u)
+        (index, polished(evaluators[index], u, span, chosen=(column,)).u)
         for column in range(archive.values.shape[1])
         for index, u in by_sheet(evaluators, archive.sheet, archive.u, _spread(archive, column, _EXTREMES))
     ]
@@ -162,7 +187,7 @@ def _assemble(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Ru
         hypervolume=hypervolume(values, ideal, span),
         history=run.history(ideal, span),
         evaluations=evaluations,
-        seconds=run.seconds(),
+        seconds=run.ledger.seconds,
         seed=problem.settings.seed,
         versions=versions(),
         variants=tuple(variants.tolist()) if problem.variants else (),
@@ -214,21 +239,10 @@ def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Statu
         hypervolume=0.0,
         history=tuple(run.told),
         evaluations=sum(evaluator.evaluations for evaluator in evaluators),
-        seconds=run.seconds(),
+        seconds=run.ledger.seconds,
         seed=problem.settings.seed,
         versions=versions(),
     )
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of this software and of what computes its numbers."""
-    found = {"python": python_version()}
-    for name in ("slidercrank", "numpy", "scipy", "numba", "moocore", "pandas", "optuna", "cmaes"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "unknown"
-    return found
 
 
 def only(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, row: int) -> ParetoFront:

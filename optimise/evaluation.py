@@ -14,6 +14,7 @@ from .engine.engine import Engine
 from .engine.serial import Serial
 from .engine.shared import Shared
 from .judging import exactly, joined, quickly
+from .ledger import Ledger, floats, integers
 from .problem import Constraint, Objective, Problem
 
 FEASIBLE = 1e-9
@@ -81,8 +82,15 @@ class Evaluator:
     engine: where heavy batches are evaluated; it does not show in the results.
     """
 
-    def __init__(self, problem: Problem, sheet: Sheet, engine: Engine | None = None) -> None:
-        """Prepare the constraints that remain on the sheet, cheapest first."""
+    def __init__(
+        self, problem: Problem, sheet: Sheet, ledger: Ledger | None = None, engine: Engine | None = None
+    ) -> None:
+        """Prepare the constraints that remain on the sheet, cheapest first.
+
+        ledger: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
+        """
+        self.ledger = ledger or Ledger()
+        self.engine = engine or Serial()
         problem = problem.part(sheet.variant)
         self.problem = problem
         self.sheet = sheet
@@ -93,7 +101,7 @@ class Evaluator:
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
-        self.chunked = Chunked(Shared(self), engine or Serial())
+        self.chunked = Chunked(Shared(self), self.engine, self.ledger.poll)
 
     def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
         return Evaluator, (self.problem, self.sheet)
@@ -107,8 +115,18 @@ class Evaluator:
         violate a constraint by more than `band` have NaN objectives. Peaks are screened (see `model.screening`).
         """
         dimensions = self.sheet.dimensions(u)
+        rows, found, violation = self.ledger.step(
+            "screening", (u, np.array([band])), lambda: self._screened(dimensions, band), self
+        )
+        objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
+        objectives[integers(rows)] = floats(found)
+        return dimensions, objectives, floats(violation)
+
+    def _screened(self, dimensions: Array, band: float) -> tuple[NDArray[np.int64], Array, Array]:
+        """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
+        self.ledger.poll()
         violation = self._geometry_violation(dimensions)
-        self.evaluations += len(u)
+        self.evaluations += len(dimensions)
         # What is out of reach already needs no cycle computed.
         for costly in (False, True):
             constraints = [c for c in self.constraints if _costly(self.problem.quantity(c.quantity)) == costly]
@@ -118,15 +136,14 @@ class Evaluator:
                 for constraint, values in zip(constraints, found, strict=True):
                     violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
         rows = np.flatnonzero(violation <= band + FEASIBLE)
-        objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
+        objectives = np.zeros((len(rows), len(self.problem.objectives)))
         if len(rows):
             found = self._quick([objective.quantity for objective in self.problem.objectives], dimensions[rows])
             for column, (objective, values) in enumerate(zip(self.problem.objectives, found, strict=True)):
-                objectives[rows, column] = minimised(objective, values)
-            lost = ~np.isfinite(objectives[rows]).all(axis=1)
-            violation[rows[lost]] = np.inf
-            objectives[rows[lost]] = np.nan
-        return dimensions, objectives, violation
+                objectives[:, column] = minimised(objective, values)
+        had = np.isfinite(objectives).all(axis=1)
+        violation[rows[~had]] = np.inf
+        return rows[had], objectives[had], violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
         parts: list[list[Array]] = self.chunked(_quickly, tuple(names), dimensions)
@@ -161,6 +178,7 @@ class Evaluator:
 
     def exact(self, u: Array) -> tuple[Rows, Rows]:
         """Return objective rows and constraint rows, in unit-box coordinates, of points where `valid` holds."""
+        self.ledger.poll()
         dimensions = self.sheet.dimensions(u)
         jacobian = self.sheet.jacobian(u)
         self.evaluations += len(u)

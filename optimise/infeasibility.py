@@ -10,14 +10,16 @@ from numpy.typing import NDArray
 
 from .elimination import sheets
 from .evaluation import FEASIBLE, Evaluator, Rows, constraints_of
-from .polish import polish
+from .ledger import Ledger, floats
 from .problem import Constraint, Objective, Problem, Sense, Settings
+from .recorded import polished
 from .sampling import first_samples
 from .stationarity import Array
 
 _SAMPLES = 16384
 _RANKED = 2048
 _STARTS = 24
+_AT_ONCE = 64  # points evaluated between two questions whether to end
 
 
 @dataclass(frozen=True)
@@ -70,15 +72,16 @@ class _Violations:
         return goals, Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 
 
-def diagnose(problem: Problem, best: Callable[[Problem], float | None]) -> Diagnosis:
+def diagnose(problem: Problem, best: Callable[[Problem], float | None], ledger: Ledger | None = None) -> Diagnosis:
     """Return feasible designs after all, or which requirements contradict each other.
 
-    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. First the greatest
+    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger: of the search
+    that wants to know it. First the greatest
     relative violation is minimised from many starts, without eliminating anything. If it stays positive, each
     requirement in turn becomes the objective of the problem without it. Both searches are local from many starts:
     strong evidence; `certificate.infeasible` gives the proof where it can.
     """
-    feasible, turning, nearest = _least_violation(problem)
+    feasible, turning, nearest = _least_violation(problem, ledger)
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
@@ -116,22 +119,21 @@ def diagnose(problem: Problem, best: Callable[[Problem], float | None]) -> Diagn
     return Diagnosis(feasible, tuple(relaxations), message)
 
 
-def _least_violation(problem: Problem) -> tuple[Array, bool, str]:
+def _least_violation(problem: Problem, ledger: Ledger | None) -> tuple[Array, bool, str]:
     """Return feasible designs, whether any sampled design turns fully, and the design nearest to feasible in words."""
     feasible = []
     turning = False
     nearest, least = "", np.inf
     for index, sheet in enumerate(sheets(problem, eliminate=False)):
-        evaluator = Evaluator(problem, sheet)
+        evaluator = Evaluator(problem, sheet, ledger)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         u = u[evaluator.valid(u)]
         if not len(u):
             continue
         turning = True
         u = u[:: max(1, len(u) // _RANKED)]
-        pieces, _ = _Violations(evaluator).exact(u)
-        starts = u[np.argsort(pieces.values.max(axis=1, initial=0.0), kind="stable")[:_STARTS]]
-        found = polish(_Violations(evaluator), starts, np.ones(1))
+        starts = u[np.argsort(_greatest(evaluator, u), kind="stable")[:_STARTS]]
+        found = polished(evaluator, starts, np.ones(1), shown=_Violations(evaluator))
         dimensions = sheet.dimensions(found.u)
         feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
         row = int(np.argmin(found.values[:, 0]))
@@ -139,6 +141,19 @@ def _least_violation(problem: Problem) -> tuple[Array, bool, str]:
             least = float(found.values[row, 0])
             nearest = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * dimensions[row, :3]))
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest
+
+
+def _greatest(evaluator: Evaluator, u: Array) -> Array:
+    """Return the greatest relative violation (n,) of points."""
+    parts = []
+    for begin in range(0, len(u), _AT_ONCE):
+        some = u[begin : begin + _AT_ONCE]
+
+        def greatest(some: Array = some) -> tuple[Array]:
+            return (evaluator.exact(some)[1].values.max(axis=1, initial=0.0),)
+
+        parts.append(floats(evaluator.ledger.step("violation", (some,), greatest, evaluator)[0]))
+    return np.concatenate(parts)
 
 
 def _sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:

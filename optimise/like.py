@@ -66,7 +66,7 @@ def like(
     _require_new(row, constraints, ranges)
     asked, contradiction = extended(problem, constraints, ranges)
     evaluators = [Evaluator(asked, sheet) for sheet in sheets(asked)]
-    run = Run(asked, None, None, 1)
+    run = Run(asked, 1)
     if contradiction:
         return empty(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
     archive = explore(asked, evaluators, run)

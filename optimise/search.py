@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -13,12 +12,13 @@ from numpy.typing import NDArray
 from .evaluation import FEASIBLE, Evaluator
 from .front import Progress
 from .hypervolume import hypervolume, nondominated, scaling
+from .ledger import Ledger
 from .problem import Problem
 from .sampling import around, first_samples, generator, stacked
 from .stationarity import Array
 
 if TYPE_CHECKING:
-    from .methods.generation import Generation
+    from .pile import Pile
 
 FIRST = 16384
 """Designs of the first round, everywhere."""
@@ -92,23 +92,27 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 
 @dataclass
 class Run:
-    """What a search tells while it runs: its rounds, and the fronts that they ended with.
+    """What a search tells while it runs: its rounds, the fronts that they ended with, and what it would give by now.
 
-    past: generations of an earlier run, to go on from. keep: called with every new one; see `methods.population`.
+    ledger: of its steps, the one that its evaluators have. archive: what it has found. pile: what the polish has made
+    of that.
     """
 
     problem: Problem
-    progress: Callback | None
-    cancelled: Callable[[], bool] | None
     rounds: int
-    past: Sequence[Generation] = ()
-    keep: Callable[[Generation], None] | None = None
-    start: float = field(default_factory=time.perf_counter)
+    progress: Callback | None = None
+    ledger: Ledger = field(default_factory=Ledger)
     told: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)
+    archive: Archive | None = None
+    pile: Pile | None = None
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive, *more: Array) -> None:
-        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive."""
+        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive.
+
+        Of the last archive with designs the front is made if the search is told to end.
+        """
+        self.archive = archive if len(archive) else self.archive
         values = np.concatenate([archive.values, *more])
         values = values[nondominated(values)]
         self.fronts.append(values[:: 1 + len(values) // _SHOWN])
@@ -119,10 +123,10 @@ class Run:
             sum(evaluator.evaluations for evaluator in evaluators),
             archive.feasible,
             hypervolume(self.fronts[-1], *scaling(values)) if len(values) else 0.0,
-            self.seconds(),
+            self.ledger.seconds,
         )
         self.told.append(entry)
-        if self.progress is not None:
+        if self.ledger.turn() and self.progress is not None:
             self.progress(entry)
 
     def history(self, ideal: Array, span: Array) -> tuple[Progress, ...]:
@@ -132,19 +136,15 @@ class Run:
             for entry, front in zip(self.told, self.fronts, strict=True)
         )
 
-    def seconds(self) -> float:
-        """Return the time since the start."""
-        return time.perf_counter() - self.start
-
-    def stop(self) -> bool:
-        """Whether the search is to end after this round."""
-        return self.cancelled is not None and self.cancelled()
+    def front_so_far(self) -> Array:
+        """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
+        return self.fronts[-1] if self.fronts else np.zeros((0, len(self.problem.objectives)))
 
 
 def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
     """Return the archive of non-dominated screened designs: first samples, then zooms."""
-    run = run or Run(problem, None, None, 1 + len(WIDTHS))
-    archive = Archive.empty(len(problem.objectives))
+    run = run or Run(problem, 1 + len(WIDTHS))
+    archive = run.archive = Archive.empty(len(problem.objectives))
     samples = problem.settings.samples or FIRST
     loose = any(evaluator.loose for evaluator in evaluators)
     for attempt, band in enumerate(BANDS[1:] if loose else BANDS[:-1]):
@@ -155,7 +155,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             count = share(samples * 4**attempt, evaluators)
             points = first_samples(count, evaluator.dimension, problem.settings.seed, index)
             found += archive.screen(index, evaluator, points)
-        if found >= min(ENOUGH, samples) or run.stop():
+        if found >= min(ENOUGH, samples):
             break
     run.tell("sampling", evaluators, archive)
     if len(archive):
@@ -167,8 +167,6 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
     """Sample around sparse parts of the front, closer in every round."""
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
-        if run.stop():
-            return
         random = generator(problem.settings.seed, 1000, step)
         some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
         parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]

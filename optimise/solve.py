@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 
 from .certificate.infeasible import prove_infeasible
-from .deliver import as_found, deliver, empty, planned
+from .deliver import as_found, deliver, empty, planned, so_far
 from .elimination import Sheet, sheets
 from .engine.engine import Engine
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
+from .identity import identity_of
 from .infeasibility import diagnose
-from .methods.registry import require_eliminated, require_fit, require_resumable, search_of
+from .ledger import Cancelled, Ledger, Record
+from .methods.registry import require_eliminated, require_fit, search_of
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
 from .stationarity import Array
-
-if TYPE_CHECKING:
-    from .methods.generation import Generation
 
 
 def solve(
@@ -29,50 +28,55 @@ def solve(
     *,
     progress: Callback | None = None,
     cancelled: Callable[[], bool] | None = None,
-    resume: Sequence[Generation] = (),
-    keep: Callable[[Generation], None] | None = None,
+    resume: Sequence[Record] = (),
+    keep: Callable[[Record], None] | None = None,
     engine: Engine | None = None,
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
-    progress: called after every round. cancelled: asked between rounds; when it says so, what was found so far is
+    progress: called after every round. cancelled: asked many times a second; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
-    keep: called with each generation as soon as it is evaluated, by the methods that go generation by generation.
-    resume: all generations that an earlier run of this problem kept, in order, however many; the run goes on from them
-    and gives what it would have given without a stop, bit for bit.
+    keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
+    about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
+    many; the run goes on from them and gives what it would have given without a stop, bit for bit.
     engine: where heavy work is done, in this process by default; it does not show in the front. Who gives it closes it.
+
+    Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
     """
     require_fit(problem)
-    if resume:
-        require_resumable(problem)
-    method = problem.settings.method
     require_gradients(problem)
-    evaluators = [Evaluator(problem, sheet, engine) for sheet in sheets(problem)]
+    ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
+    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
+    require_eliminated(problem, evaluators)
+    run = Run(problem, 1, progress, ledger)
+    try:
+        return _searched(problem, evaluators, run)
+    except Cancelled:
+        return so_far(problem, evaluators, run)
+
+
+def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
+    method, finish = problem.settings.method, as_found
     if method == "auto":
-        run = Run(problem, progress, cancelled, 1 + len(WIDTHS) + planned(problem))
+        run.rounds, finish = 1 + len(WIDTHS) + planned(problem), deliver
         archive = explore(problem, evaluators, run)
-        front = deliver(problem, evaluators, archive, run) if len(archive) else None
     else:
-        require_eliminated(problem, evaluators)
-        run = Run(problem, progress, cancelled, 1, resume, keep)
         archive = search_of(method)(problem, evaluators, run)
-        front = as_found(problem, evaluators, archive, run) if len(archive) else None
+    front = finish(problem, evaluators, archive, run) if len(archive) else None
     if front is not None:
         return front
-    if run.stop():
-        return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
-    diagnosis = diagnose(problem, _best)
+    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger)
     if len(diagnosis.feasible) and method != "auto":
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
     if len(diagnosis.feasible):
-        archive = Archive.empty(len(problem.objectives))
+        archive = run.archive = Archive.empty(len(problem.objectives))
         _seed(archive, evaluators, diagnosis.feasible)
         zoom(problem, evaluators, archive, run)
         front = deliver(problem, evaluators, archive, run) if len(archive) else None
         if front is not None:
             return front
     message = diagnosis.message or _THIN
-    if diagnosis.message and prove_infeasible(problem, cancelled=cancelled):
+    if diagnosis.message and prove_infeasible(problem, poll=run.ledger.poll):
         message += "; proven: no design of the ranges meets them all"
     return empty(problem, evaluators, run, "infeasible", message)
 
@@ -88,12 +92,16 @@ _MISSED = (
 )
 
 
-def _best(problem: Problem) -> float | None:
-    """Return the best value (SI) of a problem's only objective, None where nothing is feasible."""
-    evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-    run = Run(problem, None, None, 1)
-    archive = explore(problem, evaluators, run)
-    front = deliver(problem, evaluators, archive, run) if len(archive) else None
+def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float | None:
+    """Return the best value (SI) of a problem's only objective, None where nothing is feasible.
+
+    run, evaluators: of the search that wants to know it.
+    """
+    own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
+    inner = Run(problem, 1, ledger=run.ledger)
+    archive = explore(problem, own, inner)
+    front = deliver(problem, own, archive, inner) if len(archive) else None
+    run.tell("diagnosing", evaluators, Archive.empty(len(run.problem.objectives)))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .engine.serial import Serial
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates, Polished
 from .polish import polish as polish_here
@@ -22,13 +23,15 @@ def polish(
     iterations: int = ITERATIONS,
 ) -> Polished:
     """Return what `polish.polish` gives, on the evaluator's engine where that is worth it."""
-    if not isinstance(evaluator, Evaluator):
+    if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
         return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations)
     return _shared_out(evaluator, _Asked(tuple(scale.tolist()), chosen, iterations), start)
 
 
 def project(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
     """Return what `polish.project` gives, on the evaluator's engine where that is worth it."""
+    if isinstance(evaluator.engine, Serial):
+        return project_here(evaluator, start, scale)
     return _shared_out(evaluator, _Asked(tuple(scale.tolist()), None, None), start)
 
 

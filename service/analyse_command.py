@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..model.errors import InputError
+from .design_analysis import analysis_of, numbers_of
 from .interruption import Interruption
 from .options import length_option, speed_option, value_option
-from .result import Row, json_text, rows_of
+from .result import Row, json_text
 from .run_folder import disk
 from .screen import console, give, say, waiting
 from .tables import show_design
@@ -73,11 +74,8 @@ def analyse(
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
     repeated.
     """
-    import numpy as np
-
     from ..model.linkage import Linkage
     from ..model.mechanism import Mechanism
-    from ..objectives.analysis import analyse as all_numbers
 
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
@@ -89,27 +87,35 @@ def analyse(
         length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
     ]
     own = () if problem is None else problem.own
-    row = rows_of(all_numbers(mechanism, np.array([lengths]), own=own).to_dict("list"))[0]
+    row = numbers_of(mechanism, lengths, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
-    design = [Topic(name, mechanism, linkage, options.get(name, {})) for name in topics]
     with Interruption() as interruption:
-        found = _numbers(design, notes, interruption, lenient=ALL in (show or ()))
+        found = analysis_of(
+            row,
+            mechanism,
+            linkage,
+            topics,
+            options=options,
+            notes=notes,
+            cancelled=interruption.asked,
+            lenient=ALL in (show or ()),
+        )
+    design = [topic for topic in found.topics if topic.name in found.found]
     if json:
-        give(json_text(row | found))
+        give(json_text(found.record()))
     else:
         screen = console()
         show_design(screen, row, only=[key for key in row if key not in TOLD_THERE])
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
         for topic in design:
-            if topic.name in found:
-                screen.print()
-                topic.show(screen, found[topic.name])
-    for note in notes:
+            screen.print()
+            topic.show(screen, found.found[topic.name])
+    for note in found.notes:
         say(note)
     if figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, [topic for topic in design if topic.name in found], figures)
+        _draw(problem, mechanism, linkage, row, design, figures)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
 
@@ -135,24 +141,6 @@ def _topic_options(
     if fluctuation is not None:
         options["flywheel"] = {"fluctuation": fluctuation}
     return options
-
-
-def _numbers(
-    topics: list[Topic], notes: list[str], interruption: Interruption, *, lenient: bool
-) -> dict[str, dict[str, Any]]:
-    """Return the numbers of each topic; lenient: a topic that this design has not is said in a note."""
-    found: dict[str, dict[str, Any]] = {}
-    for topic in topics:
-        if interruption.asked():
-            notes.append(f"interrupted; left out: {', '.join(t.name for t in topics if t.name not in found)}")
-            break
-        try:
-            found[topic.name] = topic.numbers(interruption.asked)
-        except InputError as error:
-            if not lenient:
-                raise
-            notes.append(f"{topic.name}: {error}")
-    return found
 
 
 def _draw(

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..model.errors import RunError
+from .finding_runs import find_run
 from .interruption import Interruption
 from .optimise_command import INTERRUPTED, Json, Runs
 from .result import Result, Row, csv_text, json_text, rows_of
 from .run_commands import Run
 from .run_folder import runs_place, write_file
 from .screen import console, error_console, give
-from .stored_runs import find_run, read_run
+from .stored_runs import read_run
 
 if TYPE_CHECKING:
     import numpy as np

@@ -24,13 +24,18 @@ from .balance_command import balance
 from .cases_command import cases
 from .certify_command import certify
 from .compare_command import compare
+from .doctor_command import doctor
 from .job_commands import check, schema
 from .like_command import like
 from .optimise_command import optimise
+from .queue_commands import cancel, delete, jobs, resume
 from .run_commands import export, front
 from .screen import give, say
 from .sections_command import sections
+from .serve_command import serve
+from .submit_command import submit, watch
 from .sweep_command import sweep
+from .worker_command import worker
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"
@@ -123,6 +128,15 @@ COMMANDS = (
     front,
     export,
     cases,
+    serve,
+    submit,
+    jobs,
+    watch,
+    cancel,
+    resume,
+    delete,
+    worker,
+    doctor,
 )
 for command in COMMANDS:
     app.command()(command)

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..model.errors import InputError, SlidercrankError
+from .finding_runs import find_run
 from .optimise_command import Json, Runs
 from .picking_options import minimised_values
 from .result import Result, json_text, wanted_record
 from .run_folder import disk, runs_place
 from .screen import console, give, say
-from .stored_runs import find_run, read_run
+from .stored_runs import read_run
 from .tables import print_table
 
 if TYPE_CHECKING:

@@ -11,13 +11,14 @@ import typer
 from ..model.errors import InputError
 from .columns import DIMENSIONS, find_column
 from .conditions import Condition, parse_condition
+from .finding_runs import find_run
 from .optimise_command import NOTHING_FEASIBLE, Json, Runs
 from .picking_options import minimised_values
 from .result import Result, Row, json_text, rows_of
 from .run_commands import Run
 from .run_folder import runs_place
 from .screen import console, give, say, waiting
-from .stored_runs import find_run, problem_of, read_run
+from .stored_runs import problem_of, read_run
 from .tables import print_table
 
 if TYPE_CHECKING:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,14 +16,13 @@ from .interruption import Interruption
 from .result import Result, json_text, result_of
 from .run_folder import RunFolder, disk, runs_place
 from .screen import console, give, progress_bar, say, waiting
-from .stored_generations import GenerationsFile, stopped_run
-from .stored_runs import find_run
+from .stores import Address, open_store
 from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ..optimise.front import ParetoFront, Progress
-    from ..optimise.methods.generation import Generation
     from ..optimise.problem import Problem
+    from .store import Claim, Store
 
 NOTHING_FEASIBLE, INTERRUPTED = 3, 130
 _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
@@ -40,6 +41,7 @@ def optimise(
         str | None, typer.Option(metavar="RUN", help="Instead of a job: go on with an interrupted or cancelled run.")
     ] = None,
     runs: Runs = None,
+    store: Address = None,
     designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of everything random.")] = None,
     json: Json = False,
@@ -47,38 +49,38 @@ def optimise(
 ) -> None:
     """Find the Pareto front of a job.
 
-    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops after the round that is
-    under way and keeps what was found. Evolutionary methods and plain sampling can then go on with --resume, in the
-    folder of that run, and end as if they had never stopped.
+    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops within about a second
+    and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
+    The run is in the store too, where `jobs` and the service see it.
     """
-    from ..optimise.job import files_beside
+    from .own_run import told
+    from .pulse import Pulse
+    from .worker import versions_file
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
-    past: list[Generation] = []
-    if job is not None:
-        problem = _problem(job, designs, seed)
-        folder = RunFolder(runs_place(runs), problem.name)
-    else:
-        if designs is not None or seed is not None:
-            raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
-        stopped = find_run(resume or "", runs_place(runs))
-        problem, past = stopped_run(stopped)
-        folder = RunFolder.again(stopped)
-    with Interruption() as interruption, folder as run:
-        run.log(f"command: {' '.join(sys.argv[1:])}")
+    if resume is not None and (designs is not None or seed is not None):
+        raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+    with contextlib.ExitStack() as opened:
         if job is not None:
-            run.keep_job(job, files_beside(job))
-        kept = GenerationsFile(run.path, problem.settings, past)
-        try:
-            front = _solve(problem, run, interruption, kept)
-        finally:
-            kept.write()
+            problem, tables = _problem(job, designs, seed)
+            jobs = opened.enter_context(open_store(store, runs))
+            begin = _new(job, jobs, problem, tables, runs_place(runs))
+        else:
+            jobs = opened.enter_context(open_store(store, runs))
+            begin = _again(resume or "", jobs, runs_place(runs))
+        interruption = opened.enter_context(Interruption())
+        run, problem, claim = opened.enter_context(begin)
+        opened.enter_context(told(claim))
+        opened.enter_context(Pulse(claim))
+        run.log(f"command: {' '.join(sys.argv[1:])}")
+        run.log(f"job {claim.job.id} of the store {jobs.name}")
+        front = _solve(problem, run, interruption, claim)
         result = result_of(front, str(run.path))
-        run.keep_result(result, _versions(front))
+        versions = _versions(front)
+        run.keep_result(result, versions)
+        claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
-        if result.status != "cancelled":
-            kept.remove()
         if figures and result.status == "done":
             _draw(front, run, interruption)
     if json:
@@ -87,9 +89,35 @@ def optimise(
             say(f"slidercrank: {result.message}")
     else:
         show_result(result)
-    if result.status == "cancelled" and kept.generations:
+    if result.status == "cancelled":
         say(f"go on with: slidercrank optimise --resume {run.path.name}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
+
+
+@contextlib.contextmanager
+def _new(
+    job: Path, store: Store, problem: Problem, tables: Mapping[str, Any], place: Path
+) -> Iterator[tuple[RunFolder, Problem, Claim]]:
+    """Enter the run of a new job."""
+    from ..optimise.job import files_beside
+    from .own_run import begin, files_of
+
+    with disk(job.parent):
+        files = files_of(job, files_beside(job))
+    with RunFolder(place, problem.name) as folder:
+        yield folder, problem, begin(store, folder, tables, problem.name, files)
+
+
+@contextlib.contextmanager
+def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Problem, Claim]]:
+    """Enter a run that was stopped."""
+    from ..optimise.job import parse_job
+    from .own_run import folder_of, stopped_job, take_up
+
+    job = stopped_job(store, text, place)
+    with folder_of(store, job, place) as folder:
+        problem = parse_job(store.tables(job.id), folder=folder.path)
+        yield folder, problem, take_up(store, job)
 
 
 def show_result(result: Result) -> None:
@@ -128,27 +156,27 @@ def _contents(folder: Path) -> list[str]:
     return [*names, f"figures/ ({pictures} pictures)"] if pictures else names
 
 
-def _problem(job: Path, designs: int | None, seed: int | None) -> Problem:
-    from ..optimise.job import load_job
+def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:
+    """Return what a job file states, and its tables, both with the options that were given."""
+    from ..optimise.job import load_job, read_job
 
-    problem = load_job(job)
+    problem, tables = load_job(job), read_job(job)
     settings = problem.settings
-    return replace(
-        problem,
-        settings=replace(
-            settings,
-            designs=settings.designs if designs is None else designs,
-            seed=settings.seed if seed is None else seed,
-        ),
-    )
+    if designs is not None:
+        settings = replace(settings, designs=designs)
+    if seed is not None:
+        settings = replace(settings, seed=seed)
+    given = {"designs": settings.designs, "seed": settings.seed}
+    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **given}}
 
 
-def _solve(problem: Problem, run: RunFolder, interruption: Interruption, kept: GenerationsFile) -> ParetoFront:
+def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim) -> ParetoFront:
     from ..optimise.solve import solve
 
     with progress_bar() as show:
 
         def tell(at: Progress) -> None:
+            claim.tell(at)
             run.log(
                 f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
                 f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
@@ -158,9 +186,9 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, kept: G
         return solve(
             problem,
             progress=tell,
-            cancelled=interruption.asked,
-            resume=tuple(kept.generations),
-            keep=kept.keep,
+            cancelled=lambda: interruption.asked() or claim.cancel_asked,
+            resume=tuple(claim.generations()),
+            keep=claim.keep,
         )
 
 

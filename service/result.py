@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 Cell = float | str | None
 Row = dict[str, Cell]
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # how a cell begins that spreadsheets compute (OWASP, CSV injection)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,19 +162,28 @@ def json_text(value: Any) -> str:
     return json.dumps(finite(value), indent=2, allow_nan=False) + "\n"
 
 
-def csv_text(rows: Iterable[Row]) -> str:
+def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     """Return the rows as CSV (RFC 4180 with plain line ends): JSON keys as header, numbers at full precision.
 
-    Infinity is written inf; what is not defined stays empty.
+    Infinity is written inf; what is not defined stays empty. spreadsheet: put an apostrophe before text that a
+    spreadsheet would take for a formula; such a cell does not read back as it was.
     """
     rows = list(rows)
     out = io.StringIO()
     if rows:
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(rows[0])
+        writer.writerow([_inert(key) for key in rows[0]] if spreadsheet else rows[0])
         for row in rows:
-            writer.writerow([_csv_cell(cell) for cell in row.values()])
+            cells = row.values()
+            if spreadsheet:
+                writer.writerow([_inert(cell) if isinstance(cell, str) else _csv_cell(cell) for cell in cells])
+            else:
+                writer.writerow([_csv_cell(cell) for cell in cells])
     return out.getvalue()
+
+
+def _inert(text: str) -> str:
+    return f"'{text}" if text.startswith(_FORMULA) else text
 
 
 def _csv_cell(cell: Cell) -> str:

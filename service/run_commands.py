@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..model.errors import InputError
+from .finding_runs import find_run
 from .optimise_command import NOTHING_FEASIBLE, Json, Runs, show_result
 from .result import Result, csv_text, json_text
 from .run_folder import runs_place, write_file
 from .screen import console, give, say
-from .stored_runs import find_run, read_run
+from .stored_runs import read_run
 from .tables import ROWS, show_design, show_front
 
 Run = Annotated[
@@ -73,6 +73,7 @@ def front(
 
     --knee, --topsis and --lexicographic choose among the designs that meet --where.
     """
+    from .choosing import chosen_rows, none_meets, part_of
     from .columns import find_columns
     from .picking_options import picked_row
 
@@ -84,12 +85,12 @@ def front(
         raise typer.Exit(NOTHING_FEASIBLE)
     keys = list(result.designs[0])
     shown = find_columns(columns, keys) if columns else None
-    chosen = _chosen(result, where or [], sort, reverse)
+    chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
     one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if one is not None:
         chosen = [one]
     if json:
-        picked = _part(result, chosen)
+        picked = part_of(result, chosen)
         record = picked.record()
         if shown is not None:
             names = [column.key for column in shown]
@@ -106,7 +107,7 @@ def front(
         screen.print(f"{result.name}: {_count(chosen, result)}", style="bold", soft_wrap=True)
         show_front(screen, result, chosen, columns=shown, most=rows)
     if not chosen:
-        say(f"slidercrank: none of the {len(result.designs)} designs meets {_conditions(where or [])}")
+        say(f"slidercrank: {none_meets(result, where or [])}")
         raise typer.Exit(NOTHING_FEASIBLE)
 
 
@@ -134,39 +135,7 @@ def export(
             say(f"{target}: {len(result.designs)} designs")
 
 
-def _chosen(result: Result, where: list[str], sort: str | None, reverse: bool) -> list[int]:
-    from .columns import find_column
-    from .conditions import order_key, select
-
-    chosen = select(result.designs, where)
-    if sort is not None:
-        key = find_column(sort, list(result.designs[0])).key
-        wanted = next((item for item in result.objectives if item.column == key), None)
-        if wanted is not None:
-            chosen.sort(key=lambda row: wanted.rank(result.designs[row]))
-        else:
-            chosen.sort(key=lambda row: order_key(result.designs[row][key]))
-    return chosen[::-1] if reverse else chosen
-
-
-def _part(result: Result, chosen: list[int]) -> Result:
-    """Return the result with only these designs, and only those marks that are among them."""
-    place = {row: index for index, row in enumerate(chosen)}
-    knee = place.get(result.knee) if result.knee is not None else None
-    return replace(
-        result,
-        designs=[result.designs[row] for row in chosen],
-        extremes={name: place[row] for name, row in result.extremes.items() if row in place},
-        knee=knee,
-        trade_offs=[] if knee is None else result.trade_offs,
-    )
-
-
 def _count(chosen: list[int], result: Result) -> str:
     if len(chosen) == len(result.designs):
         return f"{len(chosen)} designs"
     return f"{len(chosen)} of {len(result.designs)} designs"
-
-
-def _conditions(where: list[str]) -> str:
-    return " and ".join(text.strip() for text in where)

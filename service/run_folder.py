@@ -7,7 +7,6 @@
         figures/        PNG files
         versions.json   of this software and of what computed the numbers
         log.txt         what happened when
-        generations.npz only while the run can go on from them: what it has evaluated
         UNFINISHED      only until everything else is on the disk
 
 The folder appears under its name with UNFINISHED already in it, and losing that file is the last thing that happens.
@@ -23,7 +22,7 @@ import shutil
 import time
 import traceback
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -46,6 +45,11 @@ def slug(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:40].rstrip("-") or "run"
 
 
+def run_name(name: str) -> str:
+    """Return the name of a folder for a run that begins now: the time, then the name of its job."""
+    return f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}"
+
+
 class RunFolder:
     """A run being written. Every method raises `RunError` when the disk refuses.
 
@@ -64,7 +68,7 @@ class RunFolder:
             hidden.mkdir()
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run still goes on, or was interrupted.\n")
-                self.path = _rename(hidden, place / f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}")
+                self.path = _rename(hidden, place / run_name(name))
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
@@ -99,14 +103,21 @@ class RunFolder:
         with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
             file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {line}\n")
 
-    def keep_job(self, job: Path, beside: Sequence[Path] = ()) -> None:
-        """Copy the job file, and the files beside it that it names, under their own names."""
-        with disk(self.path):
-            _write(self.path / f"job{job.suffix.lower()}", job.read_bytes())
-            for file in beside:
-                kept = self.path / file.relative_to(job.parent)
+    def rename(self, name: str) -> None:
+        """Give the folder another name. Raises `RunError` where that is taken."""
+        if name != self.path.name:
+            with disk(self.path.parent):
+                self.path = self.path.rename(self.path.with_name(name))
+
+    def keep_files(self, files: Mapping[str, bytes]) -> None:
+        """Write files under their names, which may lead into folders but not out of this one."""
+        for name, content in files.items():
+            kept = self.path / name
+            if not kept.resolve().is_relative_to(self.path.resolve()):
+                raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
+            with disk(self.path):
                 kept.parent.mkdir(parents=True, exist_ok=True)
-                _write(kept, file.read_bytes())
+                _write(kept, content)
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""

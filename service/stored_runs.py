@@ -1,4 +1,4 @@
-"""Finding and reading runs that are on the disk."""
+"""Reading runs that are on the disk."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..model.errors import InputError, JobError, RunError
+from ..model.errors import JobError, RunError
 from .result import Result, Row, Wanted, finite, rows_from_csv
 from .run_folder import MARK
 
@@ -15,59 +15,20 @@ if TYPE_CHECKING:
     from ..optimise.problem import Problem
 
 
-def find_run(text: str, place: Path) -> Path:
-    """Return the folder of a run: a path, a name in the place of runs, the unique start of one, or "latest".
-
-    Raises `InputError` when nothing, or more than one run, answers to it.
-    """
-    names = sorted((run.name for run in _runs(place)), key=lambda name: (name[:15], _age(place, name)))
-    if text == "latest":
-        if not names:
-            raise InputError(f"there is no run in {place} yet; run `slidercrank optimise JOB` first")
-        return place / names[-1]
-    if text in names:
-        return place / text
-    path = Path(text)
-    if text and path.is_dir():
-        return path
-    if text and path.exists():
-        raise InputError(f"a run is a folder; got the file {text}; name its folder")
-    matches = [name for name in names if name.startswith(text)] if text else []
-    if len(matches) == 1:
-        return place / matches[0]
-    if matches:
-        some = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
-        raise InputError(f"the start of a run's name must be unique; {text!r} fits {some}; give more of it")
-    last = f"; the latest is {names[-1]}" if names else ""
-    raise InputError(f"there is no run {text!r}, neither as a folder nor in {place}{last}")
-
-
-def _runs(place: Path) -> list[Path]:
-    if not place.is_dir():
-        return []
-    return [
-        folder
-        for folder in place.iterdir()
-        if not folder.name.startswith(".") and ((folder / MARK).is_file() or (folder / "front.json").is_file())
-    ]
-
-
-def _age(place: Path, name: str) -> int:
-    return (place / name).stat().st_mtime_ns
-
-
 def read_run(folder: Path) -> Result:
     """Return what a run found. Raises `RunError` for one that is unfinished, damaged, or no run."""
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
-            way = f"go on with `slidercrank optimise --resume {folder.name}`"
-            way = way if (folder / "generations.npz").is_file() else "run its job again"
-            raise RunError(f"the run {folder} is unfinished: {text}; {way}")
+            raise RunError(
+                f"the run {folder} is unfinished: {text}; go on with `slidercrank optimise --resume {folder.name}`"
+            )
         if not (folder / "front.json").is_file():
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
+        if finite(rows) != record["designs"]:
+            raise ValueError("front.csv and front.json differ")
         result = result_from(record, rows, str(folder))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
@@ -76,12 +37,10 @@ def read_run(folder: Path) -> Result:
 
 
 def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
-    """Return the result of a record as front.json has it, with the rows of front.csv, which also have infinities.
+    """Return the result of a record as front.json has it, designs apart, with the rows of its designs.
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
-    if finite(rows) != record["designs"]:
-        raise ValueError("front.csv and front.json differ")
     wanted = tuple(Wanted(**item) for item in record["objectives"])
     result = Result(
         run=run,

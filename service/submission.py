@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
-from .store import MOST_ATTEMPTS, Job, Store
+from .allowed_quantities import require_allowed
+from .result import json_text
+from .store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
 
 
 def submit(
@@ -15,21 +17,33 @@ def submit(
     priority: int = 0,
     key: str | None = None,
     most_attempts: int = MOST_ATTEMPTS,
-    most_seconds: float | None = None,
+    limits: Limits = NO_LIMITS,
+    source: Artefact | None = None,
+    allowed_quantities: Collection[str] = (),
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
-    Raises `JobError` for a job that is not valid, or that names functions of its own: workers do not run those of
-    others.
+    source: the job file as it was given, "job.toml" or "job.json"; without one it is made from the tables.
+
+    allowed_quantities: functions, "module:function", that the job may name as quantities.
+
+    Raises `JobError` for a job that is not valid, or that names other functions: workers do not run those of others.
     """
     from ..optimise.job import parse_job
 
-    problem = parse_job(tables, allow_user_code=False)
+    require_allowed(tables, allowed_quantities)
+    problem = parse_job(tables, allow_user_code=bool(allowed_quantities))
     return store.submit(
         tables,
         name=problem.name,
         priority=priority,
         key=key,
         most_attempts=most_attempts,
-        most_seconds=most_seconds,
+        limits=limits,
+        files=[source or job_json(tables)],
     )
+
+
+def job_json(tables: Mapping[str, Any]) -> Artefact:
+    """Return the file "job.json" of a job given by its tables."""
+    return Artefact(name="job.json", media_type="application/json", content=json_text(tables).encode())

@@ -18,14 +18,12 @@ _BATCH = 2048
 _MOST = 400_000  # boxes bounded: the same job gives the same answer unless the machine is very slow
 
 
-def prove_infeasible(
-    problem: Problem, *, seconds: float = SECONDS, cancelled: Callable[[], bool] | None = None
-) -> bool:
+def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callable[[], None] = lambda: None) -> bool:
     """Return whether it is proven that no design of the job's ranges meets all its requirements.
 
     False when a design meets them all, or when the budget ends first: then nothing is known. Requirements that cannot
     be bounded over a range of designs are not used: the others must contradict each other. False, too, where more than
-    the three dimensions varies.
+    the three dimensions varies. poll: called many times a second; what it raises ends the search.
     """
     if problem.mechanism.varying or problem.choices:
         return False
@@ -36,6 +34,7 @@ def prove_infeasible(
         fresh = [(index, *tree.first(index)) for index in range(len(tree.sheets))]
         while fresh:
             for index, lower, upper in fresh:
+                poll()
                 boxes = tree.bound(index, lower, upper, threads)
                 n = len(boxes.lower)
                 if n and (tree.sheets[index].evaluator.screen(boxes.trial)[2] <= FEASIBLE).any():
@@ -45,7 +44,7 @@ def prove_infeasible(
                 return True
             late = time.perf_counter() - start > seconds or tree.bounded > _MOST
             rows = tree.largest(_BATCH)
-            if late or not len(rows) or (cancelled is not None and cancelled()):
+            if late or not len(rows):
                 return False
             fresh = tree.halves(rows)
             tree.keep(np.setdiff1d(np.arange(len(tree)), rows))

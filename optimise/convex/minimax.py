@@ -23,7 +23,6 @@ to the residual (Karush-Kuhn-Tucker). The proof is local; that no other valley i
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,10 +31,11 @@ from ...model.errors import InputError
 from ...objectives.cycle_peak import CyclePeak
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator
+from ..ledger import floats
 from ..methods.registry import budget
 from ..problem import Problem
 from ..sampling import apart, first_samples
-from ..search import SAMPLES, WIDTHS, Archive, Run, explore
+from ..search import SAMPLES, Archive, Run, explore
 from ..stationarity import Array
 from .scp import Descent, Point
 
@@ -88,9 +88,7 @@ class MinimaxResult:
         return np.array([piece.crank_angle for piece in self.pieces if piece.crank_angle is not None])
 
 
-def minimise_peak(
-    problem: Problem, *, starts: int = STARTS, cancelled: Callable[[], bool] | None = None
-) -> MinimaxResult:
+def minimise_peak(problem: Problem, *, starts: int = STARTS) -> MinimaxResult:
     """Return the least value of a problem's only objective with its active crank angles, multipliers and residual.
 
     Any quantity can be the objective; one that is the greatest of pieces is what this is for. starts: designs to start
@@ -100,9 +98,11 @@ def minimise_peak(
         names = ", ".join(objective.quantity for objective in problem.objectives)
         raise InputError(f"the minimax takes one objective; got {names}; keep one and constrain the others")
     evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-    run = Run(problem, None, cancelled, 1 + len(WIDTHS))
-    archive = explore(problem, evaluators, run)
-    scale, found = descend(problem, evaluators, archive, starts=starts, cancelled=run.stop)
+    archive = explore(problem, evaluators)
+    scale, begin = _starts(problem, evaluators, archive, starts)
+    descents = [Descent(evaluator, scale) for evaluator in evaluators]
+    ends = ((index, descents[index].run(u)) for index, u in begin)
+    found = [(index, end) for index, end in ends if end.violation <= FEASIBLE]
     if not found:
         raise InputError(
             f"no design of {problem.name!r} that meets all requirements was found; widen the ranges or the limits"
@@ -114,16 +114,30 @@ def minimise_peak(
 def search(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the optima that the descents ended in, each a local one; the method "minimax" of a job."""
     screened = explore(_within_budget(problem), evaluators, run)
-
-    def spent() -> bool:
-        return run.stop() or sum(evaluator.evaluations for evaluator in evaluators) >= budget(problem)
-
+    scale, begin = _starts(problem, evaluators, screened, STARTS)
+    run.rounds = len(run.told) + len(begin)
+    descents = [Descent(evaluator, scale) for evaluator in evaluators]
     archive = Archive.empty(1)
-    scale, found = descend(problem, evaluators, screened, starts=STARTS, cancelled=spent)
-    for index, point in found:
-        archive.take(index, point.u[None], np.array([[point.top * scale]]))
-    run.tell("descending", evaluators, archive)
+    for index, u in begin:
+        if sum(evaluator.evaluations for evaluator in evaluators) >= budget(problem):
+            break
+        end, top, violation = _end(evaluators[index], descents[index], u)
+        if violation <= FEASIBLE:
+            archive.take(index, end[None], np.array([[top * scale]]))
+        run.tell("descending", evaluators, archive)
     return archive
+
+
+def _end(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
+    """Return where the descent from a point ends, with its greatest piece and its violation; a step of the ledger."""
+
+    def compute() -> tuple[Array, Array]:
+        point = descent.run(u)
+        return point.u, np.array([point.top, point.violation])
+
+    end, measures = evaluator.ledger.step("descent", (u, np.array([descent.scale])), compute, evaluator)
+    top, violation = floats(measures).tolist()
+    return floats(end), top, violation
 
 
 def _within_budget(problem: Problem) -> Problem:
@@ -135,30 +149,27 @@ def _within_budget(problem: Problem) -> Problem:
     return replace(problem, settings=replace(problem.settings, samples=samples))
 
 
-def descend(
-    problem: Problem, evaluators: list[Evaluator], archive: Archive, *, starts: int, cancelled: Callable[[], bool]
-) -> tuple[float, list[tuple[int, Point]]]:
-    """Return the objective's scale, and sheet and end of the descents that became feasible.
+def _starts(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, count: int
+) -> tuple[float, list[tuple[int, Array]]]:
+    """Return the objective's scale, and sheet and point of the designs to start from.
 
-    They start from the best designs of an archive that are apart, or where it is empty from what violates least.
+    They are the best designs of an archive that are apart, or where it is empty what violates least.
     """
-    rows = apart(archive.values[:, 0], archive.u, archive.sheet, starts)
+    rows = apart(archive.values[:, 0], archive.u, archive.sheet, count)
     begin = [(int(archive.sheet[row]), archive.u[row]) for row in rows]
-    begin = begin or _nearest(evaluators, starts)
+    begin = begin or _nearest(evaluators, count)
     begin = [(index, u[: evaluators[index].dimension]) for index, u in begin]
     values = archive.values[:, 0]
     if not len(values):
-        values = np.array([evaluators[index].exact(u[None])[0].values.max() for index, u in begin])
-    scale = _scale(problem, values)
-    descents = [Descent(evaluator, scale) for evaluator in evaluators]
-    found = []
-    for index, u in begin:
-        if cancelled():
-            break
-        point = descents[index].run(u)
-        if point.violation <= FEASIBLE:
-            found.append((index, point))
-    return scale, found
+        values = np.array([_top(evaluators[index], u) for index, u in begin])
+    return _scale(problem, values), begin
+
+
+def _top(evaluator: Evaluator, u: Array) -> float:
+    """Return the greatest piece at a point; a step of the ledger."""
+    found = evaluator.ledger.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),), evaluator)
+    return float(found[0][0])
 
 
 def _scale(problem: Problem, values: Array) -> float:

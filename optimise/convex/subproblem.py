@@ -90,6 +90,7 @@ class Subproblem:
             try:
                 self.programme.solve(
                     solver=cp.CLARABEL,
+                    warm_start=False,  # a descent must not depend on those before it: a resumed run leaves them out
                     tol_gap_abs=_TOLERANCE,
                     tol_gap_rel=_TOLERANCE,
                     tol_feas=_TOLERANCE,

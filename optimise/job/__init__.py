@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from functools import cache
 from os import PathLike
@@ -25,7 +26,7 @@ from .own import declared, modules_beside
 from .target_motion import points_file, with_points
 from .varying import with_values
 
-__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job"]
+__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job"]
 
 
 def load_job(
@@ -40,10 +41,24 @@ def load_job(
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
     schema, or contradicts itself.
     """
+    data = read_job(path)
+    with _named(path):
+        return parse_job(data, values, folder=Path(path).parent, allow_user_code=allow_user_code)
+
+
+def read_job(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return the tables of a job file, with the points of a file beside it in them; they are not checked.
+
+    Raises JobError for files that cannot be read.
+    """
+    with _named(path):
+        return with_points(read(Path(path)), Path(path).parent)
+
+
+@contextlib.contextmanager
+def _named(path: str | PathLike[str]) -> Iterator[None]:
     try:
-        folder = Path(path).parent
-        data = with_points(read(Path(path)), folder)
-        return parse_job(data, values, folder=folder, allow_user_code=allow_user_code)
+        yield
     except JobError as error:
         name = str(path)
         raise JobError(f"{name if name.isprintable() else shown(name)}: {error}") from None

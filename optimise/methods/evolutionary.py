@@ -11,13 +11,13 @@ share of the budget for each would be wasted on a sheet without good designs, wh
 
 Selection and crossover need only the last generation and what that was bred from. So each generation is a new Optuna
 study in memory with these designs and a new sampler: the cost of a generation stays the same, and it depends on nothing
-but what is kept.
+but them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -76,16 +76,24 @@ def divisions(population: int, objectives: int) -> int:
 
 def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
     with quiet():
-        breed = _Genetic(problem, evaluators, sampler, options)
+        breed = _Genetic(problem, evaluators, run.ledger.poll, sampler, options)
         return evolve(problem, evaluators, run, breed, size=breed.size)
 
 
 class _Genetic:
     """Breeds by one of Optuna's genetic samplers."""
 
-    def __init__(self, problem: Problem, evaluators: list[Evaluator], sampler: Any, options: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        evaluators: list[Evaluator],
+        poll: Callable[[], None],
+        sampler: Any,
+        options: dict[str, Any],
+    ) -> None:
         from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
 
+        self.poll = poll
         self.sampler = sampler
         self.size = population_size(problem)
         self.seed = problem.settings.seed
@@ -106,7 +114,7 @@ class _Genetic:
             # To the sampler all of them are one generation: it selects from both parts alike.
             mark = {sampler._get_generation_key(): 0}
             study.add_trials(stored(self.space, history, pool, mark))
-        sheet, u = asked(study, self.space, self.size)
+        sheet, u = asked(study, self.space, self.size, self.poll)
         return Brood(sheet, u, _survivors(study, sampler, pool))
 
 

@@ -1,4 +1,4 @@
-"""What a method that goes generation by generation has done: all that it needs to go on as if it had never stopped."""
+"""What a method that goes generation by generation has done: all that the next generation is bred from."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.errors import InputError
 from ..stationarity import Array
 
 Rows = NDArray[np.int64]
@@ -41,17 +40,6 @@ class Generation(Brood):
 
     values: Array
     violation: Array
-
-    def __post_init__(self) -> None:
-        n = len(self.u)
-        shapes = (self.sheet.shape == (n,), self.u.ndim == 2, self.values.ndim == 2 and len(self.values) == n)
-        if not n or not all(shapes) or self.violation.shape != (n,) or self.parents.ndim != 1:
-            raise InputError(
-                "a generation needs one sheet, one point, one set of objectives and one violation for each of its "
-                f"designs; got {len(self.sheet)}, {n}, {len(self.values)} and {len(self.violation)}; start the run anew"
-            )
-        if not np.isfinite(self.u).all() or np.isnan(self.violation).any():
-            raise InputError("the points of a generation and their violations must be numbers; start the run anew")
 
 
 @dataclass(frozen=True)

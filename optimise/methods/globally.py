@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ..deliver import span_of
 from ..evaluation import FEASIBLE, Evaluator
+from ..ledger import floats
 from ..problem import Problem
 from ..sampling import generator
 from ..search import Archive, Run
 from ..stationarity import Array
-from .local import by_slsqp
+from .local import by_slsqp, found_by
 from .registry import budget
 from .scalar import Form, Programme
 
@@ -41,19 +43,23 @@ class _Exact:
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        violation = np.full(len(u), _FAR)
+        values, violation = map(floats, self.evaluator.ledger.step("points", (u,), lambda: self._at(u), self.evaluator))
+        self.known = {
+            point.tobytes(): value
+            for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
+            if met and np.isfinite(value)
+        }
+        return np.where(violation <= FEASIBLE, 0.0, violation)
+
+    def _at(self, u: Array) -> tuple[Array, Array]:
+        """Return objective and violation (n,) of points, infinite and far where no linkage turns fully."""
+        values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
         valid = np.flatnonzero(self.evaluator.valid(u))
-        self.known = {}
         if len(valid):
             goals, limits = self.evaluator.exact(u[valid])
-            values = goals.values.max(axis=1)
+            values[valid] = goals.values.max(axis=1)
             violation[valid] = np.minimum(limits.values.max(axis=1, initial=0.0), _FAR)
-            self.known = {
-                u[row].tobytes(): float(value)
-                for row, value in zip(valid.tolist(), values, strict=True)
-                if violation[row] <= FEASIBLE and np.isfinite(value)
-            }
-        return np.where(violation <= FEASIBLE, 0.0, violation)
+        return values, violation
 
     def objective(self, u: Array) -> Array:
         """Return the minimised objective (n,) of points that were found feasible."""
@@ -74,7 +80,7 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
         archive.screen(
             index, evaluator, np.zeros((1, 0)) if evaluator.dimension == 0 else np.zeros((0, evaluator.dimension))
         )
-        if evaluator.dimension and not run.stop():
+        if evaluator.dimension:
             _evolve(problem, evaluators, index, archive, run)
     run.tell("evolving", evaluators, archive)
     return archive
@@ -99,7 +105,7 @@ def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: 
             return False
         archive.screen(index, evaluator, np.asarray(intermediate_result.x)[None])
         run.tell("evolving", evaluators, archive)
-        return run.stop()
+        return False
 
     minimised: Any = evolve  # its stubs know no function of many points
     found = minimised(
@@ -135,7 +141,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     for index, evaluator in enumerate(evaluators):
         if evaluator.dimension == 0:
             archive.screen(index, evaluator, np.zeros((1, 0)))
-        elif not run.stop():
+        else:
             for u, values in _basins(problem, evaluators, index):
                 archive.take(index, u[None], values[None])
                 archive.feasible += 1
@@ -143,8 +149,8 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     return archive
 
 
-def _basins(problem: Problem, evaluators: list[Evaluator], index: int) -> list[tuple[Array, Array]]:
-    """Return the optima of a sheet with their objectives (1,), SI."""
+def _basins(problem: Problem, evaluators: list[Evaluator], index: int) -> Iterator[tuple[Array, Array]]:
+    """Yield the optima of a sheet with their objectives (1,), SI."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]
@@ -164,13 +170,11 @@ def _basins(problem: Problem, evaluators: list[Evaluator], index: int) -> list[t
     basins = np.clip(np.atleast_2d(getattr(found, "xl", np.zeros((0, evaluator.dimension)))), 0.0, 1.0)
     basins = basins[evaluator.valid(basins)][:_BASINS] if len(basins) else basins
     if not len(basins):
-        return []
+        return
     values = evaluator.screen(basins, band=np.inf)[1]
     ideal, span = np.nanmin(values, axis=0), span_of(problem, values)
-    optima = []
     for start in basins:
-        programme = Programme(evaluator, Form.single(1, 0), ideal, span)
-        u = by_slsqp(programme, start)
-        if u is not None:
-            optima.append((u, programme.objectives(u) * span + ideal))
-    return optima
+        optimum = found_by(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start)
+        if optimum is not None:
+            u, scaled = optimum
+            yield u, scaled * span + ideal

@@ -8,7 +8,7 @@ from ..deliver import span_of
 from ..evaluation import Evaluator
 from ..problem import Problem
 from ..search import Archive, Run
-from .local import Local, by_slsqp, by_trust_constr
+from .local import Local, by_slsqp, by_trust_constr, found_by
 from .registry import budget
 from .scalar import Form, Programme
 from .starts import samples
@@ -27,8 +27,9 @@ def trust_constr(problem: Problem, evaluators: list[Evaluator], run: Run) -> Arc
 
 
 def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local) -> Archive:
-    archive = Archive.empty(1)
     begun = samples(problem, evaluators)
+    run.archive = begun.archive()
+    archive = Archive.empty(1)
     if not len(begun):
         run.tell("sampling", evaluators, archive)
         return archive
@@ -37,13 +38,14 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
     run.rounds = 1 + len(rows)
     run.tell("sampling", evaluators, archive)
     for row in rows:
-        if run.stop() or (len(archive) and spent(problem, evaluators)):
+        if len(archive) and spent(problem, evaluators):
             break
         index = int(begun.sheet[row])
         programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
-        u = solve(programme, begun.u[row, : programme.k])
-        if u is not None:
-            archive.take(index, u[None], programme.objectives(u)[None] * span + ideal)
+        optimum = found_by(solve, programme, begun.u[row, : programme.k])
+        if optimum is not None:
+            u, scaled = optimum
+            archive.take(index, u[None], scaled[None] * span + ideal)
             archive.feasible += 1
         run.tell("descending", evaluators, archive)
     return archive

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..evaluation import FEASIBLE
+from ..ledger import floats
 from ..stationarity import Array
 from .scalar import Programme
 
@@ -22,6 +23,19 @@ _INSIDE = 1e-6  # of the unit box: a barrier cannot begin on a bound
 _EXACT = 1e-12  # of the objective's range
 
 Local = Callable[[Programme, Array], Array | None]
+
+
+def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array] | None:
+    """Return the optimum near u (k,), a step of the ledger, with its scaled objectives (m,); None if not feasible."""
+    form, evaluator = programme.form, programme.evaluator
+    scaling, shares = (programme.ideal, programme.span), (form.weights, form.reference, form.ceilings)
+
+    def compute() -> tuple[Array, ...]:
+        found = solve(programme, u)
+        return () if found is None else (found, programme.objectives(found))
+
+    found = evaluator.ledger.step("descent", (u, *shares, np.array([form.rho]), *scaling), compute, evaluator)
+    return (floats(found[0]), floats(found[1])) if found else None
 
 
 def by_slsqp(programme: Programme, u: Array) -> Array | None:

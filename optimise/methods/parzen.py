@@ -9,7 +9,7 @@ all coordinates together, since feasible regions lie aslant in the box.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -29,14 +29,15 @@ poor ones (constant liar), so that a batch spreads."""
 def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return what the tree-structured Parzen estimator finds."""
     with quiet():
-        breed = _Parzen(problem, evaluators)
+        breed = _Parzen(problem, evaluators, run.ledger.poll)
         return evolve(problem, evaluators, run, breed, size=breed.size)
 
 
 class _Parzen:
     """Breeds by Optuna's TPE, whose densities it fits anew to all designs for each batch."""
 
-    def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
+    def __init__(self, problem: Problem, evaluators: list[Evaluator], poll: Callable[[], None]) -> None:
+        self.poll = poll
         self.size = min(problem.settings.samples or BATCH, budget(problem))
         self.seed = problem.settings.seed
         self.objectives = len(problem.objectives)
@@ -51,5 +52,5 @@ class _Parzen:
         if past:
             history = History.of(past)
             study.add_trials(stored(self.space, history, np.arange(len(history.u)), {}))
-        sheet, u = asked(study, self.space, self.size)
+        sheet, u = asked(study, self.space, self.size, self.poll)
         return Brood(sheet, u, np.zeros(0, np.int64))

@@ -8,8 +8,9 @@
     nsga2, nsga3, tpe, cmaes, random, sobol     evolutionary and model-based methods, plain sampling
 
 A method is a function of its name, `search(problem, evaluators, run) -> Archive`. It takes its budget from
-`budget(problem)`, tells the run of every round, and ends when the run says so. What it returns is delivered as it was
-found, without the polish of the default: that keeps methods independent checks of one another.
+`budget(problem)` and tells the run of every round. Its costly steps go through the ledger, see `ledger`: by that it can
+be stopped within a moment, and go on. What it returns is delivered as it was found, without the polish of the default:
+that keeps methods independent checks of one another.
 """
 
 from __future__ import annotations
@@ -58,15 +59,13 @@ class Method:
     """A method that can be asked for.
 
     module: in this package. budget: evaluations where the job sets none. objectives: how many it can take.
-    equalities: whether it copes with an equality that cannot be eliminated. generations: whether it goes generation by
-    generation and can go on from those that it kept.
+    equalities: whether it copes with an equality that cannot be eliminated.
     """
 
     module: str
     budget: int
     objectives: Literal["one", "several", "any"]
     equalities: bool = True
-    generations: bool = False
 
     def takes(self, count: int) -> bool:
         """Whether the method can take this many objectives."""
@@ -82,12 +81,12 @@ METHODS: dict[str, Method] = {
     "epsilon_constraint": Method("scalarised", 100_000, "several"),
     "chebyshev": Method("scalarised", 100_000, "several"),
     "nbi": Method("scalarised", 100_000, "several"),
-    "nsga2": Method("evolutionary", 20_000, "any", generations=True),
-    "nsga3": Method("evolutionary", 20_000, "several", generations=True),
-    "tpe": Method("parzen", 1_000, "any", generations=True),
-    "cmaes": Method("adaptation", 10_000, "one", generations=True),
-    "random": Method("sampling", 20_000, "any", generations=True),
-    "sobol": Method("sampling", 20_000, "any", generations=True),
+    "nsga2": Method("evolutionary", 20_000, "any"),
+    "nsga3": Method("evolutionary", 20_000, "several"),
+    "tpe": Method("parzen", 1_000, "any"),
+    "cmaes": Method("adaptation", 10_000, "one"),
+    "random": Method("sampling", 20_000, "any"),
+    "sobol": Method("sampling", 20_000, "any"),
 }
 """Every method but "auto"."""
 
@@ -121,14 +120,6 @@ def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
                     f"the method {name} cannot hold {constraint.quantity} at one value, because no formula eliminates "
                     "it; use slsqp or auto, or give it a min and a max"
                 )
-
-
-def require_resumable(problem: Problem) -> None:
-    """Raise `InputError` if the problem's method keeps no generations to go on from."""
-    name = problem.settings.method
-    if name == "auto" or not METHODS[name].generations:
-        able = ", ".join(other for other, method in METHODS.items() if method.generations)
-        raise InputError(f"only {able} can go on from where they stopped; got {name}; run the job again")
 
 
 def search_of(name: str) -> Search:

@@ -20,7 +20,7 @@ from ..problem import Problem
 from ..search import Archive, Run
 from ..stationarity import Array
 from .gradient import spent
-from .local import by_slsqp
+from .local import by_slsqp, found_by
 from .reference import grid, simplex
 from .scalar import Form, Programme
 from .starts import Samples, samples
@@ -35,7 +35,7 @@ _STARTS = 4  # of each objective alone
 _WORSE = 0.1  # of the ranges: a sheet whose best start is worse by less is tried too
 _UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
 _SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
-_TOLD = 16  # problems between two questions whether to stop
+_TOLD = 16  # problems of a round
 _SLACK = 0.005  # of the ranges: samples above a ceiling by less may lead below it
 _CELLS = 20_000  # of the grid of ceilings at most
 _WIDER = 1.5  # how far beyond the triangle
@@ -136,10 +136,11 @@ class _Front:
     def optimum(self, form: Form, index: int, u: Array) -> Array | None:
         """Keep the design that is the form's optimum near a point; return its objectives (m,), SI, None without one."""
         programme = Programme(self.evaluators[index], form, self.ideal, self.span)
-        found = by_slsqp(programme, u[: programme.k])
-        if found is None:
+        optimum = found_by(by_slsqp, programme, u[: programme.k])
+        if optimum is None:
             return None
-        values = programme.objectives(found) * self.span + self.ideal
+        found, scaled = optimum
+        values = scaled * self.span + self.ideal
         self.archive.take(index, found[None], values[None])
         self.archive.feasible += 1
         return values
@@ -149,7 +150,7 @@ class _Front:
         for _ in range(1 + _ROUNDS):
             self.run.rounds = len(self.run.told) + -(-len(forms) // _TOLD)
             for begin in range(0, len(forms), _TOLD):
-                if self.run.stop() or spent(self.problem, self.evaluators):
+                if spent(self.problem, self.evaluators):
                     return self.archive
                 for form in forms[begin : begin + _TOLD]:
                     for index, u in self._starts(form):
@@ -222,6 +223,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     """Return samples and payoff table; None where nothing was found to begin with."""
     m = len(problem.objectives)
     begun = samples(problem, evaluators)
+    run.archive = begun.archive()
     front = Archive.empty(m)
     if not len(begun):
         run.tell("sampling", evaluators, front)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..evaluation import FEASIBLE, Evaluator
 from ..problem import Problem
 from ..sampling import apart, first_samples
-from ..search import BANDS
+from ..search import BANDS, Archive
 from ..stationarity import Array
 
 SAMPLES = 16384
@@ -21,14 +21,27 @@ _STREAM = 3000  # of the seed
 
 @dataclass(frozen=True)
 class Samples:
-    """Screened points. sheet: (n,), index. u: (n, k), of the unit box, padded. values: (n, m), SI, as minimised."""
+    """Screened points.
+
+    sheet: (n,), index. u: (n, k), of the unit box, padded. values: (n, m), SI, as minimised. feasible: (n,), whether
+    they meet all constraints.
+    """
 
     sheet: NDArray[np.int64]
     u: Array
     values: Array
+    feasible: NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.sheet)
+
+    def archive(self) -> Archive:
+        """Return those that meet all constraints as an archive: what there is before any optimum."""
+        found = Archive.empty(self.values.shape[1])
+        for index in np.unique(self.sheet).tolist():
+            rows = np.flatnonzero((self.sheet == index) & self.feasible)
+            found.take(index, self.u[rows], self.values[rows])
+        return found
 
     def best(self, column: int, count: int) -> NDArray[np.int64]:
         """Return at most `count` rows, the best in an objective first, each apart from the better ones."""
@@ -51,7 +64,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
             good = (violation <= band + FEASIBLE) & evaluator.valid(u)
             padded = np.zeros((int(good.sum()), widest))
             padded[:, : u.shape[1]] = u[good]
-            parts.append((np.full(len(padded), index), padded, values[good]))
+            parts.append((np.full(len(padded), index), padded, values[good], violation[good] <= FEASIBLE))
         found = Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
         if len(found) >= _ENOUGH or not any(evaluator.dimension for evaluator in evaluators):
             break

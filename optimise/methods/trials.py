@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -85,9 +85,12 @@ def stored(space: Space, history: History, rows: Rows, mark: dict[str, Any]) -> 
     return trials
 
 
-def asked(study: Study, space: Space, count: int) -> tuple[Rows, Array]:
-    """Return sheets (n,) and points (n, k) of the trials that a study's sampler proposes."""
+def asked(study: Study, space: Space, count: int, poll: Callable[[], None]) -> tuple[Rows, Array]:
+    """Return sheets (n,) and points (n, k) of the trials that a study's sampler proposes. poll: called before each."""
     names = sorted(name for name in space if name != _SHEET)
-    trials = [study.ask(space).params for _ in range(count)]
+    trials = []
+    for _ in range(count):
+        poll()
+        trials.append(study.ask(space).params)
     u = np.array([[trial[name] for name in names] for trial in trials])
     return np.array([trial.get(_SHEET, 0) for trial in trials], dtype=np.int64), np.clip(u, 0.0, 1.0)

@@ -6,6 +6,7 @@ matplotlib are touched, so that drawing never changes what a caller plots himsel
 
 from __future__ import annotations
 
+import io
 import math
 from pathlib import Path
 from typing import Any
@@ -41,10 +42,20 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: Path | io.BytesIO) -> None:
     """Write a figure as PNG."""
     # No metadata: the same run gives the same bytes. Compression 3: a third quicker than 6, no larger.
     figure.savefig(path, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 3})
+
+
+def image(figure: Figure, kind: str) -> bytes:
+    """Return a figure as the content of a file; kind: "png" or "svg"."""
+    out = io.BytesIO()
+    if kind == "png":
+        save(figure, out)
+    else:
+        figure.savefig(out, format=kind, metadata={"Date": None, "Creator": None})
+    return out.getvalue()
 
 
 def place(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
@@ -54,9 +65,9 @@ def place(figure: Figure, left: float, bottom: float, width: float, height: floa
 
 
 def write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
-    """Write text at a place given in inches from the lower left corner."""
+    """Write text at a place given in inches from the lower left corner, as it stands: a job's name may have any $."""
     width, height = figure.get_size_inches()
-    figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, **style})
+    figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
 
 
 def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from .claim import Claim
-from .records import Artefact, Event, Job, State, Worker
+from .records import NO_LIMITS, Artefact, Event, Job, Limits, State, Worker
 from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
+from .watching import News
 
 __all__ = [
     "LEASE",
     "MOST_ATTEMPTS",
     "MOST_QUEUED",
+    "NO_LIMITS",
     "Artefact",
     "Claim",
     "Event",
     "Job",
+    "Limits",
+    "News",
     "State",
     "Store",
     "Worker",

@@ -15,13 +15,14 @@ from ..result import Result, finite
 from .clock import now
 from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event
-from .packing import cells_of, packed, plain, text_of, unpacked
+from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
 from .records import Artefact, Job
-from .schema import artefacts, designs, generations, jobs, workers
+from .schema import designs, generations, jobs, workers
+from .submitting import put_files
 
 if TYPE_CHECKING:
     from ...optimise.front import Progress
-    from ...optimise.methods.generation import Generation
+    from ...optimise.ledger import Record
 
 _PAUSE = 0.25  # s between two tries of a write that the database refused
 Rest = Callable[[Connection], None]
@@ -46,7 +47,7 @@ class Claim:
         self._writes = 0
         self._attempts = job.attempts
         self._generations = job.generations
-        self._kept: list[Generation] = []
+        self._kept: list[Record] = []
         self._renewed = time.monotonic()
 
     @property
@@ -54,19 +55,19 @@ class Claim:
         """Time since the lease was last renewed, in s."""
         return time.monotonic() - self._renewed
 
-    def generations(self) -> list[Generation]:
+    def generations(self) -> list[Record]:
         """Return what the job has evaluated so far, in order."""
         query = select(generations.c.content).where(generations.c.job == self.job.id).order_by(generations.c.number)
         with self._database.reading() as connection:
             return [unpacked(content) for content in connection.execute(query).scalars()]
 
-    def keep(self, generation: Generation) -> None:
-        """Take in the next generation; it is written with the next progress, or with the end."""
+    def keep(self, record: Record) -> None:
+        """Take in the next record; it is written with the next progress, or with the end."""
         with self._lock:
-            self._kept.append(generation)
+            self._kept.append(record)
 
     def tell(self, progress: Progress) -> None:
-        """Write where the search stands, together with the generations kept since."""
+        """Write where the search stands, together with the records kept since."""
         data = finite(asdict(progress))
         self._write({"progress": text_of(data)}, [("progress", data)])
 
@@ -89,7 +90,7 @@ class Claim:
 
     def put(self, *files: Artefact) -> None:
         """Write files of the job, each in place of one of its name."""
-        self._write({}, [], lambda connection: self._put(connection, files))
+        self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
 
     def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
         """Write what was found and end the job, done, infeasible or cancelled, all in one transaction."""
@@ -104,12 +105,13 @@ class Claim:
             connection.execute(delete(designs).where(designs.c.job == self.job.id))
             if rows:
                 connection.execute(insert(designs), rows)
-            self._put(connection, files)
+            put_files(connection, self.job.id, files)
             if result.status != "cancelled":  # a cancelled one can go on
                 connection.execute(delete(generations).where(generations.c.job == self.job.id))
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"generations": 0}
-        self._end(result.status, result.message, {"result": text_of(record), **left}, rest)
+        found = {"result": text_of(record), "summary": text_of(summary_of(result))}
+        self._end(result.status, result.message, {**found, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Give the job back after an error.
@@ -129,13 +131,6 @@ class Claim:
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
         self._end("queued", reason, {"finished": None, "attempts": fewer})
 
-    def _put(self, connection: Connection, files: Sequence[Artefact]) -> None:
-        for file in files:
-            own = and_(artefacts.c.job == self.job.id, artefacts.c.name == file.name)
-            connection.execute(delete(artefacts).where(own))
-            row = {"name": file.name, "media_type": file.media_type, "content": file.content}
-            connection.execute(insert(artefacts).values(job=self.job.id, at=now(), **row))
-
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
         reason = plain(reason)
         ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}
@@ -147,8 +142,8 @@ class Claim:
         with self._lock:
             kept = self._kept if keep else []
             rows = [
-                {"job": self.job.id, "number": number, "content": packed(generation)}
-                for number, generation in enumerate(kept, self._generations)
+                {"job": self.job.id, "number": number, "content": packed(record)}
+                for number, record in enumerate(kept, self._generations)
             ]
             values: dict[str, Any] = {
                 "writes": self._writes + 1,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from sqlalchemy import Connection, Double, and_, cast, func, literal, or_, select, update
+from sqlalchemy import Connection, and_, func, or_, select, update
 
 from .clock import now
 from .events_log import add_events, state_event
 from .records import SHOWN, Job, job_of
 from .schema import jobs
+from .submitting import in_hand
 
 # Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
@@ -26,6 +27,12 @@ _CLAIMABLE = (
 def any_claimable(connection: Connection) -> bool:
     """Whether some job waits for a worker; asked before claiming, so that idle workers do not write."""
     return connection.execute(_CLAIMABLE).first() is not None
+
+
+def running(connection: Connection) -> int:
+    """Return how many jobs are in the hands of workers whose lease has not ended."""
+    held = and_(jobs.c.state == "running", jobs.c.lease_until >= now())
+    return connection.scalar(select(func.count()).where(held)) or 0
 
 
 def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
@@ -47,17 +54,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
         row = connection.execute(
             update(jobs)
             .where(jobs.c.id == found.id)
-            .values(
-                state="running",
-                reason="",
-                attempts=jobs.c.attempts + 1,
-                started=func.coalesce(jobs.c.started, now()),
-                worker=worker,
-                lease_until=now() + cast(literal(lease), Double),
-                fence=jobs.c.fence + 1,
-                writes=0,
-                events=jobs.c.events + len(told),
-            )
+            .values({"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(told)})
             .returning(*SHOWN)
         ).one()
         add_events(connection, row.id, row.events, told)

@@ -3,40 +3,71 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from sqlalchemy import Row as Found
 
+from ...model.errors import InputError
 from .schema import jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]
 ENDED: tuple[State, ...] = ("done", "infeasible", "cancelled", "failed")
 RESUMABLE: tuple[State, ...] = ("cancelled", "failed")
+LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "result"))
 """Columns of a list of jobs: all but the long ones."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What a job may use; None is no limit.
+
+    seconds, evaluations: of its search, which then ends with what it found, as if it had been cancelled. memory: of its
+    worker, bytes; beyond it the job fails.
+    """
+
+    seconds: float | None = None
+    evaluations: int | None = None
+    memory: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, value, unit in (
+            ("seconds", self.seconds, "s"),
+            ("evaluations", self.evaluations, "designs"),
+            ("memory", self.memory, "bytes"),
+        ):
+            if value is not None and not 0.0 < value < 2.0**53:
+                raise InputError(
+                    f"a limit on {name} must be a positive number of {unit}; got {value}; leave it out for no limit"
+                )
+
+
+NO_LIMITS = Limits()
 
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
     """Where a job stands. Times are seconds since 1970 on the clock of the database.
 
-    state: queued, running, done, infeasible (nothing can meet its rules), cancelled, or failed: set aside, not tried
-    again unless someone resumes it. reason: why it is in this state, in a sentence, or empty. attempts: since it last
-    went forward by a generation. most_seconds: how long its search may take, if there is a limit. due: it is not
-    claimed before. worker, lease_until: of a running one. generations: how many it can go on from. events: how many
-    there are. progress: fields of the latest `Progress`, or None.
+    run: the name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
+    its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
+    state, in a sentence, or empty. attempts: since it last went forward by a generation. due: it is not claimed before.
+    worker, lease_until: of a running one. generations: how many it can go on from. events: how many there are.
+    progress: fields of the latest `Progress`, or None. summary: what it found, see `packing.summary_of`, or None.
     """
 
     id: int
     key: str | None
     name: str
+    run: str
     state: State
     reason: str
     priority: int
     attempts: int
     most_attempts: int
-    most_seconds: float | None
+    limits: Limits
     cancel_asked: bool
     submitted: float
     due: float
@@ -48,6 +79,7 @@ class Job:
     generations: int
     events: int
     progress: dict[str, Any] | None
+    summary: dict[str, Any] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,9 +112,12 @@ class Worker:
     silent: float
 
 
-def job_of(row: Found[Any]) -> Job:
-    """Return a job from a row of the columns `SHOWN`."""
+def job_of(row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:
+    """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
     found = dict(row._mapping)
-    del found["writes"]
-    found["progress"] = None if found["progress"] is None else json.loads(found["progress"])
-    return Job(**found)
+    for name in ("writes", *more):
+        del found[name]
+    for name in ("progress", "summary"):
+        found[name] = None if found[name] is None else json.loads(found[name])
+    seconds, evaluations, memory = (found.pop(name) for name in LIMITS)
+    return Job(**found, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))

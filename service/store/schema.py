@@ -52,6 +52,7 @@ jobs = Table(
     Column("id", _number, primary_key=True, autoincrement=True),
     Column("key", String(255)),
     Column("name", Text, nullable=False),
+    Column("run", String(255), nullable=False),
     Column("tables", Text, nullable=False),
     Column("state", String(16), nullable=False),
     Column("reason", Text, nullable=False, server_default=""),
@@ -59,6 +60,8 @@ jobs = Table(
     Column("attempts", Integer, nullable=False, server_default="0"),
     Column("most_attempts", Integer, nullable=False),
     Column("most_seconds", Double),
+    Column("most_evaluations", BigInteger),
+    Column("most_memory", BigInteger),
     Column("cancel_asked", Boolean, nullable=False, server_default=false()),
     Column("submitted", Double, nullable=False),
     Column("due", Double, nullable=False),
@@ -71,15 +74,17 @@ jobs = Table(
     Column("generations", Integer, nullable=False, server_default="0"),
     Column("events", Integer, nullable=False, server_default="0"),
     Column("progress", Text),
+    Column("summary", Text),
     Column("result", Text),
     UniqueConstraint("key"),
+    UniqueConstraint("run"),
     Index(None, "state", "priority", "id"),
     sqlite_autoincrement=True,  # the number of a deleted job never comes back
 )
-"""key: of the submission, to recognise a repeated one. most_seconds: how long a
-search may take. due: not to be claimed before. fence: how often it was claimed.
-writes: how often the holder of this claim has written. generations, events: how many there are. progress: the latest.
-result: `Result.record` without designs, with the names of their columns."""
+"""key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not
+to be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written.
+generations, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
+designs, with the names of their columns."""
 
 events = Table(
     "events",

@@ -21,8 +21,7 @@ def upgrade(database: Database) -> None:
 
     Raises `StoreError` if they are of a later release.
     """
-    config = Config()
-    config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
+    config = _config()
     scripts = ScriptDirectory.from_config(config)
     latest = scripts.get_current_head()
     with database.reading() as connection:
@@ -39,6 +38,21 @@ def upgrade(database: Database) -> None:
             )
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
+
+
+def versions(database: Database) -> tuple[str | None, str | None, bool]:
+    """Return the version of the tables, None without any, the one of this software, and whether it knows the first."""
+    scripts = ScriptDirectory.from_config(_config())
+    with database.reading() as connection:
+        version = _version(connection)
+    known = version is None or version in {script.revision for script in scripts.walk_revisions()}
+    return version, scripts.get_current_head(), known
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
+    return config
 
 
 def _version(connection: Connection) -> str | None:

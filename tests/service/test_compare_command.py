@@ -39,7 +39,7 @@ def keep(runs: Path, name: str, front: ParetoFront, job: Path | None = None) -> 
     with RunFolder(runs, name) as run:
         run.keep_result(result_of(front, str(run.path)), {})
         if job is not None:
-            run.keep_job(job)
+            run.keep_files({"job.toml": job.read_bytes()})
     return run.path.name
 
 

@@ -22,7 +22,7 @@ def job(tmp_path: Path) -> Path:
 
 def only(runs: Path) -> Path:
     """Return the only run of a place."""
-    (run,) = runs.iterdir()
+    (run,) = (path for path in runs.iterdir() if path.is_dir())
     return run
 
 

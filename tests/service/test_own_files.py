@@ -65,4 +65,4 @@ def test_an_endless_function_ends_the_run_with_exit_code_2_and_keeps_nothing(
     assert done.exit_code == 2
     assert "slidercrank: the quantity mine (judges:judge) must return within 1 s" in done.stderr
     assert "judges.py:" in done.stderr
-    assert list(runs.iterdir()) == []
+    assert [path for path in runs.iterdir() if path.is_dir()] == []

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from slidercrank.model.errors import InputError, RunError
+from slidercrank.model.errors import InputError
 from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.methods.generation import Generation
-from slidercrank.optimise.problem import Settings
+from slidercrank.optimise.job import read_job
+from slidercrank.optimise.ledger import Record
 from slidercrank.optimise.solve import solve
+from slidercrank.service.result import csv_text
 from slidercrank.service.run_folder import MARK, RunFolder
-from slidercrank.service.stored_generations import FILE, GenerationsFile, read_generations
+from slidercrank.service.store import Store
+from slidercrank.service.submission import submit
+from slidercrank.service.worker import work
 from tests.service import fronts
 from tests.service.conftest import Command
 
@@ -41,11 +45,11 @@ def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def after(count: int, *, killed: bool) -> None:
         def stopped(*given: Any, keep: Any, **options: Any) -> ParetoFront:
-            seen: list[Generation] = []
+            seen: list[Record] = []
 
-            def counted(generation: Generation) -> None:
-                keep(generation)
-                seen.append(generation)
+            def counted(record: Record) -> None:
+                keep(record)
+                seen.append(record)
                 if killed and len(seen) == count:
                     raise Killed
 
@@ -53,14 +57,19 @@ def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
             return solve(*given, keep=counted, **options)
 
         monkeypatch.setattr("slidercrank.optimise.solve.solve", stopped)
-        monkeypatch.setattr("slidercrank.service.stored_generations._PAUSE", 0.0)
 
     return after
 
 
 def only(runs: Path) -> Path:
-    (run,) = runs.iterdir()
+    (run,) = (path for path in runs.iterdir() if path.is_dir())
     return run
+
+
+def kept(runs: Path, number: int = 1) -> int:
+    """Return how many generations of a job are in the store."""
+    with Store(runs / "slidercrank.db") as store:
+        return store.job(number).generations
 
 
 def designs(run: Path) -> str:
@@ -72,9 +81,8 @@ def whole(job: Path, tmp_path: Path, command: Command) -> str:
     """Return the front of the job without a stop, as it is stored."""
     done = command("optimise", job, "--no-figures", "--seed", 4, "--designs", 6, "--runs", tmp_path / "whole")
     assert done.exit_code == 0, done.output
-    run = only(tmp_path / "whole")
-    assert not (run / FILE).exists()
-    return designs(run)
+    assert kept(tmp_path / "whole") == 0
+    return designs(only(tmp_path / "whole"))
 
 
 @pytest.mark.parametrize("killed", [False, True])
@@ -95,7 +103,7 @@ def test_a_stopped_run_goes_on_and_ends_as_if_it_had_not_been(
         assert stopped.exit_code == 130
         assert f"go on with: slidercrank optimise --resume {run.name}" in stopped.stderr
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
-    assert len(read_generations(run)[1]) == 3
+    assert kept(runs) == 3
     again = command("optimise", "--resume", run.name, "--json", "--no-figures")
     assert again.exit_code == 0, again.output
     assert only(runs) == run
@@ -128,17 +136,11 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
         done = command("optimise", *arguments)
         assert (done.exit_code, done.stdout) == (2, "")
         assert words in done.stderr
-    kept = (run / "job.toml").read_text()
-    (run / "job.toml").write_text(kept.replace('"2 kg"', '"3 kg"').replace("40 deg", "41 deg"))
-    changed = command("optimise", "--resume", "latest")
-    assert changed.exit_code == 2
-    assert "goes on only from its own generations" in changed.stderr
     assert designs(run) == before
     assert not (run / MARK).exists()
-    (run / FILE).write_bytes((run / FILE).read_bytes()[:-200])
-    assert "is damaged" in command("optimise", "--resume", "latest").stderr
-    (run / FILE).unlink()
-    assert "has none" in command("optimise", "--resume", "latest").stderr
+    assert kept(runs) == 2
+    (runs / "slidercrank.db").unlink()
+    assert "is not in" in command("optimise", "--resume", "latest").stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="locks of Unix")
@@ -150,31 +152,76 @@ def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
     assert not (again.path / MARK).exists()
 
 
-def test_generations_are_read_as_they_were_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.service.stored_generations._PAUSE", 0.0)
-    random = np.random.default_rng(1)
-    settings = Settings(method="nsga2", seed=2**62 + 1, samples=7)
-    file = GenerationsFile(tmp_path, settings, [])
-    written = []
-    for count, bred in ((7, 0), (7, 5), (3, 7)):
-        violation = np.array([0.0, np.inf, 1e-300, *random.random(count - 3)])
-        values = np.where((violation > 0.0)[:, None], np.nan, random.random((count, 2)))
-        parents = np.arange(bred)
-        written.append(Generation(random.integers(0, 2, count), random.random((count, 3)), parents, values, violation))
-        file.keep(written[-1])
-        read_settings, read = read_generations(tmp_path)
-        assert read_settings == settings
-        assert len(read) == len(written)
-        for one, two in zip(read, written, strict=True):
-            for name in ("sheet", "u", "parents", "values", "violation"):
-                assert getattr(one, name).dtype == getattr(two, name).dtype
-                assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
-    file.remove()
-    with pytest.raises(RunError, match="has none"):
-        read_generations(tmp_path)
+def test_a_run_of_the_command_line_is_a_job_of_the_store(job: Path, runs: Path, command: Command) -> None:
+    done = command("optimise", job, "--no-figures", "--json", "--seed", 4, "--designs", 6)
+    assert done.exit_code == 0, done.output
+    run = only(runs)
+    with Store(runs / "slidercrank.db") as store:
+        (known,) = store.jobs()
+        assert (known.state, known.run, known.name, known.worker) == ("done", run.name, "Short test [job]", None)
+        assert store.tables(known.id)["optimiser"] | {"seed": 4, "designs": 6} == store.tables(known.id)["optimiser"]
+        assert csv_text(store.result(known.id).designs) == designs(run)
+        assert store.artefact(known.id, "job.toml").content == job.read_bytes()
+        assert [event.data["state"] for event in store.events(known.id) if event.kind == "state"] == [
+            *("queued", "running", "done")
+        ]
 
 
-def test_a_file_with_code_in_it_is_not_run(tmp_path: Path) -> None:
-    np.savez(tmp_path / FILE, allow_pickle=True, form=np.array(1), settings=np.array([{}], dtype=object))
-    with pytest.raises(RunError, match="is damaged"):
-        read_generations(tmp_path)
+def test_a_job_of_a_worker_is_a_run_of_the_command_line(job: Path, runs: Path, whole: str, command: Command) -> None:
+    runs.mkdir()
+    tables = read_job(job)
+    tables = {**tables, "optimiser": {**tables["optimiser"], "seed": 4, "designs": 6}}
+    with Store(runs / "slidercrank.db") as store:
+        number = submit(store, tables).id
+        assert "job 1 has no result: it is queued" in command("front", number).stderr
+        work(store, drain=True)
+        name = store.job(number).run
+    assert [path for path in runs.iterdir() if path.is_dir()] == []
+    shown = command("front", "latest", "--json")
+    assert shown.exit_code == 0, shown.output
+    assert json.loads(shown.stdout)["run"] == str(runs / name)
+    assert designs(only(runs)) == whole
+    assert only(runs).name == name
+    again = command("front", number, "--json")
+    assert again.stdout == shown.stdout
+
+
+def test_a_cancelled_job_of_a_worker_goes_on_at_the_command_line(
+    job: Path, runs: Path, whole: str, stop: Any, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs.mkdir()
+    tables = read_job(job)
+    tables = {**tables, "optimiser": {**tables["optimiser"], "seed": 4, "designs": 6}}
+    stop(3, killed=False)
+    with Store(runs / "slidercrank.db") as store:
+        number = submit(store, tables).id
+        work(store, drain=True)
+        assert (store.job(number).state, store.job(number).generations) == ("cancelled", 3)
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
+    again = command("optimise", "--resume", number, "--no-figures")
+    assert again.exit_code == 0, again.output
+    assert designs(only(runs)) == whole
+
+
+def test_a_command_that_was_killed_can_be_resumed_at_once(job: Path, runs: Path, whole: str, command: Command) -> None:
+    script = (
+        "import os, sys\n"
+        "from slidercrank.service import own_run, cli\n"
+        "from slidercrank.service.store import Claim\n"
+        "tell, told = Claim.tell, []\n"
+        "def die(self, at):\n"
+        "    tell(self, at)\n"
+        "    told.append(at)\n"
+        "    if len(told) == 3: os.kill(os.getpid(), 9)\n"
+        "Claim.tell = die\n"
+        "cli.main()\n"
+    )
+    arguments = ["optimise", str(job), "--no-figures", "--seed", "4", "--designs", "6"]
+    killed = subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, check=False)
+    assert killed.returncode == -9, killed.stderr
+    run = only(runs)
+    assert (run / MARK).exists()
+    assert kept(runs) == 3
+    again = command("optimise", "--resume", "latest", "--no-figures")
+    assert again.exit_code == 0, again.output
+    assert designs(run) == whole

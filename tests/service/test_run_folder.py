@@ -27,7 +27,7 @@ def result(run: RunFolder) -> Result:
 def write(place: Path, job: Path) -> RunFolder:
     """Write a run without the context manager, as a process that may be killed on the way."""
     run = RunFolder(place, "Feeder")
-    run.keep_job(job)
+    run.keep_files({"job.toml": job.read_bytes()})
     run.keep_result(result(run), {"python": "3"})
     run.finish()
     return run
@@ -41,7 +41,7 @@ def test_a_finished_run_has_every_part(tmp_path: Path) -> None:
     job = fronts.job_file(tmp_path)
     with RunFolder(tmp_path / "runs", "Vibrating sieve") as run:
         assert (run.path / MARK).is_file()
-        run.keep_job(job)
+        run.keep_files({"job.toml": job.read_bytes()})
         run.keep_result(result(run), {"python": "3"})
     names = {file.name for file in run.path.iterdir()}
     assert names == {"job.toml", "front.csv", "front.json", "versions.json", "log.txt"}

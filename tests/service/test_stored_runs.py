@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError, RunError
+from slidercrank.service.finding_runs import find_run
 from slidercrank.service.result import result_of
 from slidercrank.service.run_folder import MARK
-from slidercrank.service.stored_runs import find_run, read_run
+from slidercrank.service.stored_runs import read_run
 from tests.service import fronts
 
 NAMES = ("20260101-100000-sieve", "20260101-100000-sieve-2", "20260102-090000-feeder", "20260102-090001-feeder")
@@ -102,7 +103,7 @@ def test_a_run_is_read_under_the_path_where_it_is_now(stored: Path, tmp_path: Pa
 
 def test_an_unfinished_run_says_so_although_all_files_are_there(stored: Path) -> None:
     (stored / MARK).write_text("Started 2026-01-31 10:00:00. The run still goes on, or was interrupted.\n")
-    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; run its"):
+    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; go on with"):
         read_run(stored)
 
 

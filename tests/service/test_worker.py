@@ -17,9 +17,10 @@ import pytest
 from slidercrank.model.errors import InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
-from slidercrank.service.store import Claim, Store
+from slidercrank.service.pulse import Pulse
+from slidercrank.service.store import Claim, Limits, Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import Pulse, solve_claimed, work, worker_name
+from slidercrank.service.worker import solve_claimed, work, worker_name
 from tests.service import fronts
 from tests.service.store.contents import end_lease, generation, progress
 
@@ -213,7 +214,7 @@ def test_a_search_ends_at_its_limit_of_time_with_what_it_found(store: Store, sea
         return found(problem, "cancelled")
 
     searches(long)
-    job = submit(store, TABLES, most_seconds=0.05)
+    job = submit(store, TABLES, limits=Limits(seconds=0.05))
     assert work(store, drain=True) == 1
     ended = store.job(job.id)
     assert (ended.state, ended.reason) == ("cancelled", "1 design; its search took longer than its limit of 0.05 s")

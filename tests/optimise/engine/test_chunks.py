@@ -95,24 +95,10 @@ def test_what_cannot_leave_the_process_stays_in_it(processes: Processes) -> None
 
 
 def test_a_shared_value_is_made_once_in_a_process(processes: Processes) -> None:
-    shared = Shared(_Made())
+    shared = Shared(work.Made())
     items = [(shared, index) for index in range(12)]
-    made = processes.map(_maker, items)
+    made = processes.map(work.made, items)
     assert len(set(made)) <= processes.workers
-
-
-class _Made:
-    """A value whose every copy is another one."""
-
-    def __init__(self) -> None:
-        self.number = np.random.default_rng().integers(1 << 60)
-
-    def __reduce__(self) -> tuple[type, tuple[()]]:
-        return _Made, ()
-
-
-def _maker(item: tuple[Shared[_Made], int]) -> int:
-    return int(item[0].value.number)
 
 
 def _call(subject: Callable[[], float], asked: str, rows: Any) -> Any:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.tolerance.spreads import Shape
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.objectives.robust.quantity import Kind, RobustQuantity, Side
 from slidercrank.optimise.elimination import sheets
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.evaluation import Evaluator
@@ -57,17 +58,25 @@ def test_a_robust_job_gives_the_same_bits_on_every_engine(engine: Engine, serial
 
 def all_quantities() -> Problem:
     """A problem with every quantity there is, and robust ones of every kind."""
+    kinds: tuple[tuple[Kind, int, Shape], ...] = (
+        ("percentile", 2, "normal"),
+        ("percentile", 2, "uniform"),
+        ("worst case", 1, "normal"),
+    )
+    sides: tuple[Side, ...] = ("high", "low")
     made = [
         RobustQuantity(
-            QUANTITIES[name], side, kind, order, shape=shape, samples=1024, suffix=f"{kind[0]}{order}{shape}{side}"
-        )  # type: ignore[arg-type]
-        for name in ("peak_torque", "transmission_angle")
-        for side in ("high", "low")
-        for kind, order, shape in (
-            ("percentile", 2, "normal"),
-            ("percentile", 2, "uniform"),
-            ("worst case", 1, "normal"),
+            inner=QUANTITIES[name],
+            side=side,
+            kind=kind,
+            order=order,
+            shape=shape,
+            samples=1024,
+            suffix=f"{kind[0]}_{shape}_{side}",
         )
+        for name in ("peak_torque", "transmission_angle")
+        for side in sides
+        for kind, order, shape in kinds
     ]
     return replace(problem({"time_ratio": "maximise"}, mechanism=TOLERANT), own=tuple(made))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import time
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.errors import InputError
+from slidercrank.optimise.engine.shared import Shared
 
 Array = NDArray[np.float64]
 
@@ -59,6 +61,22 @@ def doubled(subject: float, asked: str, rows: Array) -> tuple[int, Array]:
     """Work on rows that takes 2 ms each."""
     time.sleep(0.002 * len(rows))
     return os.getpid(), subject * rows
+
+
+class Made:
+    """A value whose every copy is another one."""
+
+    def __init__(self) -> None:
+        self.number = secrets.randbits(60)
+
+    def __reduce__(self) -> tuple[type, tuple[()]]:
+        return Made, ()
+
+
+def made(item: tuple[Shared[Made], int]) -> int:
+    """Return the number of the value, with time for the other processes to take some."""
+    time.sleep(0.05)
+    return item[0].value.number
 
 
 def light(subject: float, asked: str, rows: Array) -> tuple[int, Array]:

@@ -1,4 +1,4 @@
-"""Methods that go generation by generation: a run that goes on from any of them ends as if it had never stopped."""
+"""Methods that go generation by generation: what a generation is, and what comes of all of them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from slidercrank.optimise.methods import evolutionary, population
 from slidercrank.optimise.methods.generation import Brood, Generation, generation_seed
 from slidercrank.optimise.methods.registry import METHODS
 from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.search import Archive, Run
+from slidercrank.optimise.search import Run
 from slidercrank.optimise.solve import solve
 from slidercrank.optimise.stationarity import Array
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
-ABLE = [name for name, method in METHODS.items() if method.generations]
+ABLE = ("nsga2", "nsga3", "tpe", "cmaes", "random", "sobol")
 # Both signs of the offset, so that there are two sheets; a peak among the objectives and one among the constraints.
 HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
 LIMITED: dict[str, Bounds] = HELD | {"peak_slider_speed": (None, 4.0)}
@@ -46,45 +46,30 @@ def asked(method: str) -> Problem:
     )
 
 
+def bred(given: Problem) -> tuple[ParetoFront, tuple[Generation, ...]]:
+    """Return the front of a problem and all generations that led to it."""
+    found: list[Generation] = []
+    inner = population._Seen.evaluate
+
+    def evaluate(seen: population._Seen, brood: Brood) -> Generation:
+        found.append(inner(seen, brood))
+        return found[-1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(population._Seen, "evaluate", evaluate)
+        return solve(given), tuple(found)
+
+
 @cache
 def whole(method: str) -> tuple[ParetoFront, tuple[Generation, ...]]:
-    """Return the front of an uninterrupted run and all its generations."""
-    kept: list[Generation] = []
-    front = solve(asked(method), keep=kept.append)
-    return front, tuple(kept)
+    """Return the front of a method's problem and all generations that led to it."""
+    return bred(asked(method))
 
 
 def same(one: Generation, two: Generation) -> bool:
     """Return whether two generations are the same bit for bit."""
     names = ("sheet", "u", "parents", "values", "violation")
     return all(getattr(one, name).tobytes() == getattr(two, name).tobytes() for name in names)
-
-
-@pytest.mark.parametrize("method", ABLE)
-def test_a_run_goes_on_from_any_generation_bit_for_bit(method: str) -> None:
-    front, generations = whole(method)
-    assert len(generations) >= 5
-    assert len(front) > 0
-    for cut in (1, 2, len(generations) - 1, len(generations)):
-        kept: list[Generation] = []
-        again = solve(asked(method), resume=generations[:cut], keep=kept.append)
-        assert len(kept) == len(generations) - cut
-        assert all(same(*pair) for pair in zip(kept, generations[cut:], strict=True))
-        assert again.dimensions.tobytes() == front.dimensions.tobytes()
-        assert again.values.tobytes() == front.values.tobytes()
-        assert again.evaluations == front.evaluations
-
-
-@pytest.mark.parametrize("method", ABLE)
-def test_a_cancelled_run_has_kept_what_it_needs(method: str) -> None:
-    front, _ = whole(method)
-    kept: list[Generation] = []
-    part = solve(asked(method), keep=kept.append, cancelled=lambda: len(kept) >= 3)
-    assert part.status == "cancelled"
-    assert len(kept) == 3
-    again = solve(asked(method), resume=kept)
-    assert again.status == "done"
-    assert again.dimensions.tobytes() == front.dimensions.tobytes()
 
 
 @pytest.mark.parametrize("method", ABLE)
@@ -108,9 +93,8 @@ def test_every_delivered_design_honours_every_constraint(method: str) -> None:
 @pytest.mark.parametrize("method", ABLE)
 def test_each_generation_has_its_own_random_numbers_and_the_seed_changes_all(method: str) -> None:
     _, generations = whole(method)
-    other: list[Generation] = []
     given = asked(method)
-    solve(replace(given, settings=replace(given.settings, seed=6)), keep=other.append)
+    _, other = bred(replace(given, settings=replace(given.settings, seed=6)))
     assert not any(same(*pair) for pair in zip(generations, other, strict=False))
     assert len({generation_seed(5, number) for number in range(1000)}) == 1000
 
@@ -132,13 +116,11 @@ def test_a_point_is_evaluated_once_however_often_it_comes() -> None:
             return inner(u, band=band)  # type: ignore[operator, no-any-return]
 
         evaluator.screen = counted  # type: ignore[method-assign]
-    kept: list[Generation] = []
-    run = Run(given, None, None, 1, keep=kept.append)
+    run = Run(given, 1)
     population.evolve(given, evaluators, run, breed, size=3)
-    # Three generations fit into the budget and more; the same coordinates on two sheets are two designs.
-    assert len(kept) == 80 // 3
+    # As many generations as fit into the budget; the same coordinates on two sheets are two designs.
+    assert len(run.told) == 80 // 3
     assert sum(screened) == 3
-    assert all(same(kept[0], generation) for generation in kept)
 
 
 def test_genetic_search_meets_duplicates_and_does_not_count_them() -> None:
@@ -150,36 +132,6 @@ def test_genetic_search_meets_duplicates_and_does_not_count_them() -> None:
     }
     assert len(keys) < sum(len(generation) for generation in generations)
     assert front.evaluations - len(keys) <= 2 * len(front) + 32  # what the delivery evaluates
-
-
-def test_generations_of_another_seed_method_or_job_are_refused() -> None:
-    _, generations = whole("nsga2")
-    given = asked("nsga2")
-    heavier = replace(given.mechanism, slider_mass=2.5)
-    for other in (
-        replace(given, settings=replace(given.settings, seed=6)),
-        replace(given, settings=replace(given.settings, samples=12)),
-        replace(given, settings=replace(given.settings, method="random")),
-        replace(given, mechanism=heavier),
-        replace(given, offset=given.rod),
-    ):
-        with pytest.raises(InputError, match=r"goes on only from its own generations.*start the run anew"):
-            solve(other, resume=generations)
-    damaged = replace(generations[1], values=generations[1].values + 1e-6)
-    with pytest.raises(InputError, match="goes on only from its own"):
-        solve(given, resume=(generations[0], damaged))
-    with pytest.raises(InputError, match="a generation needs one sheet"):
-        replace(generations[0], violation=generations[0].violation[1:])
-    with pytest.raises(InputError, match=r"only nsga2, .* can go on from where they stopped; got auto"):
-        solve(problem({"peak_torque": "minimise"}), resume=generations)
-
-
-def test_a_raised_budget_only_adds_generations() -> None:
-    _, generations = whole("nsga3")
-    given = asked("nsga3")
-    kept: list[Generation] = []
-    solve(replace(given, settings=replace(given.settings, evaluations=112)), resume=generations, keep=kept.append)
-    assert len(kept) == 2
 
 
 def test_what_is_not_finite_is_never_told_as_feasible(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,13 +161,9 @@ def test_an_equality_that_stays_is_met_in_the_end() -> None:
 def test_nothing_free_is_one_design() -> None:
     given = problem({"peak_torque": "minimise"}, crank=0.1, rod=0.3, offset=0.05)
     for method in ("nsga2", "tpe", "cmaes", "random", "sobol"):
-        kept: list[Generation] = []
-        settings = replace(given.settings, method=method)
-        front = solve(replace(given, settings=settings), keep=kept.append)
+        front, generations = bred(replace(given, settings=replace(given.settings, method=method)))
         assert front.dimensions.tolist() == [[0.1, 0.3, 0.05]]
-        assert len(kept) == 1
-        again = solve(replace(given, settings=settings), resume=kept)
-        assert again.dimensions.tolist() == [[0.1, 0.3, 0.05]]
+        assert len(generations) == 1
 
 
 def test_reference_directions_are_about_as_many_as_designs() -> None:
@@ -232,13 +180,11 @@ def test_a_population_of_one_cannot_breed() -> None:
 
 
 def test_the_archive_has_what_no_other_design_dominates() -> None:
-    given = asked("random")
-    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
-    kept: list[Generation] = []
     from slidercrank.optimise.methods.sampling import random
 
-    archive: Archive = random(given, evaluators, Run(given, None, None, 1, keep=kept.append))
-    values = np.concatenate([generation.values for generation in kept])
+    given = asked("random")
+    archive = random(given, [Evaluator(given, sheet) for sheet in sheets(given)], Run(given, 1))
+    values = np.concatenate([generation.values for generation in whole("random")[1]])
     values = values[np.isfinite(values).all(axis=1)]
     best = {row.tobytes() for row in values if not ((values <= row).all(axis=1) & (values < row).any(axis=1)).any()}
     assert {row.tobytes() for row in archive.values} == best

@@ -32,8 +32,6 @@ def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     random = np.random.default_rng(problem.settings.seed)
     run.rounds = 2
     for _ in range(run.rounds):
-        if run.stop():
-            break
         archive.screen(0, evaluators[0], random.random((POINTS, evaluators[0].dimension)))
         run.tell("sampling", evaluators, archive)
     return archive

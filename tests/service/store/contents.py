@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from sqlalchemy import select, update
 
 from slidercrank.optimise.front import Progress
-from slidercrank.optimise.methods.generation import Generation
+from slidercrank.optimise.ledger import Identity, Record
 from slidercrank.service.result import Result, Row, Wanted
 from slidercrank.service.store import Claim, Job, Store
 from slidercrank.service.store.clock import now
@@ -21,6 +22,8 @@ ROWS: list[Row] = [
     {"crank_mm": 0.1 + 0.2, "time_ratio": 1.25, "motion_error_mm": math.inf, "status": "stationary"},
     {"crank_mm": 1e-300, "time_ratio": 1.0, "motion_error_mm": math.nan, "status": "best found"},
 ]
+
+_NONE = np.zeros(0, np.int64)
 
 
 def add(store: Store, name: str = "Feeder", **options: Any) -> Job:
@@ -35,24 +38,16 @@ def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
     return claim
 
 
-def generation(number: int) -> Generation:
-    """Return a generation like no other, with values that only an exact copy keeps."""
+def generation(number: int) -> Record:
+    """Return what a search keeps of a round, like no other, with values that only an exact copy keeps."""
     random = np.random.default_rng(number)
-    values = random.random((4, 2))
-    values[1] = np.nan
-    return Generation(
-        sheet=np.arange(4, dtype=np.int64) % 2,
-        u=random.random((4, 3)),
-        parents=np.arange(number, dtype=np.int64),
-        values=values,
-        violation=np.array([0.0, np.inf, 1e-300, -0.0]),
-    )
+    floats = np.array([*random.random(9), np.nan, np.inf, 1e-300, -0.0])
+    return Record(Identity("0f" * 16, '{"slidercrank": "1"}'), number, number, 0.1 * number, floats.view(np.int64))
 
 
-def same(one: Generation, other: Generation) -> bool:
-    """Whether two generations are the same, bit for bit."""
-    names = ("sheet", "u", "parents", "values", "violation")
-    return all(getattr(one, name).tobytes() == getattr(other, name).tobytes() for name in names)
+def same(one: Record, other: Record) -> bool:
+    """Whether two records are the same, bit for bit."""
+    return replace(one, words=_NONE) == replace(other, words=_NONE) and one.words.tobytes() == other.words.tobytes()
 
 
 def progress(number: int) -> Progress:

@@ -148,7 +148,6 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
         ({"key": "a\nb"}, "printable"),
         ({"most_attempts": 0}, "got 0 and 0"),
         ({"priority": 1001}, "got 1001 and 3"),
-        ({"most_seconds": 0.0}, "more than 0 s"),
     ],
 )
 def test_a_submission_out_of_bounds_is_refused(options: dict[str, Any], words: str, store: Store) -> None:

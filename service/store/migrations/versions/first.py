@@ -18,6 +18,7 @@ def upgrade() -> None:
         sa.Column("id", _NUMBER, primary_key=True, autoincrement=True),
         sa.Column("key", sa.String(255)),
         sa.Column("name", sa.Text, nullable=False),
+        sa.Column("run", sa.String(255), nullable=False),
         sa.Column("tables", sa.Text, nullable=False),
         sa.Column("state", sa.String(16), nullable=False),
         sa.Column("reason", sa.Text, nullable=False, server_default=""),
@@ -25,6 +26,8 @@ def upgrade() -> None:
         sa.Column("attempts", sa.Integer, nullable=False, server_default="0"),
         sa.Column("most_attempts", sa.Integer, nullable=False),
         sa.Column("most_seconds", sa.Double),
+        sa.Column("most_evaluations", sa.BigInteger),
+        sa.Column("most_memory", sa.BigInteger),
         sa.Column("cancel_asked", sa.Boolean, nullable=False, server_default=sa.false()),
         sa.Column("submitted", sa.Double, nullable=False),
         sa.Column("due", sa.Double, nullable=False),
@@ -37,9 +40,11 @@ def upgrade() -> None:
         sa.Column("generations", sa.Integer, nullable=False, server_default="0"),
         sa.Column("events", sa.Integer, nullable=False, server_default="0"),
         sa.Column("progress", sa.Text),
+        sa.Column("summary", sa.Text),
         sa.Column("result", sa.Text),
         sa.PrimaryKeyConstraint("id", name="pk_jobs"),
         sa.UniqueConstraint("key", name="uq_jobs_key"),
+        sa.UniqueConstraint("run", name="uq_jobs_run"),
         sqlite_autoincrement=True,
     )
     op.create_index("ix_jobs_state_priority_id", "jobs", ["state", "priority", "id"])

@@ -1,0 +1,82 @@
+"""Inject faults and print what came of the jobs: `make faults`, or `python -m faults` in the project's folder.
+
+    python -m faults kills --store sqlite --count 200 --seed 1
+
+Exits with 1 if anything is not as it has to be.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import typer
+
+from .commits import commits
+from .full import full
+from .kills import kills
+from .pauses import pauses
+from .restarts import restarts
+from .verdict import Verdict
+
+app = typer.Typer(add_completion=False, help=__doc__)
+Where = Annotated[Literal["sqlite", "postgresql"], typer.Option("--store", help="Kind of the store.")]
+Count = Annotated[int, typer.Option(help="How many faults.")]
+Seed = Annotated[int, typer.Option(help="Of everything random.")]
+
+
+@app.command("kills")
+def _kills(where: Where = "sqlite", count: Count = 200, seed: Seed = 1) -> None:
+    """Kill workers by SIGKILL at random moments."""
+    _report(f"{count} kills on {where}", lambda: kills(where, count, seed))
+
+
+@app.command("pauses")
+def _pauses(where: Where = "sqlite", count: Count = 50, seed: Seed = 1) -> None:
+    """Pause workers for longer than their lease."""
+    _report(f"{count} pauses on {where}", lambda: pauses(where, count, seed))
+
+
+@app.command("restarts")
+def _restarts(seconds: Annotated[float, typer.Option(help="For how long.")] = 300.0, seed: Seed = 1) -> None:
+    """Crash and start PostgreSQL at random moments."""
+    _counted("{} crashes of PostgreSQL", lambda: restarts(seconds, seed))
+
+
+@app.command("full")
+def _full(count: Count = 50, seed: Seed = 1) -> None:
+    """Let the disk be full at random moments (SQLite)."""
+    _report(f"disk full {count} times on sqlite", lambda: full(count, seed))
+
+
+@app.command("commits")
+def _commits(where: Where = "sqlite", every: Annotated[int, typer.Option(help="Each one of so many.")] = 1) -> None:
+    """Let every commit of a job's life fail, each in three ways."""
+    _counted(f"{{}} failed commits on {where}", lambda: commits(where, every))
+
+
+def _counted(title: str, inject: Callable[[], tuple[int, Verdict]]) -> None:
+    begin = time.monotonic()
+    count, verdict = inject()
+    _show(title.format(count), time.monotonic() - begin, verdict)
+
+
+def _report(title: str, inject: Callable[[], Verdict]) -> None:
+    begin = time.monotonic()
+    verdict = inject()
+    _show(title, time.monotonic() - begin, verdict)
+
+
+def _show(title: str, seconds: float, verdict: Verdict) -> None:
+    print(f"{title}, {seconds:.0f} s: {verdict.line()}", flush=True)
+    for violation in verdict.violations:
+        print(f"  {violation}")
+    if verdict.violations:
+        raise typer.Exit(1)
+
+
+if __name__ == "__main__":
+    logging.disable()  # workers warn of what is done to them
+    app()

@@ -1,0 +1,79 @@
+"""A worker in a process of its own: that of the service, with notes of what it did, and with slower rounds."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import random
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from slidercrank.model.errors import LeaseLost
+from slidercrank.service.store import Claim, Store
+from slidercrank.service.store.database import Database, Unavailable
+from slidercrank.service.worker import work
+
+from .journal import Journal
+
+_PR_SET_PDEATHSIG = 1
+
+
+def main(address: str, name: str, lease: float, journal: Path, pause: float) -> None:
+    """Solve jobs for ever. pause: how long, in s, a round takes longer at most."""
+    _die_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the harness, which ends its workers
+    logging.disable()  # it is expected to warn
+    _note(Journal(journal), pause)
+    with Store(address) as store:
+        work(store, name=name, lease=lease)
+
+
+def _die_with_parent() -> None:
+    """Let the kernel kill this process when the one that it was forked from ends, also while it is stopped."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _note(journal: Journal, pause: float) -> None:
+    keep, tell, write, writing = Claim.keep, Claim.tell, Claim._write, Database.writing
+    chance = random.Random()
+
+    def noted_keep(claim: Claim, generation: Any) -> None:
+        journal.note("evaluated", claim.job.id, claim.job.fence, claim._generations + len(claim._kept))
+        keep(claim, generation)
+
+    def slow_tell(claim: Claim, progress: Any) -> None:
+        time.sleep(chance.uniform(0.0, pause))
+        tell(claim, progress)
+
+    def noted_write(claim: Claim, *given: Any, **options: Any) -> None:
+        with claim._lock:
+            try:
+                write(claim, *given, **options)
+            except LeaseLost:
+                journal.note("refused", claim.job.id, claim.job.fence, claim._writes + 1)
+                raise
+            journal.note("wrote", claim.job.id, claim.job.fence, claim._writes)
+
+    @contextlib.contextmanager
+    def noted_writing(database: Database) -> Iterator[Any]:
+        try:
+            with writing(database) as connection:
+                yield connection
+        except Unavailable:
+            journal.note("failed", 0, 0, 0)
+            raise
+
+    for owner, name, noted in (
+        (Claim, "keep", noted_keep),
+        (Claim, "tell", slow_tell),
+        (Claim, "_write", noted_write),
+        (Database, "writing", noted_writing),
+    ):
+        setattr(owner, name, noted)

@@ -1,0 +1,63 @@
+"""The application that serves the API: store and settings in, one ASGI application out, nothing shared beside."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+
+from ..store import Store
+from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema
+from .event_feed import Feed
+from .metrics import Metrics, Timed
+from .openapi import describe
+from .problems import answer_problems, problem_responses
+from .rate_limit import RateLimit
+from .security import Guard
+from .settings import DEFAULT, Settings
+from .stored_fronts import StoredFronts
+from .strict_input import StrictInput
+
+PREFIX = "/api/v1"
+_COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
+
+
+def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
+    """Return the application of a store, which whoever serves it opens and closes."""
+    app = FastAPI(
+        title="slidercrank",
+        version=_version(),
+        openapi_url=f"{PREFIX}/openapi.json",
+        docs_url=None,  # its pages come from other sites
+        redoc_url=None,
+        generate_unique_id_function=lambda route: route.name,
+        middleware=[
+            Middleware(Timed),
+            Middleware(Guard, settings=settings),
+            Middleware(StrictInput, most_body=settings.most_body, most_depth=settings.most_depth),
+        ],
+    )
+    app.state.store = store
+    app.state.settings = settings
+    app.state.submissions = RateLimit(settings.submissions_per_minute)
+    app.state.feed = Feed(store)
+    app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
+    app.state.metrics = Metrics(store)
+    answer_problems(app)
+    for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):
+        app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
+    describe(app)
+
+    @app.get("/", include_in_schema=False)
+    async def show_way() -> dict[str, str]:
+        return {"name": app.title, "version": app.version, "description": f"{PREFIX}/openapi.json"}
+
+    return app
+
+
+def _version() -> str:
+    try:
+        return version("slidercrank")
+    except PackageNotFoundError:
+        return "0"

@@ -1,0 +1,62 @@
+"""Fronts as files: CSV, JSON, Parquet."""
+
+from __future__ import annotations
+
+import io
+from importlib.util import find_spec
+
+from fastapi import APIRouter, HTTPException, Response
+
+from ..result import csv_text, json_text
+from ..run_folder import slug
+from .problems import problem_responses
+from .stored_fronts import FrontDep, StoredFront
+
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+
+
+def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
+    name = f"{slug(found.result.name)}-{found.job.id}.{ending}"
+    return Response(content, media_type=media_type, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+
+
+@router.get(
+    "/jobs/{number}/export.csv",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}}},
+)
+def export_csv(found: FrontDep) -> Response:
+    """Give every design with all its quantities at full precision.
+
+    A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
+    """
+    content = csv_text(found.result.designs, spreadsheet=True)
+    return _file(found, "csv", "text/csv; charset=utf-8", content)
+
+
+@router.get(
+    "/jobs/{number}/export.json",
+    response_class=Response,
+    responses={200: {"content": {"application/json": {}}}},
+)
+def export_json(found: FrontDep) -> Response:
+    """Give the whole front, as `slidercrank export --json` does."""
+    return _file(found, "json", "application/json", json_text(found.result.record()))
+
+
+@router.get(
+    "/jobs/{number}/export.parquet",
+    response_class=Response,
+    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **problem_responses(501)},
+)
+def export_parquet(found: FrontDep) -> Response:
+    """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
+    if find_spec("pyarrow") is None:
+        raise HTTPException(
+            501, "Parquet needs pyarrow, which is not installed; install slidercrank[parquet], or take CSV"
+        )
+    import pandas as pd
+
+    out = io.BytesIO()
+    pd.DataFrame(found.result.designs).to_parquet(out, engine="pyarrow", index=False)
+    return _file(found, "parquet", "application/vnd.apache.parquet", out.getvalue())

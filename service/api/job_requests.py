@@ -1,0 +1,159 @@
+"""Jobs as clients send them: as JSON with what else is wanted, or as a job file, and what is allowed in them."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import Header, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.exceptions import HTTPException
+
+from ...model.errors import InputError, JobError
+from ..store import NO_LIMITS, Artefact, Limits
+from .models import LARGEST
+from .settings import Settings
+from .strict_input import read_json, require_moderate
+
+JSON, TOML = "application/json", "application/toml"
+EXAMPLE = {
+    "name": "Feeder",
+    "mechanism": {
+        "speed": "60 rpm",
+        "crank": {"mass": "1 kg", "inertia": "0.01 kg m^2"},
+        "rod": {"mass": "1 kg", "inertia": "0.01 kg m^2"},
+        "slider": {"mass": "2 kg"},
+    },
+    "variables": {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "100 mm"]},
+    "constraints": {"stroke": {"equals": "280 mm"}},
+    "objectives": {"time_ratio": "maximise", "transmission_angle": "maximise"},
+    "optimiser": {"designs": 20, "seed": 1},
+}
+"""A job that can be solved."""
+Priority = Annotated[int, Field(ge=-1000, le=1000, description="higher ones are solved first")]
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        min_length=1,
+        max_length=255,
+        pattern="^[!-~]+$",
+        description="of this submission: sent again with it, the same job is answered and none is added",
+        examples=["4c7a1f0e-feeder"],
+    ),
+]
+"""The header of a submission."""
+
+
+class AskedLimits(BaseModel):
+    """What a job may use; what is left out is as far as the service allows."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, title="AskedLimits")
+
+    seconds: float | None = Field(None, gt=0, le=LARGEST, description="of its search, s", examples=[600])
+    evaluations: int | None = Field(None, gt=0, le=LARGEST, description="designs that its search evaluates")
+    memory_bytes: int | None = Field(None, gt=0, le=LARGEST, description="of its worker")
+
+
+class Submission(BaseModel):
+    """A job and how it is to be solved."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
+    priority: Priority = 0
+    limits: AskedLimits = AskedLimits()
+
+
+class Clone(BaseModel):
+    """What is different in a copy of a job."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    changes: dict[str, Any] = Field(
+        default_factory=dict,
+        description="to the tables of the job, as a JSON merge patch (RFC 7396): null takes a key away",
+        examples=[{"name": "Feeder, heavier", "mechanism": {"slider": {"mass": "2.5 kg"}}}],
+    )
+    priority: Priority | None = Field(None, description="that of the job if left out")
+    limits: AskedLimits | None = Field(None, description="those of the job if left out")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A submission that was read. source: the job file, if one was sent."""
+
+    tables: Mapping[str, Any]
+    priority: int = 0
+    limits: Limits = NO_LIMITS
+    source: Artefact | None = None
+
+
+async def asked_for(request: Request) -> Asked:
+    """Return what a submission asks for; a dependency. Raises what becomes 400, 415 or 422."""
+    body = await request.body()
+    settings: Settings = request.app.state.settings
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if kind == TOML:
+        source = Artefact(name="job.toml", media_type=TOML, content=body)
+        return Asked(tables=toml_tables(body, settings.most_depth), limits=settings.limits, source=source)
+    if kind != JSON:
+        raise HTTPException(
+            HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+            f"a job comes as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; give one of these content types",
+        )
+    try:
+        stated = Submission.model_validate(read_json(body, settings.most_depth))
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None
+    limits = within(stated.limits, settings.limits)
+    return Asked(tables=stated.job, priority=stated.priority, limits=limits)
+
+
+def toml_tables(body: bytes, most_depth: int) -> dict[str, Any]:
+    """Return the tables of a job file in TOML. Raises `JobError`."""
+    try:
+        tables = tomllib.loads(body.decode("utf-8-sig"))
+        require_moderate(tables, most_depth)
+    except RecursionError:
+        raise JobError(f"a body nests at most {most_depth} deep; got more; flatten it") from None
+    except UnicodeDecodeError:
+        raise JobError("a job file is UTF-8 text; got other bytes; save it as UTF-8") from None
+    except InputError as error:
+        raise JobError(str(error)) from None
+    except ValueError as error:
+        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
+    return tables
+
+
+def within(asked: AskedLimits, most: Limits) -> Limits:
+    """Return limits of a job: those asked for, else the highest of the service. Raises `InputError` for higher ones."""
+    for name, wanted, highest in (
+        ("seconds", asked.seconds, most.seconds),
+        ("evaluations", asked.evaluations, most.evaluations),
+        ("memory_bytes", asked.memory_bytes, most.memory),
+    ):
+        if wanted is not None and highest is not None and wanted > highest:
+            raise InputError(f"limits.{name}: is at most {highest} here; got {wanted}; ask for less, or leave it out")
+    return Limits(
+        seconds=asked.seconds or most.seconds,
+        evaluations=asked.evaluations or most.evaluations,
+        memory=asked.memory_bytes or most.memory,
+    )
+
+
+def require_no_file(tables: Mapping[str, Any]) -> None:
+    """Refuse a job whose target motion is in a file: it would be one of the service. Raises `JobError`."""
+    from ...optimise.job.target_motion import points_file
+    from ...optimise.units import shown
+
+    file = points_file(tables)
+    if file is not None:
+        raise JobError(
+            f"target_motion.file: the service opens no file that a client names; got {shown(file)}; give the points "
+            "as crank_angles and positions"
+        )

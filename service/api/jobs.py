@@ -1,0 +1,158 @@
+"""Jobs: submitted, listed, shown, cancelled, resumed, cloned, deleted, and their files."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Response
+from fastapi import Path as InPath
+from starlette.exceptions import HTTPException
+
+from ...model.errors import InputError, NotFound
+from ..job_record import job_record
+from ..store import Job, State, Store
+from ..submission import submit
+from .job_requests import Asked, Clone, IdempotencyKey, asked_for, require_no_file, within
+from .merge_patch import merged
+from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown
+from .problems import problem_responses
+from .rate_limit import limit_submissions
+from .settings import Settings
+from .state import SettingsDep, StoreDep
+
+router = APIRouter(tags=["jobs"])
+_SUBMITTED: dict[str, Any] = {
+    "status_code": HTTPStatus.CREATED,
+    "response_model": JobShown,
+    "dependencies": [Depends(limit_submissions)],
+    "responses": problem_responses(415, 429),
+}
+_FILE: dict[int | str, dict[str, Any]] = {
+    200: {"description": "The file", "content": {"*/*": {"schema": {"type": "string", "format": "binary"}}}}
+}
+FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
+
+
+@router.post("/jobs", **_SUBMITTED)
+def submit_job(
+    asked: Annotated[Asked, Depends(asked_for)],
+    store: StoreDep,
+    settings: SettingsDep,
+    response: Response,
+    idempotency_key: IdempotencyKey = None,
+) -> dict[str, Any]:
+    """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
+    return _submitted(asked, store, settings, response, idempotency_key)
+
+
+@router.get("/jobs", response_model=JobPage)
+def list_jobs(
+    store: StoreDep,
+    state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
+    name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
+    before: Annotated[int | None, Query(ge=1, le=LARGEST, description="older than the job of this number")] = None,
+    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many")] = 100,
+) -> dict[str, Any]:
+    """Return jobs, latest first."""
+    found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
+    page = found[:limit]
+    return {"jobs": [job_record(job) for job in page], "next": page[-1].id if len(found) > limit else None}
+
+
+@router.get("/jobs/{number}", response_model=JobShown)
+def show_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
+    """Return where a job stands."""
+    return job_record(store.job(number))
+
+
+@router.delete("/jobs/{number}", status_code=HTTPStatus.NO_CONTENT, responses=problem_responses(409))
+def delete_job(number: JobNumber, store: StoreDep) -> None:
+    """Delete a job that has ended, and everything of it."""
+    with _as_it_stands():
+        store.delete(number)
+
+
+@router.post("/jobs/{number}/cancel", response_model=JobShown)
+def cancel_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
+    """Cancel a job; it keeps what it found, and can go on. One that has ended stays as it is."""
+    return job_record(store.cancel(number))
+
+
+@router.post("/jobs/{number}/resume", response_model=JobShown, responses=problem_responses(409))
+def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
+    """Queue a cancelled or failed job again, to go on from where it was."""
+    with _as_it_stands():
+        return job_record(store.resume(number))
+
+
+@router.post("/jobs/{number}/clone", **_SUBMITTED)
+def clone_job(
+    number: JobNumber,
+    clone: Clone,
+    store: StoreDep,
+    settings: SettingsDep,
+    response: Response,
+    idempotency_key: IdempotencyKey = None,
+) -> dict[str, Any]:
+    """Queue a copy of a job, with changes."""
+    job = store.job(number)
+    asked = Asked(
+        tables=merged(store.tables(number), clone.changes),
+        priority=job.priority if clone.priority is None else clone.priority,
+        limits=job.limits if clone.limits is None else within(clone.limits, settings.limits),
+    )
+    return _submitted(asked, store, settings, response, idempotency_key)
+
+
+@router.get("/jobs/{number}/job")
+def show_tables(number: JobNumber, store: StoreDep) -> dict[str, Any]:
+    """Return the tables of a job, as its job file has them."""
+    return store.tables(number)
+
+
+@router.get("/jobs/{number}/files", response_model=JobFiles)
+def list_files(number: JobNumber, store: StoreDep) -> dict[str, Any]:
+    """Return the names of a job's files."""
+    return {"files": store.artefacts(number)}
+
+
+@router.get("/jobs/{number}/files/{name}", response_class=Response, responses=_FILE)
+def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
+    """Return a file of a job, as it was given or made."""
+    file = store.artefact(number, name)
+    # Saved, never shown: what a job brought along must not run in a browser that has the token.
+    headers = {"Content-Disposition": f'attachment; filename="{_quoted(file.name)}"'}
+    return Response(file.content, media_type=file.media_type, headers=headers)
+
+
+def _submitted(asked: Asked, store: Store, settings: Settings, response: Response, key: str | None) -> dict[str, Any]:
+    require_no_file(asked.tables)
+    job: Job = submit(
+        store,
+        asked.tables,
+        priority=asked.priority,
+        key=key,
+        limits=asked.limits,
+        source=asked.source,
+        allowed_quantities=settings.allowed_quantities,
+    )
+    response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+    return job_record(job)
+
+
+@contextlib.contextmanager
+def _as_it_stands() -> Iterator[None]:
+    """Tell what a job cannot do in its state as a conflict."""
+    try:
+        yield
+    except NotFound:
+        raise
+    except InputError as error:
+        raise HTTPException(HTTPStatus.CONFLICT, str(error)) from None
+
+
+def _quoted(name: str) -> str:
+    return "".join(letter if letter.isascii() and (letter.isalnum() or letter in "._-") else "_" for letter in name)

@@ -1,0 +1,19 @@
+"""Changes to a JSON value as JSON (RFC 7396)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def merged(value: Any, changes: Any) -> Any:
+    """Return a value with changes: tables key by key, null takes a key away, everything else in place of what was."""
+    if not isinstance(changes, Mapping):
+        return changes
+    kept = dict(value) if isinstance(value, Mapping) else {}
+    for key, change in changes.items():
+        if change is None:
+            kept.pop(key, None)
+        else:
+            kept[key] = merged(kept.get(key), change)
+    return kept

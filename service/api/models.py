@@ -1,0 +1,112 @@
+"""What the API says of jobs, as JSON; and so what its schema promises."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import Path
+from pydantic import BaseModel, ConfigDict, Field
+
+from ..store import State
+
+LARGEST = 2**53 - 1
+JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
+"""A path parameter."""
+Count = Annotated[int, Field(ge=0)]
+
+
+class Shown(BaseModel):
+    """Part of an answer."""
+
+    model_config = ConfigDict(frozen=True)
+
+
+class JobLimits(Shown):
+    """What a job may use; null is no limit."""
+
+    seconds: float | None = Field(description="of its search, s")
+    evaluations: int | None = Field(description="designs that its search evaluates")
+    memory_bytes: int | None = Field(description="of its worker")
+
+
+class JobProgress(Shown):
+    """Where a search stands."""
+
+    stage: str
+    round: int
+    rounds: int = Field(description="how many are planned")
+    evaluations: int
+    feasible: int = Field(description="designs that meet every constraint")
+    hypervolume: float | None = Field(description="of the front so far; not comparable between jobs")
+    seconds: float | None
+
+
+class JobSummary(Shown):
+    """What a job found, in short."""
+
+    designs: Count
+    hypervolume: float | None
+    evaluations: Count
+    seconds: float | None
+    best: dict[str, float | str | None] = Field(description="the best value of each objective, by column")
+    axes: list[str] = Field(description="the columns of the points")
+    points: list[list[float | str | None]] = Field(description="at most 64 designs of the front")
+
+
+class JobShown(Shown):
+    """Where a job stands. Times are seconds since 1970, UTC."""
+
+    model_config = ConfigDict(frozen=True, title="Job")
+
+    id: int = Field(ge=1, description="its number", examples=[1])
+    key: str | None = Field(description="of its submission")
+    name: str = Field(examples=["Feeder"])
+    run: str = Field(description="the name of its run folder, wherever it is exported")
+    state: State
+    reason: str = Field(description="why it is in this state, in a sentence, or empty")
+    priority: int = Field(description="higher ones are solved first")
+    attempts: Count = Field(description="since it last went forward")
+    most_attempts: Count
+    limits: JobLimits
+    cancel_asked: bool
+    submitted: float
+    due: float = Field(description="it is not started before")
+    started: float | None
+    finished: float | None
+    worker: str | None = Field(description="who solves it")
+    lease_until: float | None
+    generations: Count = Field(description="that it can go on from")
+    events: Count = Field(description="the number of its last event")
+    progress: JobProgress | None
+    summary: JobSummary | None
+
+
+class JobPage(Shown):
+    """Some jobs, latest first."""
+
+    jobs: list[JobShown]
+    next: int | None = Field(description="`before` of the next page; null on the last one")
+
+
+class EventShown(Shown):
+    """Something that happened to a job."""
+
+    model_config = ConfigDict(frozen=True, title="Event")
+
+    number: int = Field(ge=1, description="1, 2, 3, ... without gaps")
+    at: float = Field(description="seconds since 1970, UTC")
+    kind: str = Field(description="state, progress or message", examples=["state"])
+    data: dict[str, Any] = Field(examples=[{"state": "queued", "reason": ""}])
+
+
+class EventPage(Shown):
+    """Some events of a job, in order."""
+
+    events: list[EventShown]
+    last: Count = Field(description="`after` of the next page")
+
+
+class JobFiles(Shown):
+    """The files of a job."""
+
+    files: list[str] = Field(examples=[["job.toml", "versions.json"]])

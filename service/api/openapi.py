@@ -1,0 +1,92 @@
+"""The description of the API (OpenAPI 3.1): what FastAPI finds out, and what only its author knows."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI
+
+from .job_requests import EXAMPLE, JSON, TOML, Submission
+from .problems import Problem
+
+_PREFIX = "#/components/schemas/"
+_EXAMPLE_TOML = """\
+name = "Feeder"
+[mechanism]
+speed = "60 rpm"
+slider = { mass = "2 kg" }
+[variables]
+crank = ["20 mm", "200 mm"]
+rod = ["60 mm", "600 mm"]
+offset = ["0 mm", "100 mm"]
+[constraints]
+stroke = { equals = "280 mm" }
+[objectives]
+time_ratio = "maximise"
+transmission_angle = "maximise"
+"""
+_OF_THE_JOB = {"number": "$response.body#/id"}
+_LINKED = (
+    "show_job",
+    "cancel_job",
+    "resume_job",
+    "delete_job",
+    "clone_job",
+    "show_tables",
+    "list_files",
+    "list_events",
+)
+
+
+def describe(app: FastAPI) -> None:
+    """Have an application give the whole description."""
+    found = app.openapi
+
+    def described() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _completed(found(), secured=app.state.settings.token is not None)
+        return app.openapi_schema
+
+    app.openapi = described  # type: ignore[method-assign]
+
+
+def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
+    parts = schema.setdefault("components", {})
+    shapes = parts.setdefault("schemas", {})
+    shapes["Problem"] = Problem.model_json_schema()
+    shapes |= _job_file()
+    submission = Submission.model_json_schema(ref_template=f"{_PREFIX}{{model}}")
+    shapes |= submission.pop("$defs", {})
+    submission["properties"]["job"] = {"$ref": f"{_PREFIX}JobFile"}
+    shapes["Submission"] = submission
+    content = {
+        JSON: {
+            "schema": {"$ref": f"{_PREFIX}Submission"},
+            "examples": {"feeder": {"summary": "A feeder", "value": {"job": EXAMPLE, "priority": 1}}},
+        },
+        TOML: {
+            "schema": {"type": "string", "description": "a job file"},
+            "examples": {"feeder": {"summary": "A feeder", "value": _EXAMPLE_TOML}},
+        },
+    }
+    for path in ("/api/v1/jobs", "/api/v1/check"):
+        schema["paths"][path]["post"]["requestBody"] = {"required": True, "content": content}
+    for path in ("/api/v1/jobs", "/api/v1/jobs/{number}/clone"):
+        created = schema["paths"][path]["post"]["responses"]["201"]
+        created["links"] = {name: {"operationId": name, "parameters": _OF_THE_JOB} for name in _LINKED}
+        created["headers"] = {"Location": {"schema": {"type": "string"}, "description": "the address of the job"}}
+    if secured:
+        parts["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
+        schema["security"] = [{"token": []}]
+    return schema
+
+
+def _job_file() -> dict[str, Any]:
+    """Return the schema of job files as components, each part under the name "JobFile.Part"."""
+    from ...optimise.job import job_schema
+
+    text = json.dumps(job_schema()).replace('"#/$defs/', f'"{_PREFIX}JobFile.')
+    job = json.loads(text)
+    del job["$schema"]
+    return {f"JobFile.{name}": part for name, part in job.pop("$defs").items()} | {"JobFile": job}

@@ -1,0 +1,123 @@
+"""What a client is told when something is refused or fails: problem documents (RFC 9457), whatever the reason."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+from starlette.routing import Match
+
+from ...model.errors import InputError, NotFound, QueueFull, RunError, SlidercrankError, StoreError
+
+_log = logging.getLogger(__name__)
+MEDIA_TYPE = "application/problem+json"
+_MOST = 8  # problems of one request that are listed
+_LONGEST = 4000  # characters of a sentence
+FAULT = "this is a fault of the service, not of the request; its log has the details; tell whoever runs it"
+_STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
+    (QueueFull, HTTPStatus.SERVICE_UNAVAILABLE),
+    (StoreError, HTTPStatus.SERVICE_UNAVAILABLE),
+    (RunError, HTTPStatus.CONFLICT),  # what is asked of a job is not there yet
+    (NotFound, HTTPStatus.NOT_FOUND),
+    (InputError, HTTPStatus.UNPROCESSABLE_ENTITY),
+)
+_RETRY = {"Retry-After": "5"}
+
+
+class Problem(BaseModel):
+    """Why a request was refused or failed."""
+
+    type: str = Field("about:blank", description="always about:blank: the status says which kind of problem it is")
+    title: str = Field(description="the status in words", examples=["Not Found"])
+    status: int = Field(description="the HTTP status", examples=[404])
+    detail: str = Field(description="rule; value; remedy", examples=["there is no job 7; list the jobs"])
+
+
+def problem(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
+    """Return a problem document as a response."""
+    if len(detail) > _LONGEST:
+        detail = f"{detail[: _LONGEST - 4]} ..."
+    content = Problem(type="about:blank", title=HTTPStatus(status).phrase, status=status, detail=detail)
+    return JSONResponse(content.model_dump(), status, dict(headers or {}), MEDIA_TYPE)
+
+
+def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the `responses` of an endpoint that may answer with these statuses."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+
+
+def answer_problems(app: FastAPI) -> None:
+    """Have an application answer every exception that is expected with a problem document."""
+    app.add_exception_handler(SlidercrankError, _refused)
+    app.add_exception_handler(RequestValidationError, _not_valid)
+    app.add_exception_handler(HTTPException, _http)
+
+
+def status_of(error: SlidercrankError) -> HTTPStatus:
+    """Return the status that says of which kind an exception is."""
+    return next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
+
+
+async def _refused(_request: Request, error: Exception) -> Response:
+    assert isinstance(error, SlidercrankError)
+    status = status_of(error)
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR:
+        _log.warning("%s: %s", type(error).__name__, error)
+    return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None)
+
+
+async def _not_valid(_request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    found = error.errors()
+    sentences = [_sentence(one) for one in found[:_MOST]]
+    more = ["... and more"] if len(found) > _MOST else []
+    return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *more]))
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    detail, headers = error.detail, error.headers
+    if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
+        detail = "a request names a place of the API; there is nothing here; see /api/v1/openapi.json"
+    elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        headers = {"Allow": ", ".join(_methods(request))}
+        detail = f"this place does not know the method; got {request.method}; use {headers['Allow']}"
+    return problem(error.status_code, detail, headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """Return the methods that a place knows: the framework names those of the first endpoint there only."""
+
+    def known(method: str) -> bool:
+        scope = {**request.scope, "method": method}
+        return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
+
+    return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if known(method)]
+
+
+def _sentence(details: Mapping[str, Any]) -> str:
+    """Return rule and value of one thing that is wrong in a request."""
+    from ...optimise.units import shown
+
+    where = _place(details["loc"])
+    if details["type"] == "missing":
+        return f"{where}: is required; it is missing; add it"
+    if details["type"] == "extra_forbidden":
+        return f"{where}: unknown; got {shown(details['input'])}; leave it out"
+    message = str(details["msg"])
+    return f"{where}: {message[:1].lower()}{message[1:]}; got {shown(details['input'])}; correct it"
+
+
+def _place(location: Sequence[Any]) -> str:
+    """Return where something is wrong: "query limit", "body priority"; keys of the client are shortened."""
+    first, *rest = [str(part) for part in location] or ["request"]
+    text = ".".join(rest)
+    return f"{first} {text[:100]}" if text else first

@@ -1,0 +1,149 @@
+"""Who may talk to the service: nobody without the token, no page of another site, nobody under another name."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import logging
+from http import HTTPStatus
+from urllib.parse import parse_qs, urlsplit
+
+from starlette.datastructures import MutableHeaders
+from starlette.requests import HTTPConnection
+from starlette.responses import RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from .problems import FAULT, problem
+from .settings import Settings
+
+_log = logging.getLogger(__name__)
+OPEN = "/api/v1/health/live"
+"""The one place that needs no token: it says only that the service answers."""
+_HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+
+class Guard:
+    """ASGI middleware: refuses requests, answers what went wrong unexpectedly, and adds headers for browsers.
+
+    Refused are, in this order: a Host that is not one of the service's names, as after DNS rebinding; an Origin that is
+    not the service itself, to the port, since cookies do not tell ports apart; a token that is wrong or missing. The
+    token comes as `Authorization: Bearer ...`, or in the cookie that `GET /?token=...` sets.
+    """
+
+    def __init__(self, app: ASGIApp, *, settings: Settings) -> None:
+        """Stand before an application."""
+        self.app = app
+        self.hosts = frozenset(host.lower() for host in settings.hosts)
+        self.token = None if settings.token is None else settings.token.encode()
+        # Cookies are shared by all ports of a machine: two services must not take each other's for their own.
+        self.cookie = f"slidercrank-{hashlib.sha256(self.token or b'').hexdigest()[:12]}"
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse a request, or pass it on."""
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+            return
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        started = False
+
+        async def protected(message: Message) -> None:
+            nonlocal started
+            if message["type"] == "http.response.start":
+                started = True
+                _protect(MutableHeaders(scope=message))
+            await send(message)
+
+        try:
+            answer = self._answer(HTTPConnection(scope)) or self.app
+            await answer(scope, receive, protected)
+        except Exception as error:
+            _log.exception("%s %s", scope["method"], scope["path"])
+            if started:
+                raise  # so that the server breaks the connection off: half a response must not look whole
+            fault = problem(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
+            await fault(scope, receive, protected)
+
+    def _answer(self, connection: HTTPConnection) -> Response | None:
+        """Return what a request is answered without being passed on; None for one that is."""
+        scope, headers = connection.scope, connection.headers
+        host = headers.getlist("host")
+        if "*" not in self.hosts and (len(host) != 1 or _name(host[0]) not in self.hosts):
+            names = ", ".join(sorted(self.hosts))
+            return problem(
+                HTTPStatus.FORBIDDEN,
+                f"the service is called by one of its names, {names}; "
+                f"got Host {host[0][:100] if host else 'missing'!r}; use one, or serve with --host",
+            )
+        for origin in headers.getlist("origin"):
+            if not _same(origin, host[0] if host else ""):
+                return problem(
+                    HTTPStatus.FORBIDDEN,
+                    f"a page of another site may not ask; got Origin {origin[:100]!r}; "
+                    "open the page of the service itself",
+                )
+        if self.token is None or scope["path"] == OPEN:
+            return None
+        if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
+            return self._let_in(scope)
+        if not self._knows(connection):
+            return problem(
+                HTTPStatus.UNAUTHORIZED,
+                "a request carries the token of the service; got none or a wrong "
+                "one; send it as Authorization: Bearer TOKEN, or open the address that the service printed",
+                {"WWW-Authenticate": "Bearer"},
+            )
+        return None
+
+    def _let_in(self, scope: Scope) -> Response:
+        """Return the answer to an address with a token: a cookie, and the same address without it."""
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
+        if len(given) != 1 or not self._right(given[0]):
+            return problem(
+                HTTPStatus.UNAUTHORIZED,
+                "the address carries the token of the service; got a wrong one; "
+                "open the address that the service printed last",
+                {"WWW-Authenticate": "Bearer"},
+            )
+        response = RedirectResponse("/", HTTPStatus.SEE_OTHER)
+        secure = scope.get("scheme") == "https"
+        response.set_cookie(self.cookie, given[0], httponly=True, samesite="strict", secure=secure, path="/")
+        return response
+
+    def _knows(self, connection: HTTPConnection) -> bool:
+        scheme, _, token = connection.headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer" and self._right(token.strip()):
+            return True
+        return self._right(connection.cookies.get(self.cookie, ""))
+
+    def _right(self, token: str) -> bool:
+        """Whether it is the token, found out in a time that tells nothing about it."""
+        return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
+
+
+def _name(host: str) -> str:
+    """Return a Host without its port, in small letters."""
+    name, colon, port = host.rpartition(":")
+    return (name if colon and port.isdecimal() else host).lower()
+
+
+def _same(origin: str, host: str) -> bool:
+    try:
+        parts = urlsplit(origin)
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
+
+
+def _protect(headers: MutableHeaders) -> None:
+    for name, value in _HEADERS.items():
+        headers.setdefault(name, value)

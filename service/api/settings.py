@@ -1,0 +1,34 @@
+"""What whoever runs the API decides about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..store import NO_LIMITS, Limits
+
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+"""Names of this machine for itself."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How an API behaves.
+
+    token: what every request must carry; None lets everybody in who can reach it. hosts: names by which the service may
+    be called, without ports; "*" is any. most_body: bytes of a request. most_depth: tables within tables of a JSON
+    body. submissions_per_minute: of all clients together; 0 is no limit. allowed_quantities: functions that jobs may
+    name as quantities of their own, as "module:function"; they run on the workers with all that these may do. limits:
+    what a job may be given at most, and is given where it asks for nothing. figures: whether figures are drawn.
+    """
+
+    token: str | None = None
+    hosts: tuple[str, ...] = LOOPBACK
+    most_body: int = 1_048_576
+    most_depth: int = 32
+    submissions_per_minute: int = 600
+    allowed_quantities: frozenset[str] = frozenset()
+    limits: Limits = NO_LIMITS
+    figures: bool = True
+
+
+DEFAULT = Settings()

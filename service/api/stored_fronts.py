@@ -1,0 +1,115 @@
+"""Fronts of jobs that have ended, kept at hand: they do not change, and reading one of 10,000 designs takes a while."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Collection
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated
+
+from fastapi import Depends, Path, Request
+
+from ...model.errors import NotFound
+from ..allowed_quantities import require_allowed
+from ..result import Result, Row
+from ..store import Job, Store
+from ..stored_designs import StoredDesign, design_of, front_of
+from .models import JobNumber
+
+if TYPE_CHECKING:
+    from ...optimise.front import ParetoFront
+    from ...optimise.problem import Problem
+
+MOST_DESIGNS = 40_000
+"""Designs kept at hand, of all fronts together; 100 MB."""
+
+DesignNumber = Annotated[
+    int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
+]
+
+
+class StoredFront:
+    """The front of a job that has ended, with what is made of it when it is first needed."""
+
+    def __init__(self, job: Job, result: Result, problem: Callable[[], Problem]) -> None:
+        """Take a job, what it found, and what reads the problem that it stated."""
+        self.job = job
+        self.result = result
+        self.images: dict[tuple[str, str], bytes] = {}
+        self._read = problem
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem that the job stated, with the seed of its search. Raises `JobError`."""
+        problem = self._read()
+        return replace(problem, settings=replace(problem.settings, seed=self.result.seed))
+
+    @cached_property
+    def front(self) -> ParetoFront:
+        """The front as figures take it."""
+        return front_of(self.problem, self.result)
+
+    def row(self, number: int) -> Row:
+        """Return a design by its number, counted from 1. Raises `NotFound`."""
+        count = len(self.result.designs)
+        if number > count:
+            designs = f"designs 1 to {count}" if count else "no designs"
+            raise NotFound(f"job {self.job.id} has {designs}; got {number}; see the designs of the job")
+        return self.result.designs[number - 1]
+
+    def design(self, number: int) -> StoredDesign:
+        """Return a design, by its number, as the machine that it is."""
+        return design_of(self.problem, self.row(number))
+
+
+class StoredFronts:
+    """The fronts that were asked for last, a bounded number of designs. Threads may share it."""
+
+    def __init__(self, store: Store, *, allowed: Collection[str] = (), most_designs: int = MOST_DESIGNS) -> None:
+        """Read from a store. allowed: functions, "module:function", that its jobs may name as quantities."""
+        self._store = store
+        self._allowed = allowed
+        self._most = most_designs
+        self._kept: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
+        self._reading = threading.Lock()
+
+    def of(self, number: int) -> StoredFront:
+        """Return the front of a job. Raises `NotFound` for a job that is not there, `RunError` without a result."""
+        job = self._store.job(number)
+        key = (job.id, job.finished)
+        with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
+            front = self._kept.get(key)
+            if front is None:
+                front = StoredFront(job, self._store.result(number), lambda: self._problem(number))
+                if job.finished is not None:
+                    self._keep(key, front)
+            else:
+                self._kept.move_to_end(key)
+        return front
+
+    def _problem(self, number: int) -> Problem:
+        from ...optimise.job import parse_job
+
+        tables = self._store.tables(number)
+        require_allowed(tables, self._allowed)
+        return parse_job(tables, allow_user_code=bool(self._allowed))
+
+    def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
+        self._kept[key] = front
+        while len(self._kept) > 1 and sum(len(kept.result.designs) for kept in self._kept.values()) > self._most:
+            self._kept.popitem(last=False)
+
+
+async def _fronts(request: Request) -> StoredFronts:
+    fronts: StoredFronts = request.app.state.fronts
+    return fronts
+
+
+def _front(number: JobNumber, fronts: Annotated[StoredFronts, Depends(_fronts)]) -> StoredFront:
+    return fronts.of(number)
+
+
+FrontDep = Annotated[StoredFront, Depends(_front)]
+"""The front of the job in the path, with its designs."""

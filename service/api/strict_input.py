@@ -1,0 +1,160 @@
+"""What a request may bring: refused before anything reads it are bodies too large, and JSON that no job has."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from http import HTTPStatus
+from typing import Any
+
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from ...model.errors import InputError
+from .problems import problem
+
+_JSON = re.compile(r"application/(json|[\w.+-]+\+json)\s*(;.*)?", re.IGNORECASE)
+_LARGEST = 2**53
+"""Whole numbers beyond it change on their way through the numbers of other languages (RFC 8259, 6)."""
+_DIGITS = 4 * len(str(_LARGEST))
+_LARGE = 16_384  # bytes; longer bodies are read in a thread, so that other requests go on meanwhile
+
+
+class StrictInput:
+    """ASGI middleware: reads a body up to a size, refuses what is not strict JSON, and passes it on unchanged."""
+
+    def __init__(self, app: ASGIApp, *, most_body: int, most_depth: int) -> None:
+        """Stand before an application. most_body: in bytes. most_depth: tables or lists within each other."""
+        self.app = app
+        self.most_body = most_body
+        self.most_depth = most_depth
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse a request, or pass it on."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        if "\0" in scope["path"] or b"%00" in scope["query_string"] or b"\0" in scope["query_string"]:
+            refused = problem(HTTPStatus.BAD_REQUEST, "an address has no NUL; got one; leave it out")
+            await refused(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        body = await self._body(headers, receive)
+        if body is None:
+            rule = f"a request has at most {self.most_body} bytes; got more; is it the right file?"
+            await problem(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})(scope, receive, send)
+            return
+        if body and _JSON.fullmatch(headers.get("content-type", "")):
+            try:
+                if len(body) > _LARGE:
+                    await run_in_threadpool(read_json, body, self.most_depth)
+                else:
+                    read_json(body, self.most_depth)
+            except InputError as error:
+                await problem(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
+                return
+        await self.app(scope, _again(body, receive), send)
+
+    async def _body(self, headers: Headers, receive: Receive) -> bytes | None:
+        """Return the whole body; None if it is too large. It is counted as it comes: a length may lie, or be absent."""
+        length = headers.get("content-length", "0")
+        if not length.isdecimal() or len(length) > 15 or int(length) > self.most_body:
+            return None
+        parts, size, more = list[bytes](), 0, True
+        while more:
+            message = await receive()
+            if message["type"] != "http.request":
+                break  # the client has gone: what follows finds out
+            parts.append(message.get("body", b""))
+            size += len(parts[-1])
+            if size > self.most_body:
+                return None
+            more = message.get("more_body", False)
+        return b"".join(parts)
+
+
+def _again(body: bytes, receive: Receive) -> Receive:
+    """Return what gives the body once more, then whatever comes."""
+    first = True
+
+    async def replayed() -> Message:
+        nonlocal first
+        if first:
+            first = False
+            return {"type": "http.request", "body": body, "more_body": False}
+        return await receive()
+
+    return replayed
+
+
+def read_json(body: bytes, most_depth: int) -> Any:
+    """Return what a JSON text says. Raises `InputError` for what `require_moderate` refuses, and for doubled keys."""
+    try:
+        value = json.loads(body, parse_constant=_no_number, parse_int=_whole, object_pairs_hook=_unique)
+    except RecursionError:
+        raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it") from None
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"the body is no valid JSON: {error}; correct it") from None
+    require_moderate(value, most_depth)
+    return value
+
+
+def require_moderate(value: Any, most_depth: int) -> None:
+    """Refuse data that nests too deeply, and numbers and texts that other programs would not read as they are.
+
+    Raises `InputError` for infinities, what is not a number, whole numbers beyond 2^53, dates, and text with NUL or
+    halves of characters.
+    """
+    level, depth = [value], 0
+    while level:
+        depth += 1
+        below = list[Any]()
+        for item in level:
+            if not isinstance(item, dict | list):
+                _require_plain(item)
+            elif depth > most_depth:
+                raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it")
+            else:
+                below += [*item, *item.values()] if isinstance(item, dict) else item
+        level = below
+
+
+def _require_plain(item: object) -> None:
+    if isinstance(item, str):
+        if "\0" in item or (not item.isascii() and any("\ud800" <= letter <= "\udfff" for letter in item)):
+            raise InputError("a text has whole characters and no NUL; got another one; leave that character out")
+    elif isinstance(item, float):
+        if not math.isfinite(item):
+            raise InputError(f"a number is finite; got {item}; leave it out where there is no bound")
+    elif isinstance(item, int):
+        if abs(item) > _LARGEST:
+            raise _too_large()
+    elif item is not None:
+        raise InputError(f"a body has numbers and texts; got the date {item}; write it in quotes")
+
+
+def _too_large() -> InputError:
+    return InputError("a whole number is at most 2^53; got a larger one; give a smaller one")
+
+
+def _no_number(text: str) -> None:
+    raise InputError(f"a number is finite; got {text}; leave it out where there is no bound")
+
+
+def _whole(text: str) -> int:
+    if len(text) > _DIGITS:  # long ones take a time that grows with the square of their length
+        raise _too_large()
+    return int(text)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        raise InputError(f"each key may come once; got {twice[:100]!r} twice; remove one")
+    return table

@@ -1,0 +1,62 @@
+"""A copy of a store in a file, made while it is used."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+from pathlib import Path
+
+from ...model.errors import InputError, StoreError
+from .database import Database
+
+_PATIENCE = 30.0  # s to wait for other writers
+
+
+def back_up(database: Database, target: Path) -> None:
+    """Copy a database of SQLite, as it is at one moment, into a new file, which is whole or not there.
+
+    Jobs are submitted and solved meanwhile. The copy is looked through before it gets its name. Raises `InputError` for
+    a database on a server and for a file that is there already, `StoreError` if it cannot be read or written.
+    """
+    source = database.engine.url.database
+    if not database.sqlite or source is None:
+        raise InputError(
+            f"only a store in a file is copied this way; got {database.name}; back it up with pg_dump, see "
+            "docs/service.md"
+        )
+    if target.exists():
+        raise InputError(f"a backup is a new file; {target} is there already; name another one, or move it away")
+    draft = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        with (
+            contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as there,
+            contextlib.closing(sqlite3.connect(draft)) as copy,
+        ):
+            there.backup(copy)  # in one step, so that no writer makes it begin again
+            copy.execute("PRAGMA journal_mode=DELETE")  # so that the copy is one file
+            found = copy.execute("PRAGMA integrity_check").fetchone()[0]
+        if found != "ok":
+            raise StoreError(f"a backup must be whole; that of {database.name} gave: {found}; run slidercrank doctor")
+        _sync(draft)
+        draft.rename(target)
+        _sync(target.parent)
+    except (sqlite3.Error, OSError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise StoreError(
+            f"a backup needs a place that can be written; {target} gave: {reason}; see that the folder is there and "
+            "the disk has room"
+        ) from error
+    finally:
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def _sync(path: Path) -> None:
+    if os.name == "nt":  # a read-only handle cannot be flushed there
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,0 +1,91 @@
+"""What can be wrong inside a database of jobs: looked for, changed nowhere."""
+
+from __future__ import annotations
+
+import json
+import time
+
+from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
+
+from .clock import now
+from .database import Database
+from .schema import designs, events, generations, jobs
+
+_MOST = 5  # of a kind that are named
+
+
+def damages(database: Database) -> list[str]:
+    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences."""
+    with database.reading() as connection:
+        found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
+        return found or _miscounts(connection)  # a damaged file need not be counted
+
+
+def clock_ahead(database: Database) -> float:
+    """Return how far the clock of the database is ahead of the one of this machine, in s."""
+    with database.reading() as connection:
+        before = time.time()
+        there = connection.execute(select(now())).scalar_one()
+        return there - 0.5 * (before + time.time())
+
+
+def server_version(database: Database) -> str:
+    """Return which database it is, with its version."""
+    query = "SELECT sqlite_version()" if database.sqlite else "SHOW server_version"
+    with database.reading() as connection:
+        number = str(connection.scalar(text(query))).split()[0]
+    return f"{'SQLite' if database.sqlite else 'PostgreSQL'} {number}"
+
+
+def _of_sqlite(connection: Connection) -> list[str]:
+    found = [str(row[0]) for row in connection.execute(text(f"PRAGMA integrity_check({_MOST})"))]
+    if found != ["ok"]:
+        return found
+    rows = connection.execute(text("PRAGMA foreign_key_check")).all()
+    return [f"{row[0]} has a row of a job that is not there" for row in rows[:_MOST]]
+
+
+def _of_postgresql(connection: Connection) -> list[str]:
+    broken = connection.execute(
+        text(
+            "SELECT c.relname FROM pg_index i JOIN pg_class c ON c.oid = i.indexrelid "
+            "JOIN pg_namespace n ON n.oid = c.relnamespace "
+            "WHERE n.nspname = ANY (current_schemas(false)) AND NOT (i.indisvalid AND i.indisready)"
+        )
+    ).scalars()
+    found = [f"the index {name} is not valid; REINDEX it" for name in broken]
+    failures = connection.scalar(
+        text("SELECT checksum_failures FROM pg_stat_database WHERE datname = current_database()")
+    )
+    if failures:
+        found.append(f"{failures} pages failed their checksum; restore a backup")
+    off = [name for name in ("fsync", "full_page_writes") if connection.scalar(text(f"SHOW {name}")) != "on"]
+    return [*found, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
+
+
+def _miscounts(connection: Connection) -> list[str]:
+    """Return the jobs of which rows are missing or too many; one statement, so that all is of one moment."""
+
+    def count(table: FromClause) -> ColumnElement[int]:
+        return select(func.count()).where(table.c.job == jobs.c.id).scalar_subquery()
+
+    query = select(
+        jobs.c.id,
+        jobs.c.summary,
+        jobs.c.events,
+        jobs.c.generations,
+        count(events).label("has_events"),
+        count(generations).label("has_generations"),
+        count(designs).label("has_designs"),
+    ).order_by(jobs.c.id)
+    found = []
+    for row in connection.execute(query):
+        said = 0 if row.summary is None else json.loads(row.summary)["designs"]
+        for kind, expected, there in (
+            ("events", row.events, row.has_events),
+            ("generations", row.generations, row.has_generations),
+            ("designs", said, row.has_designs),
+        ):
+            if expected != there:
+                found.append(f"job {row.id} says that it has {expected} {kind}, {there} are there")
+    return found[:_MOST]

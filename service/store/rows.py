@@ -1,0 +1,55 @@
+"""One job in a transaction: reading its row, changing its state."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from sqlalchemy import Connection, select, update
+
+from ...model.errors import InputError, NotFound, RunError
+from .events_log import add_events, state_event
+from .records import RESUMABLE, SHOWN, Job, State, job_of
+from .schema import jobs
+
+
+def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
+    """Return a job, locked for the transaction if asked. Raises `NotFound` if it is not there."""
+    query = select(*SHOWN).where(jobs.c.id == number)
+    row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
+    if row is None:
+        raise NotFound(f"there is no job {number}; list the jobs")
+    return job_of(row)
+
+
+def become(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
+    """Bring a job into a state, tell it, and return the job."""
+    values = {"state": state, "reason": reason, "events": job.events + 1, **changes}
+    connection.execute(update(jobs).where(jobs.c.id == job.id).values(values))
+    add_events(connection, job.id, job.events + 1, [state_event(state, reason)])
+    return the_job(connection, job.id)
+
+
+def require_resumable(job: Job) -> None:
+    """Raise `InputError` for a job that cannot go on."""
+    if job.state not in RESUMABLE:
+        raise InputError(f"only a cancelled or failed job can go on; job {job.id} is {job.state}; submit it anew")
+
+
+def the_record(connection: Connection, job: Job) -> dict[str, Any]:
+    """Return the record of a job's result. Raises `RunError` if it has none, or a damaged one."""
+    text = connection.scalar(select(jobs.c.result).where(jobs.c.id == job.id))
+    if text is None:
+        raise RunError(f"job {job.id} has no result: it is {job.state}; wait for it, or see its events")
+    try:
+        record = json.loads(text)
+    except ValueError as error:
+        raise damaged(job.id, error) from error
+    if not isinstance(record, dict):
+        raise damaged(job.id, TypeError("no record"))
+    return record
+
+
+def damaged(number: int, error: Exception) -> RunError:
+    """Return the error of a result that cannot be read."""
+    return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")

@@ -1,0 +1,52 @@
+"""Short versions of the faults of `make faults`: real processes, real signals, and a search of the service's own."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from faults.commits import commits
+from faults.full import full
+from faults.kills import kills
+from faults.pauses import pauses
+from faults.places import Kind
+from faults.restarts import restarts
+from tests.service.store import postgresql
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux")
+needs_server = pytest.mark.skipif(postgresql.why_not() is not None, reason=str(postgresql.why_not()))
+both = pytest.mark.parametrize("kind", ["sqlite", pytest.param("postgresql", marks=needs_server)])
+
+
+@both
+def test_killed_workers_lose_and_double_nothing(kind: Kind) -> None:
+    verdict = kills(kind, 4, seed=3)
+    assert verdict.violations == []
+    assert verdict.resumptions > 0
+
+
+def test_paused_workers_write_nothing_after_their_lease() -> None:
+    verdict = pauses("sqlite", 2, seed=1)
+    assert verdict.violations == []
+    assert verdict.refused > 0
+
+
+@needs_server
+def test_a_server_that_crashes_loses_nothing() -> None:
+    count, verdict = restarts(3.0, seed=1)
+    assert verdict.violations == []
+    assert count > 0
+
+
+def test_a_full_disk_loses_and_damages_nothing() -> None:
+    verdict = full(2, seed=1)
+    assert verdict.violations == []
+    assert verdict.failed > 0
+
+
+@both
+def test_no_commit_that_fails_loses_anything(kind: Kind) -> None:
+    count, verdict = commits(kind, every=6)
+    assert verdict.violations == []
+    assert count >= 3

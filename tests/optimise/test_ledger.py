@@ -1,0 +1,297 @@
+"""A run that was stopped, wherever, goes on from what it kept and ends as if it had not been; whatever the method."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import ForeignRecords
+from slidercrank.optimise import identity, ledger
+from slidercrank.optimise.front import ParetoFront, Progress
+from slidercrank.optimise.identity import identity_of
+from slidercrank.optimise.ledger import Cancelled, Identity, Ledger, Numbers, Record
+from slidercrank.optimise.methods.registry import METHODS, NAMES
+from slidercrank.optimise.problem import Problem, Sense
+from slidercrank.optimise.robust import Robust, robust
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import Bounds, degrees, problem, shipped
+
+# Both signs of the offset, so that there are two sheets; a peak among the objectives and one among the constraints.
+HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
+LIMITED: dict[str, Bounds] = HELD | {"peak_slider_speed": (None, 4.0)}
+SETTINGS: dict[str, dict[str, int]] = {
+    "auto": {"samples": 256},
+    "slsqp": {},
+    "trust_constr": {},
+    "differential_evolution": {"evaluations": 1_000},
+    "shgo": {"evaluations": 64},
+    "minimax": {"evaluations": 2_000},
+    "epsilon_constraint": {"evaluations": 16_700},
+    "chebyshev": {"evaluations": 16_700},
+    "nbi": {"evaluations": 16_700},
+    "tpe": {"samples": 8, "evaluations": 40},
+    "cmaes": {"samples": 6, "evaluations": 60},
+}
+
+
+@pytest.fixture(autouse=True)
+def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep every step at once, so that runs can be cut within their rounds."""
+    monkeypatch.setattr(ledger, "PAUSE", 0.0)
+
+
+def asked(method: str) -> Problem:
+    """Return a small problem for a method."""
+    alone = method != "auto" and METHODS[method].objectives == "one"
+    given = problem(
+        {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
+        LIMITED,
+        crank=(0.05, 0.15),
+        rod=(0.2, 0.6),
+        offset=(-0.1, 0.15),
+        designs=6,
+    )
+    settings = SETTINGS.get(method, {"samples": 16, "evaluations": 80})
+    return replace(given, settings=replace(given.settings, method=method, seed=5, **settings))
+
+
+def content(front: ParetoFront) -> tuple[object, ...]:
+    """Return all that a front is but the time that it took, exactly."""
+    return (
+        front.status,
+        front.message,
+        front.evaluations,
+        front.hypervolume,
+        front.dimensions.tobytes(),
+        front.values.tobytes(),
+        front.designs.to_csv(),
+        [(owner.tobytes(), slopes.tobytes()) for owner, slopes in front.goals],
+        [edges.tobytes() for edges in front.active],
+        [replace(entry, seconds=0.0) for entry in front.history],
+    )
+
+
+def steps(records: list[Record]) -> bytes:
+    return b"".join(record.words.tobytes() for record in records)
+
+
+@cache
+def whole(method: str) -> tuple[tuple[object, ...], tuple[Record, ...], tuple[Progress, ...]]:
+    """Return what an uninterrupted run gives, keeps and tells."""
+    kept: list[Record] = []
+    told: list[Progress] = []
+    front = solve(asked(method), keep=kept.append, progress=told.append)
+    assert front.status == "done"
+    return content(front), tuple(kept), tuple(told)
+
+
+@pytest.mark.parametrize("method", NAMES)
+def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
+    found, records, told = whole(method)
+    assert len(records) >= 6
+    for cut in (1, 2, len(records) - 1, len(records)):
+        kept, again = list(records[:cut]), list[Progress]()
+        front = solve(asked(method), resume=records[:cut], keep=kept.append, progress=again.append)
+        assert content(front) == found
+        assert steps(kept) == steps(list(records))
+        # Rounds that were told are not told again.
+        assert [entry.round for entry in again] == [entry.round for entry in told[records[cut - 1].told :]]
+
+
+@pytest.mark.parametrize("method", NAMES)
+def test_a_run_that_is_cancelled_again_and_again_ends_as_if_it_had_not_been(method: str) -> None:
+    """Each time within a round: after some of the questions that a whole run is asked."""
+    found, records, _ = whole(method)
+    kept: list[Record] = []
+    asked_for = 0
+
+    def cancelled() -> bool:
+        nonlocal asked_for
+        asked_for += 1
+        return asked_for > limit
+
+    limit = 1 << 62
+    solve(asked(method), cancelled=cancelled)
+    part = asked_for // 3
+    assert part >= 3
+    stops = 0
+    while True:
+        asked_for, limit = 0, part
+        before = len(kept)
+        front = solve(asked(method), resume=tuple(kept), keep=kept.append, cancelled=cancelled)
+        if front.status != "cancelled":
+            break
+        stops += 1
+        if len(kept) == before:  # the same step took all of it
+            part *= 2
+    assert stops >= 2
+    assert content(front) == found
+    assert steps(kept) == steps(list(records))
+
+
+def test_a_kill_in_a_round_loses_no_more_than_the_step_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, _, _ = whole("auto")
+
+    class Killed(BaseException):
+        pass
+
+    kept: list[Record] = []
+
+    def keep(record: Record) -> None:
+        kept.append(record)
+        if len(kept) == 7:
+            raise Killed
+
+    with pytest.raises(Killed):
+        solve(asked("auto"), keep=keep)
+    assert content(solve(asked("auto"), resume=kept)) == found
+
+
+@pytest.mark.parametrize("method", ["auto", "slsqp", "nsga2"])
+def test_a_job_without_a_feasible_design_goes_on_bit_for_bit(method: str) -> None:
+    held: dict[str, Bounds] = {"stroke": (0.18, 0.2), "time_ratio": (1.5, None), "transmission_angle": (1.0, None)}
+    alone = method == "slsqp"
+    wanted: dict[str, Sense | float] = {"peak_torque": "minimise"}
+    given = problem(wanted if alone else {**wanted, "footprint": "minimise"}, held, designs=4)
+    samples = {"samples": 64} if method != "slsqp" else {}
+    given = replace(given, settings=replace(given.settings, method=method, **samples))
+    kept: list[Record] = []
+    front = solve(given, keep=kept.append)
+    assert front.status == "infeasible"
+    for cut in (len(kept) // 2, len(kept) - 1):
+        assert content(solve(given, resume=kept[:cut])) == content(front)
+
+
+def test_what_is_kept_is_small() -> None:
+    """A job of 50,000 evaluations keeps less than 4 MB."""
+    kept: list[Record] = []
+    solve(shipped("sieve"), keep=kept.append)
+    assert sum(record.words.nbytes for record in kept) < 2**22
+
+
+def test_records_of_another_job_method_or_seed_are_refused() -> None:
+    _, records, _ = whole("nsga2")
+    given = asked("nsga2")
+    for other in (
+        replace(given, settings=replace(given.settings, seed=6)),
+        replace(given, settings=replace(given.settings, samples=12)),
+        replace(given, settings=replace(given.settings, method="random")),
+        replace(given, mechanism=replace(given.mechanism, slider_mass=2.5)),
+        replace(given, offset=given.rod),
+        replace(given, constraints=given.constraints[1:]),
+        robust(given, Robust(kind="worst case")),
+    ):
+        with pytest.raises(ForeignRecords, match=r"goes on only with the job, .*; start the run anew"):
+            solve(other, resume=records)
+
+
+def test_records_of_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, records, _ = whole("random")
+    monkeypatch.setattr(identity, "_version", lambda name: "0.0.1" if name == "numpy" else "9")
+    with pytest.raises(ForeignRecords, match=r"only with the versions .* install those, or start the run anew"):
+        solve(asked("random"), resume=records)
+
+
+def test_records_that_are_not_whole_or_not_in_order_are_refused() -> None:
+    _, records, _ = whole("sobol")
+    for broken, words in (
+        (records[1:], "got number 1 in place of 0"),
+        ((*records[:2], records[1]), "got number 1 in place of 2"),
+        ((replace(records[0], words=records[0].words[:-1]),), "must be whole"),
+        ((replace(records[0], words=records[0].words[:3]),), "must be whole"),
+        ((replace(records[0], words=np.roll(records[0].words, 1)),), r"must be whole|computes the same"),
+    ):
+        with pytest.raises(ForeignRecords, match=words):
+            solve(asked("sobol"), resume=broken)
+
+
+def test_a_search_that_comes_to_another_step_is_refused() -> None:
+    """What is kept of a job that gives the same identity, but other designs: of another processor, say."""
+    _, records, _ = whole("sobol")
+    given = asked("sobol")
+    other: list[Record] = []
+    solve(replace(given, settings=replace(given.settings, seed=6)), keep=other.append)
+    foreign = tuple(replace(record, identity=records[0].identity) for record in other)
+    with pytest.raises(ForeignRecords, match="came to another step"):
+        solve(given, resume=(records[0], *foreign[1:]))
+
+
+def test_a_raised_budget_only_adds_generations() -> None:
+    _, records, told = whole("nsga3")
+    given = asked("nsga3")
+    more: list[Progress] = []
+    rounds = [record for record in records if record.told < len(told)]
+    solve(replace(given, settings=replace(given.settings, evaluations=112)), resume=rounds, progress=more.append)
+    assert [entry.round for entry in more] == [5, 6, 7]
+
+
+def test_the_identity_of_a_problem_is_the_same_in_every_process_and_of_every_copy() -> None:
+    assert identity_of(shipped("feeder")) == identity_of(replace(shipped("feeder")))
+    assert identity_of(shipped("feeder")).problem != identity_of(shipped("sieve")).problem
+
+
+class Counter:
+    evaluations = 0
+
+
+def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
+    kept: list[Record] = []
+    mine = Identity("a", "b")
+    first, again = Counter(), Counter()
+    given: tuple[Numbers, ...] = (
+        np.array([[np.nan, -0.0, np.inf]]),
+        np.zeros((0, 3)),
+        np.array(3.5),
+        np.arange(6).reshape(2, 3)[:, ::-1],
+    )
+
+    def compute() -> Iterator[tuple[Numbers, ...]]:
+        first.evaluations += 7
+        yield given
+
+    one = Ledger(keep=kept.append, identity=lambda: mine)
+    one.step("x", (np.ones(2),), lambda: next(compute()), first)
+    one.turn()
+    two = Ledger(past=kept, identity=lambda: mine)
+    assert two.replaying
+    found = two.step("x", (np.ones(2),), tuple, again)
+    assert not two.replaying
+    assert again.evaluations == first.evaluations == 7
+    for here, there in zip(found, given, strict=True):
+        assert (here.dtype, here.shape, here.tobytes()) == (there.dtype, there.shape, there.tobytes())
+
+
+def test_a_ledger_that_is_closed_neither_asks_nor_keeps() -> None:
+    kept: list[Record] = []
+    one = Ledger(cancelled=lambda: True, keep=kept.append, identity=lambda: Identity("a", "b"))
+    with pytest.raises(Cancelled):
+        one.poll()
+    one.close()
+    one.poll()
+    one.step("x", (), lambda: (np.ones(1),), Counter())
+    one.turn()
+    assert kept == []
+
+
+@dataclass
+class Clock:
+    now: float = 0.0
+
+    def perf_counter(self) -> float:
+        return self.now
+
+
+def test_the_time_of_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, kept = Clock(), list[Record]()
+    monkeypatch.setattr(ledger, "time", clock)
+    one = Ledger(keep=kept.append, identity=lambda: Identity("a", "b"))
+    clock.now = 5.0
+    one.step("x", (), lambda: (np.ones(1),), Counter())
+    clock.now = 100.0
+    two = Ledger(past=kept, identity=lambda: Identity("a", "b"))
+    clock.now = 101.0
+    assert two.seconds == 6.0

@@ -1,0 +1,99 @@
+"""A small job, solved by a worker of a store and once more on the command line, and a service of that store."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+import uvicorn
+from typer.testing import CliRunner
+
+from slidercrank.service.api.app import create_app
+from slidercrank.service.api.settings import DEFAULT, Settings
+from slidercrank.service.cli import app as command_line
+from slidercrank.service.result import Result, Row
+from slidercrank.service.store import Store
+from slidercrank.service.stored_runs import read_run
+from slidercrank.service.submission import submit
+from slidercrank.service.worker import work
+from tests.service import fronts as made
+
+API = "/api/v1"
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A job that a worker solved. folder, job, result: run, file and result of the same job on the command line."""
+
+    number: int
+    store: Store
+    folder: Path
+    job: Path
+    result: Result
+
+    @property
+    def path(self) -> str:
+        """Of the job in the API."""
+        return f"{API}/jobs/{self.number}"
+
+
+@contextlib.contextmanager
+def solved_in(place: Path) -> Iterator[Solved]:
+    """Solve a job in a store and on the command line; yield it, and close the store at the end."""
+    job = made.job_file(place)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("SLIDERCRANK_STORE", raising=False)
+        done = CliRunner().invoke(command_line, ["optimise", str(job), "--runs", str(place / "runs"), "--no-figures"])
+    assert done.exit_code == 0, done.stderr
+    (folder,) = (path.parent for path in place.glob("runs/*/front.json"))
+    with Store(place / "store.db") as store:
+        number = submit(store, tomllib.loads(made.JOB)).id
+        work(store, drain=True)
+        yield Solved(number, store, folder, job, read_run(folder))
+
+
+@contextlib.contextmanager
+def served(store: Store, settings: Settings = DEFAULT) -> Iterator[str]:
+    """Serve a store on loopback while entered; yield the address."""
+    config = uvicorn.Config(create_app(store, settings), host="127.0.0.1", port=0, log_level="error")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, name="server of a test")
+    thread.start()
+    end = time.monotonic() + 30.0
+    while not server.started and thread.is_alive():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+    try:
+        yield f"http://127.0.0.1:{server.servers[0].sockets[0].getsockname()[1]}"
+    finally:
+        server.should_exit = True
+        thread.join()
+
+
+@contextlib.contextmanager
+def client_of(store: Store, settings: Settings = DEFAULT) -> Iterator[httpx.Client]:
+    """Serve a store on loopback while entered; yield a client of it."""
+    with served(store, settings) as address, httpx.Client(base_url=address, timeout=60.0) as client:
+        yield client
+
+
+def put_in(store: Store, result: Result, tables: dict[str, Any], **changes: Any) -> int:
+    """Put a result into a store as if a worker had found it, and return the number of its job."""
+    store.submit(tables, name=result.name)
+    claim = store.claim("test")
+    assert claim is not None
+    claim.finish(replace(result, **changes))
+    return claim.job.id
+
+
+def rows_with(rows: list[Row], **cells: Any) -> list[Row]:
+    """Return the rows with these cells in all of them."""
+    return [{**row, **cells} for row in rows]

@@ -1,0 +1,88 @@
+"""A worker process with a made-up search, which does what the name of its job says.
+
+    rounds   `ROUNDS` rounds of 0.05 s, the same generations every time
+    stuck    one round, then it hears nothing any more
+    greedy   one round, then it takes 300 MB and hears nothing any more
+
+Run as `python -m tests.service.made_up_process` in place of `slidercrank.service.worker_process`. It imports little, so
+that it starts within a second.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from slidercrank.optimise.ledger import Identity, Record
+from slidercrank.service import worker
+from slidercrank.service.job_limits import Budget
+from slidercrank.service.pulse import Pulse, Stop
+from slidercrank.service.result import Result, Wanted
+from slidercrank.service.store import Claim, Store
+from slidercrank.service.worker_process import main
+
+ROUNDS = 20
+_WANTED = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Stands for the one of a search, whose module is slow to import."""
+
+    stage: str
+    round: int
+    rounds: int
+    evaluations: int
+    feasible: int
+    hypervolume: float
+    seconds: float
+
+
+def solve(
+    store: Store, claim: Claim, budget: Budget, allowed_quantities: Collection[str], pulse: Pulse, stop: Stop
+) -> None:
+    """Go on with a job, to its end."""
+    for number in range(claim.job.generations, ROUNDS):
+        if worker._ends(claim, pulse, stop):
+            claim.finish(_result("cancelled"))
+            return
+        time.sleep(0.05)
+        claim.keep(_record(number))
+        claim.tell(Progress("evolving", number + 1, ROUNDS, 4 * number, number, 0.5, 0.05 * number))  # type: ignore[arg-type]
+        if claim.job.name == "greedy":
+            taken = np.ones(300_000_000, dtype=np.uint8)
+            time.sleep(float(taken.sum()))
+        if claim.job.name == "stuck":
+            time.sleep(1000.0)
+    claim.finish(_result("done"))
+
+
+def _record(number: int) -> Record:
+    return Record(Identity("0f" * 16, "{}"), number, number, 0.05 * number, np.arange(4, dtype=np.int64))
+
+
+def _result(status: str) -> Result:
+    return Result(
+        run="made up",
+        name="made up",
+        status=status,
+        message="1 design",
+        objectives=(_WANTED,),
+        designs=[{"time_ratio": 1.5}],
+        hypervolume=0.5,
+        evaluations=4 * ROUNDS,
+        seconds=1.0,
+        seed=1,
+        extremes={"time_ratio": 0},
+        knee=0,
+        trade_offs=[],
+    )
+
+
+if __name__ == "__main__":
+    worker._solve = solve
+    sys.exit(main())
