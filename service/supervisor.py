@@ -71,7 +71,10 @@ class Supervisor:
         try:
             while not self._leaving.wait(_LOOK):
                 for place in self._places:
-                    self._look_after(place)
+                    try:
+                        self._look_after(place)
+                    except Exception:  # noqa: BLE001 - whatever it is, the other workers are looked after
+                        _log.exception("worker %d could not be looked after; trying again", place.number)
         finally:
             self._stop()
 
