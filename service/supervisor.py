@@ -122,7 +122,7 @@ class Supervisor:
         running = [place.process for place in self._places if place.process is not None]
         for process in running:
             _release(process)
-        end = time.monotonic() + self.settings.grace + MARGIN
+        end = time.monotonic() + (self.settings.terms.grace or 0.0) + MARGIN
         for process in running:
             try:
                 process.wait(max(0.0, end - time.monotonic()))
