@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..optimise.front import Progress
 
 _log = logging.getLogger(__name__)
+_AWAY = 1.0  # s between two tries while the database cannot be reached
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 
 
@@ -74,7 +75,7 @@ def work(
     """
     name = name or worker_name()
     stop = stop or (lambda: False)
-    taken, greeted = 0, -lease
+    taken, greeted, away = 0, -lease, False
     with about(worker=name):
         while not stop():
             try:
@@ -85,8 +86,14 @@ def work(
             except StoreError as error:
                 if drain:
                     raise
-                _log.warning("%s", error)
-                claim = None
+                if not away:
+                    _log.warning("%s; trying again until it is there", error)
+                away = True
+                time.sleep(_AWAY)
+                continue
+            if away:
+                _log.info("the store is there again")
+                away = False
             if claim is not None:
                 solve_claimed(store, claim, stop, terms)
                 taken += 1

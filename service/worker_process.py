@@ -90,13 +90,16 @@ class _Ended(Exception):
 
 def _opened(settings: WorkerSettings, stop: threading.Event) -> Store:
     """Return the store, as soon as it can be reached."""
+    away = False
     while not stop.is_set():
         try:
             return Store(settings.address)
         except Unavailable as error:
             if settings.drain:
                 raise
-            _log.warning("%s", error)
+            if not away:
+                _log.warning("%s; trying again until it is there", error)
+            away = True
             stop.wait(1.0)
     raise _Ended
 
