@@ -246,6 +246,20 @@ def test_submitting_can_watch_to_the_end(
     assert "* best in an objective" in done.stdout
 
 
+def test_ctrl_c_leaves_watching_and_not_the_job(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_: float) -> None:
+        raise KeyboardInterrupt
+
+    command("submit", job)
+    monkeypatch.setattr("slidercrank.service.submit_command.time.sleep", interrupt)
+    done = command("watch", "latest")
+    assert done.exit_code == 130
+    assert "job 1 is left as it is; stop it with: slidercrank cancel 1\n" in done.stderr
+    assert store.job(1).state == "queued"
+
+
 def test_watching_waits_for_a_database_that_is_away(
     store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -226,8 +226,10 @@ def test_a_paused_search_learns_between_its_writes_that_its_lease_was_lost(
     assert (store.job(job.id).state, store.job(job.id).worker) == ("running", "second")
 
 
-def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.service.worker.PULSE", 0.0)
+def test_a_worker_waits_for_a_database_that_is_away_and_tells_it_once(
+    store: Store, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("slidercrank.service.worker._AWAY", 0.0)
     asked: list[bool] = []
 
     def away(*_: Any, **_more: Any) -> None:
@@ -236,6 +238,7 @@ def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: p
 
     monkeypatch.setattr(store, "claim", away)
     assert work(store, stop=lambda: len(asked) >= 3) == 0
+    assert caplog.messages == ["the server restarts; trying again until it is there"]
     with pytest.raises(StoreError, match="the server restarts"):
         work(store, drain=True)
 

@@ -13,7 +13,7 @@ from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import work
+from slidercrank.service.worker import Terms, work
 from tests.service import fronts
 from tests.service.made_up_search import Search, found, search, until
 from tests.service.store.contents import progress as progress_at
@@ -50,7 +50,7 @@ def test_a_search_ends_at_its_limit_of_evaluations_with_what_it_found(store: Sto
     searches(search)  # of 16 evaluations a round
     job = submit(store, TABLES, limits=Limits(evaluations=1000))
     other = submit(store, TABLES)
-    assert work(store, drain=True, limits=Limits(evaluations=20)) == 2
+    assert work(store, drain=True, terms=Terms(limits=Limits(evaluations=20))) == 2
     for ended in map(store.job, (job.id, other.id)):
         assert (ended.state, ended.generations) == ("cancelled", 2)
         assert ended.reason == "1 design; its search reached its limit of 20 evaluations"
