@@ -67,7 +67,7 @@ class Submission(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
+    job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
     priority: Priority = 0
     limits: AskedLimits = AskedLimits()
 

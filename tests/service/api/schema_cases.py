@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import random
 import subprocess
 import sys
@@ -32,6 +33,8 @@ from tests.service.store.contents import progress
 
 # A job can be wrong in ways that no schema tells, so that data which the schema allows may be refused.
 _UNCHECKED = "positive_data_acceptance"
+_HOOKS = "tests.service.api.schemathesis_hooks"
+_ROOT = Path(__file__).parents[3]
 _PHASES = "examples,coverage,fuzzing,stateful"
 
 
@@ -51,7 +54,7 @@ def run(place: Path, each: int) -> Outcome:
     report = place / "report.ndjson"
     with Store(place / "store.db", most_queued=1_000_000) as store:
         found = _solved(store)
-        settings = Settings(token=TOKEN, submissions_per_minute=0, limits=Limits(seconds=60.0), figures=False)
+        settings = Settings(token=TOKEN, submissions_per_minute=0, limits=Limits(seconds=60.0))
         with serving(create_app(store, settings)) as address, _lively(store, found):
             command = [
                 *(sys.executable, "-m", "schemathesis.cli", "run", f"{address}/api/v1/openapi.json"),
@@ -61,7 +64,8 @@ def run(place: Path, each: int) -> Outcome:
                 *("--suppress-health-check", "all", "--request-timeout", "60"),
             ]
             start = time.monotonic()
-            done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False)
+            hooks = os.environ | {"SCHEMATHESIS_HOOKS": _HOOKS, "PYTHONPATH": str(_ROOT)}
+            done = subprocess.run(command, cwd=place, env=hooks, capture_output=True, text=True, check=False)
     statuses = Counter(_statuses(report))
     return Outcome(done.returncode, statuses.total(), statuses, time.monotonic() - start, done.stdout + done.stderr)
 
@@ -69,7 +73,13 @@ def run(place: Path, each: int) -> Outcome:
 def _solved(store: Store) -> Result:
     submit(store, EXAMPLE)
     work(store, drain=True)
-    return store.result(1)
+    found = store.result(1)
+    for _ in range(30):
+        submit(store, EXAMPLE)
+        claim = store.claim("lively")
+        assert claim is not None
+        claim.finish(found)
+    return found
 
 
 @contextlib.contextmanager
@@ -125,7 +135,7 @@ def _statuses_in(node: object) -> Iterator[int]:
 if __name__ == "__main__":
     wanted = int(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
-        outcome = run(Path(folder), max(1, wanted // 50))
+        outcome = run(Path(folder), max(1, wanted // 36))
     sys.stdout.write(outcome.text)
     statuses = ", ".join(f"{status}: {count}" for status, count in sorted(outcome.statuses.items()))
     sys.stdout.write(f"{outcome.cases} cases in {outcome.seconds:.0f} s; {statuses}\n")

@@ -100,7 +100,7 @@ def test_parquet_without_pyarrow_says_what_to_install(
 def test_figures_are_listed_and_drawn(solved: Solved, client: httpx.Client) -> None:
     listed = [figure["name"] for figure in client.get(f"{solved.path}/figures").json()["figures"]]
     assert set(listed) == set(NAMES)
-    for name in ("scatter_matrix", "design_1"):
+    for name in ("best_time_ratio", "design_1"):
         png = client.get(f"{solved.path}/figures/{name}.png")
         assert (png.status_code, png.headers["content-type"]) == (200, "image/png")
         assert png.content.startswith(b"\x89PNG")
