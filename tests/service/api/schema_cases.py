@@ -35,7 +35,7 @@ from tests.service.store.contents import progress
 _UNCHECKED = "positive_data_acceptance"
 _HOOKS = "tests.service.api.schemathesis_hooks"
 _ROOT = Path(__file__).parents[3]
-_PHASES = "examples,coverage,fuzzing,stateful"
+ALL = "examples,coverage,fuzzing,stateful"
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,11 @@ class Outcome:
     text: str
 
 
-def run(place: Path, each: int) -> Outcome:
-    """Serve a store in a folder and ask `each` cases of every operation, and as many chains along the links."""
+def run(place: Path, each: int, phases: str = ALL) -> Outcome:
+    """Serve a store in a folder and ask `each` cases of every operation, and as many chains along the links.
+
+    phases: of schemathesis, separated by commas.
+    """
     report = place / "report.ndjson"
     with Store(place / "store.db", most_queued=1_000_000) as store:
         found = _solved(store)
@@ -59,7 +62,7 @@ def run(place: Path, each: int) -> Outcome:
             command = [
                 *(sys.executable, "-m", "schemathesis.cli", "run", f"{address}/api/v1/openapi.json"),
                 *("--header", f"Authorization: Bearer {TOKEN}", "--checks", "all", "--exclude-checks", _UNCHECKED),
-                *("--phases", _PHASES, "--max-examples", str(each), "--seed", "1", "--generation-database", "none"),
+                *("--phases", phases, "--max-examples", str(each), "--seed", "1", "--generation-database", "none"),
                 *("--report", "ndjson", "--report-ndjson-path", str(report), "--no-color", "--warnings", "off"),
                 *("--suppress-health-check", "all", "--request-timeout", "60"),
             ]
