@@ -13,7 +13,10 @@ import pytest
 import slidercrank
 
 ORDER = ("model", "objectives", "optimise", "service")  # each may import itself and those before it
-SLOW = ("numba", "pandas", "matplotlib", "cvxpy", "optuna", "scipy", "pint")
+SLOW = (
+    *("numba", "numpy", "pandas", "matplotlib", "cvxpy", "optuna", "scipy", "pint"),
+    *("pydantic", "sqlalchemy", "alembic", "fastapi", "uvicorn", "httpx", "distributed", "psutil", "rich"),
+)
 
 
 @pytest.fixture(scope="module")
