@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .elimination import sheets
+from .engine.engine import Engine
 from .evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from .ledger import Ledger, floats
 from .problem import Constraint, Objective, Problem, Sense, Settings
@@ -19,7 +20,6 @@ from .stationarity import Array
 _SAMPLES = 16384
 _RANKED = 2048
 _STARTS = 24
-_AT_ONCE = 64  # points evaluated between two questions whether to end
 
 
 @dataclass(frozen=True)
@@ -72,16 +72,21 @@ class _Violations:
         return goals, Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 
 
-def diagnose(problem: Problem, best: Callable[[Problem], float | None], ledger: Ledger | None = None) -> Diagnosis:
+def diagnose(
+    problem: Problem,
+    best: Callable[[Problem], float | None],
+    ledger: Ledger | None = None,
+    engine: Engine | None = None,
+) -> Diagnosis:
     """Return feasible designs after all, or which requirements contradict each other.
 
-    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger: of the search
-    that wants to know it. First the greatest
-    relative violation is minimised from many starts, without eliminating anything. If it stays positive, each
-    requirement in turn becomes the objective of the problem without it. Both searches are local from many starts:
-    strong evidence; `certificate.infeasible` gives the proof where it can.
+    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger, engine: of the
+    search that wants to know it. First the greatest relative violation is minimised from many starts, without
+    eliminating anything. If it stays positive, each requirement in turn becomes the objective of the problem without
+    it. Both searches are local from many starts: strong evidence; `certificate.infeasible` gives the proof where it
+    can.
     """
-    feasible, turning, nearest = _least_violation(problem, ledger)
+    feasible, turning, nearest = _least_violation(problem, ledger, engine)
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
@@ -119,13 +124,13 @@ def diagnose(problem: Problem, best: Callable[[Problem], float | None], ledger: 
     return Diagnosis(feasible, tuple(relaxations), message)
 
 
-def _least_violation(problem: Problem, ledger: Ledger | None) -> tuple[Array, bool, str]:
+def _least_violation(problem: Problem, ledger: Ledger | None, engine: Engine | None) -> tuple[Array, bool, str]:
     """Return feasible designs, whether any sampled design turns fully, and the design nearest to feasible in words."""
     feasible = []
     turning = False
     nearest, least = "", np.inf
     for index, sheet in enumerate(sheets(problem, eliminate=False)):
-        evaluator = Evaluator(problem, sheet, ledger)
+        evaluator = Evaluator(problem, sheet, ledger, engine)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         u = u[evaluator.valid(u)]
         if not len(u):
@@ -145,15 +150,11 @@ def _least_violation(problem: Problem, ledger: Ledger | None) -> tuple[Array, bo
 
 def _greatest(evaluator: Evaluator, u: Array) -> Array:
     """Return the greatest relative violation (n,) of points."""
-    parts = []
-    for begin in range(0, len(u), _AT_ONCE):
-        some = u[begin : begin + _AT_ONCE]
 
-        def greatest(some: Array = some) -> tuple[Array]:
-            return (evaluator.exact(some)[1].values.max(axis=1, initial=0.0),)
+    def greatest() -> tuple[Array]:
+        return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
 
-        parts.append(floats(evaluator.ledger.step("violation", (some,), greatest, evaluator)[0]))
-    return np.concatenate(parts)
+    return floats(evaluator.ledger.step("violation", (u,), greatest, evaluator)[0])
 
 
 def _sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:

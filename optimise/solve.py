@@ -67,7 +67,7 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
     front = finish(problem, evaluators, archive, run) if len(archive) else None
     if front is not None:
         return front
-    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger)
+    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
     if len(diagnosis.feasible) and method != "auto":
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
     if len(diagnosis.feasible):

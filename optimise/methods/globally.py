@@ -36,9 +36,11 @@ class _Exact:
     Exact: a screened peak may be off by more than what is left to gain near the optimum.
     """
 
-    def __init__(self, evaluator: Evaluator) -> None:
-        self.evaluator = evaluator
+    def __init__(self, index: int, evaluator: Evaluator, seen: Archive) -> None:
+        """Evaluate a sheet of this index; the archive takes in what is better than all before."""
+        self.index, self.evaluator, self.seen = index, evaluator, seen
         self.known: dict[bytes, float] = {}
+        self.best = np.inf
 
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
@@ -49,6 +51,10 @@ class _Exact:
             for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
             if met and np.isfinite(value)
         }
+        best = min(self.known, key=self.known.__getitem__, default=b"")
+        if best and self.known[best] < self.best:
+            self.best = self.known[best]
+            self.seen.take(self.index, np.frombuffer(best)[None], np.array([[self.best]]))
         return np.where(violation <= FEASIBLE, 0.0, violation)
 
     def _at(self, u: Array) -> tuple[Array, Array]:
@@ -75,19 +81,22 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
     Constraints by the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
     Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
     """
-    archive = Archive.empty(1)
+    archive, seen = Archive.empty(1), Archive.empty(1)
+    run.archive = seen
     for index, evaluator in enumerate(evaluators):
         archive.screen(
             index, evaluator, np.zeros((1, 0)) if evaluator.dimension == 0 else np.zeros((0, evaluator.dimension))
         )
         if evaluator.dimension:
-            _evolve(problem, evaluators, index, archive, run)
+            _evolve(problem, evaluators, index, archive, seen, run)
     run.tell("evolving", evaluators, archive)
     return archive
 
 
-def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, run: Run) -> None:
-    """Put the optimum of one sheet into the archive."""
+def _evolve(
+    problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive, run: Run
+) -> None:
+    """Put the optimum of one sheet into the archive, what is better than all before into what was seen."""
     from scipy.optimize import NonlinearConstraint
     from scipy.optimize import differential_evolution as evolve
 
@@ -96,7 +105,7 @@ def _evolve(problem: Problem, evaluators: list[Evaluator], index: int, archive: 
     members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
     generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
     run.rounds = len(run.told) + 1 + generations // _TOLD
-    exact = _Exact(evaluator)
+    exact = _Exact(index, evaluator, seen)
 
     def each(intermediate_result: Any) -> bool:
         nonlocal count
@@ -136,25 +145,26 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
     ends short of the optimum, so that the epigraph form (`scalar`) goes on from there.
     """
-    archive = Archive.empty(1)
+    archive, seen = Archive.empty(1), Archive.empty(1)
+    run.archive = seen
     run.rounds = 1 + len(evaluators)
     for index, evaluator in enumerate(evaluators):
         if evaluator.dimension == 0:
             archive.screen(index, evaluator, np.zeros((1, 0)))
         else:
-            for u, values in _basins(problem, evaluators, index):
+            for u, values in _basins(problem, evaluators, index, seen):
                 archive.take(index, u[None], values[None])
                 archive.feasible += 1
         run.tell("descending", evaluators, archive)
     return archive
 
 
-def _basins(problem: Problem, evaluators: list[Evaluator], index: int) -> Iterator[tuple[Array, Array]]:
-    """Yield the optima of a sheet with their objectives (1,), SI."""
+def _basins(problem: Problem, evaluators: list[Evaluator], index: int, seen: Archive) -> Iterator[tuple[Array, Array]]:
+    """Yield the optima of a sheet with their objectives (1,), SI; the archive takes in what comes on the way."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]
-    exact = _Exact(evaluator)
+    exact = _Exact(index, evaluator, seen)
     points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
     searched: Any = homology
     found = searched(
