@@ -62,7 +62,8 @@ class DaskCluster:
     def add_worker(self) -> None:
         """Start a worker; it joins when it is ready."""
         where = (self.address, "--host", f"{self.scheme}://127.0.0.1")
-        self.workers.append(self._start("dask_worker", *where, "--no-nanny", "--nthreads", "1", "--no-dashboard"))
+        alone = ("--no-nanny", "--nthreads", "1", "--no-dashboard", "--death-timeout", str(START))
+        self.workers.append(self._start("dask_worker", *where, *alone))
 
     def kill_worker(self) -> None:
         """Kill the oldest worker, and start another one."""
