@@ -57,6 +57,22 @@ def _commits(where: Where = "sqlite", every: Annotated[int, typer.Option(help="E
     _counted(f"{{}} failed commits on {where}", lambda: commits(where, every))
 
 
+@app.command("dask")
+def _dask(
+    workers: Annotated[int, typer.Option(help="How many workers to kill.")] = 50,
+    schedulers: Annotated[int, typer.Option(help="How many schedulers to kill.")] = 3,
+    seed: Seed = 1,
+) -> None:
+    """Kill workers and schedulers of a Dask cluster under robust jobs."""
+    from .dask_faults import strike
+
+    begin = time.monotonic()
+    struck = strike(workers, schedulers, seed)
+    print(f"dask, {time.monotonic() - begin:.0f} s: {struck.line()}", flush=True)
+    if struck.violations or struck.lost or struck.doubled:
+        raise typer.Exit(1)
+
+
 def _counted(title: str, inject: Callable[[], tuple[int, Verdict]]) -> None:
     begin = time.monotonic()
     count, verdict = inject()

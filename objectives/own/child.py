@@ -14,6 +14,7 @@ import signal
 import struct
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -132,6 +133,7 @@ def main() -> None:
             try:
                 machine, data, column = pickle.load(requests)
             except EOFError:
+                Path(path).unlink(missing_ok=True)  # whoever asked may have been killed
                 return
             mechanism = machine or mechanism
             dimensions: NDArray[np.float64] = np.frombuffer(data).reshape(-1, 3)

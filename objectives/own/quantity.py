@@ -34,14 +34,18 @@ Call = Callable[[Mechanism, Array, int | None], Answer]
 
 
 class _Session:
-    """What is kept between calls: the process, and for which machines the gradient has been checked."""
+    """What is kept between calls: the process, and for which machines the gradient has been checked.
 
-    def __init__(self) -> None:
+    A copy in another process starts a process of its own but does not check again: what it is given there may be one
+    design, and that on a kink.
+    """
+
+    def __init__(self, checked: tuple[Mechanism, ...] = ()) -> None:
         self.call: Call | None = None
-        self.checked: list[Mechanism] = []
+        self.checked = list(checked)
 
-    def __reduce__(self) -> tuple[type[_Session], tuple[()]]:
-        return _Session, ()
+    def __reduce__(self) -> tuple[type[_Session], tuple[tuple[Mechanism, ...]]]:
+        return _Session, (tuple(self.checked),)
 
     def __deepcopy__(self, _: object) -> _Session:
         return _Session()

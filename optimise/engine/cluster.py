@@ -70,6 +70,7 @@ class Cluster:
         self.workers = 4  # until it is known
         self._client: Any = None
         self._refused = 0.0
+        self._reached = 0.0  # when the scheduler was last heard of
 
     def worth(self, seconds: float) -> bool:
         """Whether so much work pays; see `Engine`."""
@@ -85,22 +86,21 @@ class Cluster:
         """
         found: dict[int, Found] = {}
         killed = [0] * len(items)
-        delay, known, since = _DELAYS[0], 0, time.monotonic()
+        delay, self._reached = _DELAYS[0], time.monotonic()
         while len(found) < len(items):
             try:
                 self._round(self._connected(), function, items, found, killed, poll)
             except (_Lost, OSError, CancelledError, TimeoutError) as error:
+                lost = self._client is not None
                 self._drop()
-                if len(found) > known:
-                    delay, known, since = _DELAYS[0], len(found), time.monotonic()
-                if time.monotonic() - since >= self.patience:
+                if time.monotonic() - self._reached >= self.patience:
                     raise EngineError(
                         f"the scheduler must be reached within {self.patience:g} s; {self.address} was not "
                         f"({_said(error)}); start it, or correct the address"
                     ) from None
                 _log.warning("scheduler %s lost (%s); connecting again", self.address, _said(error))
+                delay = _DELAYS[0] if lost else min(2.0 * delay, _DELAYS[1])
                 _pause(delay, poll)
-                delay = min(2.0 * delay, _DELAYS[1])
         return [found[index] for index in range(len(items))]
 
     def close(self) -> None:
@@ -137,6 +137,7 @@ class Cluster:
                 states = {future.status for future in done}
                 if client.status != "running" or states & {"cancelled", "lost"}:
                     raise _Lost("it does not know this client any more")
+                self._reached = time.monotonic()
                 good = [future for future in done if future.status == "finished"]
                 for future, result in zip(good, client.gather(good), strict=True):
                     found[pending.pop(future)] = result

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from faults.commits import commits
+from faults.dask_faults import strike
 from faults.full import full
 from faults.kills import kills
 from faults.pauses import pauses
@@ -50,3 +51,10 @@ def test_no_commit_that_fails_loses_anything(kind: Kind) -> None:
     count, verdict = commits(kind, every=6)
     assert verdict.violations == []
     assert count >= 3
+
+
+def test_killed_dask_workers_and_schedulers_lose_no_evaluation() -> None:
+    struck = strike(2, 1, seed=1, designs=3, samples=200)
+    assert (struck.workers, struck.schedulers) == (2, 1)
+    assert struck.violations == []
+    assert (struck.lost, struck.doubled) == (0, 0)

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import pytest
 
+from faults.dask_cluster import DaskCluster
 from slidercrank.optimise.engine.cluster import Cluster
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.engine.serial import Serial
-from tests.optimise.engine.dask_processes import DaskProcesses
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +22,7 @@ def processes() -> Iterator[Processes]:
 
 @pytest.fixture(scope="session")
 def cluster() -> Iterator[Cluster]:
-    with DaskProcesses(2) as dask:
+    with DaskCluster(2) as dask:
         made = Cluster(dask.address, patience=60.0)
         yield made
         made.close()

@@ -12,11 +12,11 @@ from pathlib import Path
 import psutil
 import pytest
 
+from faults.dask_cluster import DaskCluster
 from slidercrank.model.errors import EngineError, InputError
 from slidercrank.optimise.engine.cluster import Cluster, Tls
 from slidercrank.optimise.engine.processes import Processes
 from tests.optimise.engine import work
-from tests.optimise.engine.dask_processes import DaskProcesses
 
 
 def test_what_a_killed_process_was_at_is_done_again(processes: Processes, tmp_path: Path) -> None:
@@ -78,7 +78,7 @@ def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
 
 
 def test_what_a_killed_dask_worker_was_at_is_done_again_and_a_lost_scheduler_is_found_again() -> None:
-    with DaskProcesses(2) as dask:
+    with DaskCluster(2) as dask:
         engine = Cluster(dask.address, patience=60.0)
         assert engine.map(work.square, range(3)) == [0, 1, 4]
 
@@ -106,7 +106,7 @@ def test_a_scheduler_that_stays_away_is_given_up() -> None:
 
 
 def test_a_cluster_without_workers_is_given_up() -> None:
-    with DaskProcesses(0) as dask:
+    with DaskCluster(0) as dask:
         engine = Cluster(dask.address, patience=1.0)
         with pytest.raises(EngineError, match="a cluster needs workers"):
             engine.map(work.square, range(3))
