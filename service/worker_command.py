@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from typing import Annotated
 
@@ -9,7 +10,20 @@ import typer
 
 from .sizes import size_of
 from .stores import Address, open_store, store_address
-from .worker_options import Grace, Lease, LogFormat, Logs, MostEvaluations, MostMemory, MostRunning, MostSeconds
+from .worker_options import (
+    Grace,
+    Lease,
+    LogFormat,
+    Logs,
+    MostEvaluations,
+    MostMemory,
+    MostRunning,
+    MostSeconds,
+    Scheduler,
+    TlsAuthority,
+    TlsCertificate,
+    TlsKey,
+)
 
 
 def worker(
@@ -22,6 +36,10 @@ def worker(
     most_evaluations: MostEvaluations = None,
     most_memory: MostMemory = None,
     grace: Grace = 10.0,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
     log_format: Logs = LogFormat.text,
 ) -> None:
     """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
@@ -29,6 +47,7 @@ def worker(
     Ctrl-C and SIGTERM let every round end, or hand its job back when that takes longer than --grace: another worker
     goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
+    from .engines import engine_settings
     from .logs import set_up_logs
     from .store import Limits
     from .supervisor import Supervisor
@@ -38,12 +57,14 @@ def worker(
 
     memory = None if most_memory is None else size_of(most_memory, "--most-memory")
     limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
+    cores = os.cpu_count() or 1
+    engine = engine_settings(scheduler, tls_ca, tls_cert, tls_key, processes=cores // processes)
     settings = WorkerSettings(
         address=store_address(store),
         lease=lease,
         drain=drain,
         most_running=most_running,
-        terms=Terms(limits=limits, grace=grace),
+        terms=Terms(limits=limits, grace=grace, engine=engine),
         log_format=log_format.value,
     )
     with Termination() as termination:

@@ -16,6 +16,7 @@ import time
 from dataclasses import asdict, dataclass
 
 from ..model.errors import SlidercrankError
+from .engines import EngineSettings
 from .logs import Format, set_up_logs
 from .pulse import leave
 from .store import LEASE, Limits, Store
@@ -51,7 +52,11 @@ class WorkerSettings:
         """Return the settings of a line."""
         fields = json.loads(line)
         terms = fields["terms"]
-        terms |= {"limits": Limits(**terms["limits"]), "allowed_quantities": tuple(terms["allowed_quantities"])}
+        engine = terms["engine"]
+        files = engine["certificates"]
+        engine["certificates"] = None if files is None else tuple(files)
+        terms["allowed_quantities"] = tuple(terms["allowed_quantities"])
+        terms |= {"limits": Limits(**terms["limits"]), "engine": EngineSettings(**engine)}
         return cls(**{**fields, "terms": Terms(**terms)})
 
 
