@@ -25,11 +25,11 @@ from .elimination import UNKNOWNS, sheets
 from .evaluation import FEASIBLE, Evaluator
 from .front import ParetoFront
 from .pile import STATIONARY, Pile
-from .polish import polish
 from .problem import Constraint, Problem, Range, Settings
 from .sampling import generator
 from .search import Archive, Run, explore
 from .solve import solve
+from .spread import polish
 from .stationarity import Array
 
 Ends = tuple[float | None, float | None]

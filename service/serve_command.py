@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..model.errors import InputError
+from .engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
 from .screen import give
 from .sizes import size_of
 from .stores import Address, open_store, store_address
@@ -20,10 +21,6 @@ from .worker_options import (
     MostMemory,
     MostRunning,
     MostSeconds,
-    Scheduler,
-    TlsAuthority,
-    TlsCertificate,
-    TlsKey,
 )
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
@@ -65,6 +62,7 @@ def serve(
     most_memory: MostMemory = None,
     lease: Lease = 30.0,
     grace: Grace = 10.0,
+    cores: Cores = None,
     scheduler: Scheduler = None,
     tls_ca: TlsAuthority = None,
     tls_cert: TlsCertificate = None,
@@ -78,7 +76,6 @@ def serve(
     """
     from .api.app import create_app
     from .api.settings import Settings
-    from .engines import engine_settings
     from .logs import set_up_logs
     from .server import listen, names_of, run_server, url_of
     from .store import Limits
@@ -98,9 +95,8 @@ def serve(
         allowed_quantities=frozenset(allowed),
         limits=limits,
     )
-    cores = os.cpu_count() or 1
-    processes = min(cores, 4) if workers is None else workers
-    engine = engine_settings(scheduler, tls_ca, tls_cert, tls_key, processes=cores // max(1, processes))
+    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
+    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(max(1, processes))
     work = WorkerSettings(
         address=store_address(store),
         lease=lease,

@@ -9,13 +9,13 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..model.errors import InputError, LeaseLost, StoreError
 from .allowed_quantities import require_allowed
-from .engines import EngineSettings, open_engine
+from .engines import EngineOptions, engine_of
 from .job_limits import Budget, within
 from .logs import about
 from .pulse import PULSE, Pulse, Stop
@@ -43,7 +43,7 @@ class Terms:
     limits: Limits = NO_LIMITS
     grace: float | None = None
     allowed_quantities: tuple[str, ...] = ()
-    engine: EngineSettings = EngineSettings()
+    engine: EngineOptions = EngineOptions(cores=1)
 
 
 DEFAULT = Terms()
@@ -79,7 +79,7 @@ def work(
     name = name or worker_name()
     stop = stop or (lambda: False)
     taken, greeted, away = 0, -lease, False
-    with about(worker=name), _engine(terms) as engine:
+    with about(worker=name), engine_of(terms.engine) as engine:
         while not stop():
             try:
                 if time.monotonic() - greeted > lease / 3.0:
@@ -107,16 +107,6 @@ def work(
         with contextlib.suppress(StoreError):  # where it cannot be reached, the worker is silent from now on
             store.part(name)
     return taken
-
-
-@contextlib.contextmanager
-def _engine(terms: Terms) -> Iterator[Engine | None]:
-    engine = open_engine(terms.engine)
-    try:
-        yield engine
-    finally:
-        if engine is not None:
-            engine.close()
 
 
 def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT, engine: Engine | None = None) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import time
 from typing import Annotated
 
 import typer
 
+from .engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
 from .sizes import size_of
 from .stores import Address, open_store, store_address
 from .worker_options import (
@@ -19,10 +19,6 @@ from .worker_options import (
     MostMemory,
     MostRunning,
     MostSeconds,
-    Scheduler,
-    TlsAuthority,
-    TlsCertificate,
-    TlsKey,
 )
 
 
@@ -36,6 +32,7 @@ def worker(
     most_evaluations: MostEvaluations = None,
     most_memory: MostMemory = None,
     grace: Grace = 10.0,
+    cores: Cores = None,
     scheduler: Scheduler = None,
     tls_ca: TlsAuthority = None,
     tls_cert: TlsCertificate = None,
@@ -47,7 +44,6 @@ def worker(
     Ctrl-C and SIGTERM let every round end, or hand its job back when that takes longer than --grace: another worker
     goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
-    from .engines import engine_settings
     from .logs import set_up_logs
     from .store import Limits
     from .supervisor import Supervisor
@@ -57,8 +53,7 @@ def worker(
 
     memory = None if most_memory is None else size_of(most_memory, "--most-memory")
     limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
-    cores = os.cpu_count() or 1
-    engine = engine_settings(scheduler, tls_ca, tls_cert, tls_key, processes=cores // processes)
+    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(processes)
     settings = WorkerSettings(
         address=store_address(store),
         lease=lease,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -38,16 +37,3 @@ MostMemory = Annotated[
     str | None,
     typer.Option(metavar="SIZE", help='Let a job fail if its worker takes more memory, such as "2 GB".'),
 ]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(
-        metavar="ADDRESS",
-        help="Have heavy work done on a Dask cluster, tcp://host:8786 or tls://host:8786.  [default: in processes "
-        "beside each worker, as many as there are processors for]",
-    ),
-]
-TlsAuthority = Annotated[
-    Path | None, typer.Option("--tls-ca", help="Certificate of the authority of a tls:// cluster.")
-]
-TlsCertificate = Annotated[Path | None, typer.Option("--tls-cert", help="Own certificate for a tls:// cluster.")]
-TlsKey = Annotated[Path | None, typer.Option("--tls-key", help="Key of the own certificate.")]
