@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..objectives.registry import quantity
+from .assemble import empty, only
 from .challenge import by_sheet
-from .deliver import empty, only
 from .elimination import UNKNOWNS, sheets
 from .evaluation import FEASIBLE, Evaluator
 from .front import ParetoFront

@@ -7,8 +7,9 @@ from functools import partial
 
 import numpy as np
 
+from .assemble import empty
 from .certificate.infeasible import prove_infeasible
-from .deliver import as_found, deliver, empty, planned, so_far
+from .deliver import as_found, deliver, planned
 from .elimination import Sheet, sheets
 from .engine.engine import Engine
 from .evaluation import Evaluator
@@ -20,6 +21,7 @@ from .ledger import Cancelled, Ledger, Record
 from .methods.registry import require_eliminated, require_fit, search_of
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
+from .so_far import so_far
 from .stationarity import Array
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ...objectives.cycle_peak import CyclePeak
-from ..deliver import span_of
+from ..assemble import span_of
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator, constraints_of, minimised
 from ..problem import Problem
