@@ -8,10 +8,20 @@ from typing import Annotated
 import typer
 
 from ..model.errors import InputError
+from .engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
 from .screen import give
 from .sizes import size_of
 from .stores import Address, open_store, store_address
-from .worker_options import Grace, Lease, LogFormat, Logs, MostEvaluations, MostMemory, MostRunning, MostSeconds
+from .worker_options import (
+    Grace,
+    Lease,
+    LogFormat,
+    Logs,
+    MostEvaluations,
+    MostMemory,
+    MostRunning,
+    MostSeconds,
+)
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
@@ -52,6 +62,11 @@ def serve(
     most_memory: MostMemory = None,
     lease: Lease = 30.0,
     grace: Grace = 10.0,
+    cores: Cores = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
     log_format: Logs = LogFormat.text,
 ) -> None:
     """Serve the API, and solve its jobs, until stopped.
@@ -80,14 +95,15 @@ def serve(
         allowed_quantities=frozenset(allowed),
         limits=limits,
     )
+    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
+    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(max(1, processes))
     work = WorkerSettings(
         address=store_address(store),
         lease=lease,
         most_running=most_running,
-        terms=Terms(limits=limits, grace=grace, allowed_quantities=allowed),
+        terms=Terms(limits=limits, grace=grace, engine=engine, allowed_quantities=allowed),
         log_format=log_format.value,
     )
-    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
     with Termination(), listen(host, port) as socket, open_store(store) as opened:
         opened.most_queued = most_queued
         app = create_app(opened, settings)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from ..model.errors import InputError, LeaseLost, StoreError
 from .allowed_quantities import require_allowed
+from .engines import EngineOptions, engine_of
 from .job_limits import Budget, within
 from .logs import about
 from .pulse import PULSE, Pulse, Stop
@@ -22,6 +23,7 @@ from .result import json_text, result_of
 from .store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 
 if TYPE_CHECKING:
+    from ..optimise.engine.engine import Engine
     from ..optimise.front import Progress
 
 _log = logging.getLogger(__name__)
@@ -35,12 +37,13 @@ class Terms:
 
     limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
     in s that a round has to end once the worker is to stop, too; see `Pulse`. allowed_quantities: functions,
-    "module:function", that jobs may name as quantities.
+    "module:function", that jobs may name as quantities. engine: where heavy work is done.
     """
 
     limits: Limits = NO_LIMITS
     grace: float | None = None
     allowed_quantities: tuple[str, ...] = ()
+    engine: EngineOptions = EngineOptions(cores=1)
 
 
 DEFAULT = Terms()
@@ -76,7 +79,7 @@ def work(
     name = name or worker_name()
     stop = stop or (lambda: False)
     taken, greeted, away = 0, -lease, False
-    with about(worker=name):
+    with about(worker=name), engine_of(terms.engine) as engine:
         while not stop():
             try:
                 if time.monotonic() - greeted > lease / 3.0:
@@ -95,7 +98,7 @@ def work(
                 _log.info("the store is there again")
                 away = False
             if claim is not None:
-                solve_claimed(store, claim, stop, terms)
+                solve_claimed(store, claim, stop, terms, engine)
                 taken += 1
             elif drain:
                 break
@@ -106,7 +109,7 @@ def work(
     return taken
 
 
-def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT) -> None:
+def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT, engine: Engine | None = None) -> None:
     """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
 
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
@@ -117,7 +120,7 @@ def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT
         _log.info("claimed")
         try:
             with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace) as pulse:
-                _end(claim, lambda: _solve(store, claim, Budget(limits), terms, pulse, stop))
+                _end(claim, lambda: _solve(store, claim, Budget(limits), terms, engine, pulse, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
 
@@ -145,7 +148,9 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         raise
 
 
-def _solve(store: Store, claim: Claim, budget: Budget, terms: Terms, pulse: Pulse, stop: Stop) -> None:
+def _solve(
+    store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, pulse: Pulse, stop: Stop
+) -> None:
     from ..optimise.job import parse_job
     from ..optimise.solve import solve
 
@@ -161,7 +166,7 @@ def _solve(store: Store, claim: Claim, budget: Budget, terms: Terms, pulse: Puls
     def over() -> bool:
         return _ends(claim, pulse, stop) or budget.spent()
 
-    front = solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep)
+    front = solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep, engine=engine)
     result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)

@@ -7,9 +7,19 @@ from typing import Annotated
 
 import typer
 
+from .engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
 from .sizes import size_of
 from .stores import Address, open_store, store_address
-from .worker_options import Grace, Lease, LogFormat, Logs, MostEvaluations, MostMemory, MostRunning, MostSeconds
+from .worker_options import (
+    Grace,
+    Lease,
+    LogFormat,
+    Logs,
+    MostEvaluations,
+    MostMemory,
+    MostRunning,
+    MostSeconds,
+)
 
 
 def worker(
@@ -22,6 +32,11 @@ def worker(
     most_evaluations: MostEvaluations = None,
     most_memory: MostMemory = None,
     grace: Grace = 10.0,
+    cores: Cores = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
     log_format: Logs = LogFormat.text,
 ) -> None:
     """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
@@ -38,12 +53,13 @@ def worker(
 
     memory = None if most_memory is None else size_of(most_memory, "--most-memory")
     limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
+    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(processes)
     settings = WorkerSettings(
         address=store_address(store),
         lease=lease,
         drain=drain,
         most_running=most_running,
-        terms=Terms(limits=limits, grace=grace),
+        terms=Terms(limits=limits, grace=grace, engine=engine),
         log_format=log_format.value,
     )
     with Termination() as termination:

@@ -6,19 +6,20 @@ stops in an orderly way on SIGTERM, or when standard input ends: then its superv
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import signal
 import sys
 import threading
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+
+from pydantic import TypeAdapter
 
 from ..model.errors import SlidercrankError
 from .logs import Format, set_up_logs
 from .pulse import leave
-from .store import LEASE, Limits, Store
+from .store import LEASE, Store
 from .store.database import Unavailable
 from .worker import Terms, work
 
@@ -44,15 +45,12 @@ class WorkerSettings:
 
     def line(self) -> bytes:
         """Return the settings as the process reads them."""
-        return json.dumps(asdict(self)).encode() + b"\n"
+        return TypeAdapter(WorkerSettings).dump_json(self) + b"\n"
 
     @classmethod
     def read(cls, line: bytes) -> WorkerSettings:
         """Return the settings of a line."""
-        fields = json.loads(line)
-        terms = fields["terms"]
-        terms |= {"limits": Limits(**terms["limits"]), "allowed_quantities": tuple(terms["allowed_quantities"])}
-        return cls(**{**fields, "terms": Terms(**terms)})
+        return TypeAdapter(WorkerSettings).validate_json(line)
 
 
 def main() -> int:

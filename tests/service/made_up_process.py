@@ -41,7 +41,9 @@ class Progress:
     seconds: float
 
 
-def solve(store: Store, claim: Claim, budget: Budget, terms: worker.Terms, pulse: Pulse, stop: Stop) -> None:
+def solve(
+    store: Store, claim: Claim, budget: Budget, terms: worker.Terms, engine: object, pulse: Pulse, stop: Stop
+) -> None:
     """Go on with a job, to its end."""
     for number in range(claim.job.generations, ROUNDS):
         if worker._ends(claim, pulse, stop):

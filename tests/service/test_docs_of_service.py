@@ -15,17 +15,26 @@ import sys
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import create_engine
 
+from slidercrank.service.server import listen
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
-STAYS = ("slidercrank serve", "slidercrank worker")
+STAYS = ("slidercrank serve", "slidercrank worker", "dask ")
+HEAVY = """
+[tolerances]
+crank = "0.05 mm"
+rod = "0.1 mm"
+[robust]
+share = 0.99
+"""
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +95,13 @@ class Terminal:
                 process.kill()
 
 
+@pytest.fixture
+def free_port() -> int:
+    """Return a port that is free now."""
+    with listen("127.0.0.1", 0) as one:
+        return int(one.getsockname()[1])
+
+
 def asked(url: str, token: str, *, job: str | None = None) -> object:
     """Return what the API answers; with a job, to its submission."""
     headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/toml"}
@@ -141,7 +157,20 @@ def server() -> Iterator[tuple[str, Path]]:
         yield f"postgresql://tests@/jobs?host={started.folder}", programs
 
 
-def test_a_store_on_postgresql_with_two_worker_processes(docs: Path, server: tuple[str, Path], tmp_path: Path) -> None:
+def evaluations_on(port: int) -> int:
+    """Return how many tasks a scheduler has done."""
+    from distributed import Client
+
+    def done(dask_scheduler: Any) -> int:
+        return sum(prefix.state_counts["memory"] for prefix in dask_scheduler.task_prefixes.values())
+
+    with Client(f"tcp://127.0.0.1:{port}") as client:  # type: ignore[no-untyped-call]
+        return int(client.run_on_scheduler(done))
+
+
+def test_postgresql_with_two_workers_and_a_dask_cluster(
+    docs: Path, server: tuple[str, Path], tmp_path: Path, free_port: int
+) -> None:
     address, programs = server
     terminal = Terminal(tmp_path, programs)
     lines = commands(docs, "PostgreSQL and Dask")
@@ -154,8 +183,9 @@ def test_a_store_on_postgresql_with_two_worker_processes(docs: Path, server: tup
     terminal.environment["SLIDERCRANK_STORE"] = address
     assert lines[4] == "slidercrank doctor"
     assert "PostgreSQL" in terminal.run(lines[4])
+    (tmp_path / "runs" / "feeder.toml").write_text(f"{fronts.JOB}{HEAVY}")
     with contextlib.ExitStack() as running:
-        for line in lines[5:]:
+        for line in (line.replace("8786", str(free_port)) for line in lines[5:]):
             if line.startswith("slidercrank serve"):
                 service = running.enter_context(terminal.stays(f"{line} --port 0"))
                 assert service.stdout is not None
@@ -164,6 +194,7 @@ def test_a_store_on_postgresql_with_two_worker_processes(docs: Path, server: tup
                 running.enter_context(terminal.stays(line))
             else:
                 assert "8 designs" in terminal.run(line)
+        assert evaluations_on(free_port) > 0
     assert (tmp_path / "log.txt").read_text().count(" of 2 started as process ") == 2
     with Store(address) as store:
         assert store.workers() == []

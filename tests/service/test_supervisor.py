@@ -15,6 +15,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from slidercrank.service.engines import EngineOptions
 from slidercrank.service.pulse import EXHAUSTED
 from slidercrank.service.store import Job, Limits, Store
 from slidercrank.service.supervisor import WORKER, Supervisor, reason_of
@@ -219,7 +220,11 @@ def test_exit_codes_are_told_in_words(code: int, reason: str) -> None:
 def test_settings_come_as_they_were_sent() -> None:
     sent = WorkerSettings(
         address="postgresql://me:secret@there/jobs",
-        terms=Terms(limits=Limits(seconds=3.0, memory=10**9), allowed_quantities=("mine:cost",)),
+        terms=Terms(
+            limits=Limits(seconds=3.0, memory=10**9),
+            allowed_quantities=("mine:cost",),
+            engine=EngineOptions(scheduler="tls://here:8786", tls_ca=Path("ca.pem")),
+        ),
         most_running=2,
     )
     assert WorkerSettings.read(sent.line()) == sent
