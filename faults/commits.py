@@ -6,7 +6,6 @@ import contextlib
 import sqlite3
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, Literal
 
 from sqlalchemy import Connection, event
@@ -77,7 +76,7 @@ def commits(kind: Kind, every: int = 1) -> tuple[int, Verdict]:
                 if not failing.reached:
                     break
                 count += 1
-                total.add(judge(address, {job: _KIND}, expected, Path(where.folder / "none"), {}))
+                total.add(judge(address, {job: _KIND}, expected, where.folder / "none"))
                 if kind == "sqlite" and not whole(address):
                     total.violate("lost", f"the file is damaged after commit {number} {failure}")
     return count, total

@@ -44,7 +44,7 @@ def full(count: int, seed: int) -> Verdict:
                 damaged += not whole(where.address)
             feed.fill()
             finish(feed, workers)
-            verdict = judge(where.address, feed.jobs, expected, journal, workers.deaths)
+            verdict = judge(where.address, feed.jobs, expected, journal)
     for _ in range(damaged):
         verdict.violate("lost", "the file is damaged")
     if not verdict.failed:

@@ -41,7 +41,7 @@ def pauses(kind: Kind, count: int, seed: int) -> Verdict:
                     workers.wake(name)
                 done += len(stopped)
             finish(feed, workers)
-            verdict = judge(where.address, feed.jobs, expected, journal, workers.deaths)
+            verdict = judge(where.address, feed.jobs, expected, journal)
     if not verdict.refused:
         verdict.violate("stale writes", "no write was refused, so that the fence was not tried")
     return verdict

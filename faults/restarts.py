@@ -41,7 +41,7 @@ def restarts(seconds: float, seed: int) -> tuple[int, Verdict]:
                 ups.append(time.time())
             feed.fill()
             finish(feed, workers)
-            verdict = judge(where.address, feed.jobs, expected, journal, workers.deaths)
+            verdict = judge(where.address, feed.jobs, expected, journal)
         at = sorted(event.at for job in feed.jobs for event in store.events(job, limit=1_000_000))
     for up, down in zip(ups, [*ups[1:], time.time()], strict=True):
         following = next((moment for moment in at if moment > up), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -63,13 +64,31 @@ class Verdict:
         )
 
 
-KINDS_OF_WRONG = ("lost", "ended twice", "designs differ", "results differ", "stale writes", "rounds amiss", "late")
+KINDS_OF_WRONG = (
+    "lost",
+    "ended twice",
+    "designs differ",
+    "results differ",
+    "stale writes",
+    "rounds amiss",
+    "events missed",
+    "late",
+)
 
 
 def judge(
-    address: str, numbers: Mapping[int, str], expected: Mapping[str, Found], journal: Path, deaths: Mapping[str, float]
+    address: str,
+    numbers: Mapping[int, str],
+    expected: Mapping[str, Found],
+    journal: Path,
+    deaths: Mapping[str, float] | None = None,
+    *,
+    within: float = math.inf,
 ) -> Verdict:
-    """Return what came of jobs, compared with what they find undisturbed. deaths: when workers were killed."""
+    """Return what came of jobs, compared with what they find undisturbed.
+
+    deaths: when workers were killed. within: how soon after that, in s, another one has to go on with their jobs.
+    """
     verdict = Verdict(jobs=len(numbers))
     results, audit = found(address), changes(address)
     noted: dict[int, list[Note]] = {}
@@ -83,7 +102,7 @@ def judge(
             _judge_result(verdict, number, results.get(number), expected[kind])
             _judge_writes(verdict, number, audit[number], noted.get(number, []))
             _judge_rounds(verdict, number, events, noted.get(number, []))
-            _time_resumptions(verdict, events, deaths)
+            _time_resumptions(verdict, number, events, deaths or {}, within)
     return verdict
 
 
@@ -92,7 +111,8 @@ def _judge_end(verdict: Verdict, number: int, state: str, events: Sequence[Event
         verdict.violate("lost", f"job {number} is {state}")
     told = [event.data["state"] for event in events if event.kind == "state" and event.data["state"] in _ENDED]
     ended = [change.state for change in audit if change.was != change.state and change.state in _ENDED]
-    if len(told) > 1 or len(ended) > 1:
+    resumed = sum(event.data.get("reason") == "resumed" for event in events)
+    if len(told) > 1 + resumed or len(ended) > 1 + resumed:
         verdict.violate("ended twice", f"job {number}: events {told}, changes {ended}")
     if [event.number for event in events] != list(range(1, len(events) + 1)):
         verdict.violate("rounds amiss", f"the events of job {number} have gaps")
@@ -133,21 +153,23 @@ def _judge_rounds(verdict: Verdict, number: int, events: Sequence[Event], noted:
             again = before + 1 - note.number
             verdict.repeated += max(0, again)
             verdict.most_repeated = max(verdict.most_repeated, again)
-            if again > 1 or again < 0:
+            if again > 1:
                 verdict.violate("rounds amiss", f"job {number}: claim {note.fence} begins {again} rounds back")
         latest[note.fence] = note.number
-    before = 0
-    for event in events:
-        if event.data.get("state") == "running":
-            before = 0  # a search tells anew from 1 when it goes on
-        elif event.kind == "progress":
-            if event.data["round"] != before + 1:
-                verdict.violate("rounds amiss", f"job {number}: round {event.data['round']} told after {before}")
-            before = event.data["round"]
+    rounds = [event.data["round"] for event in events if event.kind == "progress"]
+    if rounds != list(range(1, len(rounds) + 1)):
+        verdict.violate("rounds amiss", f"job {number}: its events tell of rounds {rounds}")
 
 
-def _time_resumptions(verdict: Verdict, events: Sequence[Event], deaths: Mapping[str, float]) -> None:
+def _time_resumptions(
+    verdict: Verdict, number: int, events: Sequence[Event], deaths: Mapping[str, float], within: float
+) -> None:
     for event in events:
         worker = event.data.get("text", "").removeprefix("the lease of ").removesuffix(" ended without a word")
         if event.kind == "message" and worker in deaths:
-            verdict.resumed(event.at - deaths[worker])
+            taken = event.at - deaths[worker]
+            verdict.resumed(taken)
+            if taken > within:
+                verdict.violate(
+                    "late", f"job {number} of {worker}, killed at {deaths[worker]:.3f}, after {taken:.2f} s"
+                )

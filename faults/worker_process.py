@@ -6,7 +6,6 @@ import contextlib
 import logging
 import random
 import signal
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,26 +17,17 @@ from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.worker import work
 
 from .journal import Journal
-
-_PR_SET_PDEATHSIG = 1
+from .lifeline import die_with_parent
 
 
 def main(address: str, name: str, lease: float, journal: Path, pause: float) -> None:
     """Solve jobs for ever. pause: how long, in s, a round takes longer at most."""
-    _die_with_parent()
+    die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the harness, which ends its workers
     logging.disable()  # it is expected to warn
     _note(Journal(journal), pause)
     with Store(address) as store:
         work(store, name=name, lease=lease)
-
-
-def _die_with_parent() -> None:
-    """Let the kernel kill this process when the one that it was forked from ends, also while it is stopped."""
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _note(journal: Journal, pause: float) -> None:

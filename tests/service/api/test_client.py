@@ -14,22 +14,16 @@ import httpx
 import pytest
 
 from slidercrank.model.errors import InputError, JobError, NotFound, RunError, ServiceError
+from slidercrank.service.api import events
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.client import Client
 from slidercrank.service.client_connection import Connection
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, served, solved_in
+from tests.service.api.fixed_front import Solved, served
 from tests.service.store.contents import progress
 
 TABLES = tomllib.loads(fronts.JOB)
-
-
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a solved job."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +31,6 @@ def reader(solved: Solved) -> Iterator[Client]:
     """Return a client of its service."""
     with served(solved.store) as address, Client(address) as client:
         yield client
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    """Return an empty store."""
-    with Store(tmp_path / "store.db") as opened:
-        yield opened
 
 
 @pytest.fixture
@@ -121,7 +108,7 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     assert all(solved.result.designs[at - 1]["rod_mm"] == rod for at, rod in table["rod_mm"].items())  # type: ignore[operator]
     knee = reader.pick(number, knee=True)
     assert knee["number"] - 1 == front.knee
-    assert reader.analysis(number, 1, show=["balance"])["balance"]
+    assert reader.analysis(number, 1, show=["motor"])["motor"]
     assert len(reader.curves(number, 1, angles=12)) == 12
     assert "knee" in reader.figures(number)
     assert reader.figure(number, "knee", tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
@@ -341,6 +328,36 @@ def test_events_outlast_a_restart_of_the_service(store: Store) -> None:
         thread.join(30.0)
         client.close()
     assert seen == [1, 2, 3, 4]
+
+
+def test_patience_begins_anew_with_every_sign_of_life(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "HEARTBEAT", 0.1)
+    with served(store) as address:
+        port = int(address.rpartition(":")[2])
+        client = Client(address, patience=20.0)
+        number = client.submit(TABLES)["id"]
+        client._connection.patience = 0.6
+        thread, seen = follow(client, number)
+        time.sleep(1.2)  # longer than the patience, and no event
+        client._connection.patience = 20.0
+        time.sleep(0.5)  # a sign of life, and with it that patience
+    with served(store, port=port):
+        store.cancel(number)
+        thread.join(30.0)
+        client.close()
+    assert seen == [1, 2]
+
+
+def test_a_wrong_token_is_no_reason_to_wait(store: Store) -> None:
+    job = store.submit(TABLES, name="x")
+    started = time.monotonic()
+    with (
+        served(store, Settings(token="secret")) as address,
+        Client(address, "wrong") as client,
+        pytest.raises(ServiceError, match="carries the token"),
+    ):
+        list(client.events(job.id))
+    assert time.monotonic() - started < 15.0
 
 
 def test_events_of_a_job_that_is_not_there_are_not_found(client: Client) -> None:

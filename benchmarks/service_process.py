@@ -1,0 +1,58 @@
+"""A service in a process of its own, on loopback, for as long as it is needed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+
+TOKEN = "a-token-of-the-benchmarks"
+_PATIENCE = 120.0  # s to start
+
+
+@contextmanager
+def service(address: str, folder: Path, *, workers: int, port: int = 0) -> Iterator[str]:
+    """Give the URL of the API of a service on a store. folder: for its log."""
+    log = folder / "service.log"
+    command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", str(port)]
+    options = ["--workers", str(workers), "--submissions-per-minute", "0", "--lease", "30", "--grace", "1"]
+    with log.open("wb") as out:
+        environment = {**os.environ, "SLIDERCRANK_TOKEN": TOKEN, "PYTHONUNBUFFERED": "1"}
+        process = subprocess.Popen([*command, *options], stdout=out, stderr=out, env=environment)
+    try:
+        yield f"{_url(process, log)}api/v1/"
+    finally:
+        process.terminate()
+        try:
+            process.wait(20.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def headers() -> dict[str, str]:
+    """Return what every request carries."""
+    return {"Authorization": f"Bearer {TOKEN}"}
+
+
+def _url(process: subprocess.Popen[bytes], log: Path) -> str:
+    end = time.monotonic() + _PATIENCE
+    while time.monotonic() < end and process.poll() is None:
+        found = [word for word in log.read_text().split() if word.startswith("http://")]
+        if found and _answers(found[0]):
+            return found[0]
+        time.sleep(0.1)
+    raise SystemExit(f"the service did not start: {log.read_text()[-2000:]}")
+
+
+def _answers(url: str) -> bool:
+    try:
+        return httpx.get(f"{url}api/v1/health/live", trust_env=False).is_success
+    except httpx.TransportError:
+        return False

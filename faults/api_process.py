@@ -1,0 +1,66 @@
+"""The API in a process of its own, `slidercrank serve`, that can be killed and comes back at the same address."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import httpx
+
+from .lifeline import die_with_parent
+
+TOKEN = "a-token-of-the-faults"
+
+
+class Api:
+    """A running API. url: where it is."""
+
+    def __init__(self, address: str) -> None:
+        """Start it on a store."""
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            port = free.getsockname()[1]
+        self.url = f"http://127.0.0.1:{port}/"
+        self._command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", str(port)]
+        self._command += ["--workers", "0", "--submissions-per-minute", "0"]
+        self._process = self._started()
+
+    def answers(self) -> bool:
+        """Whether it answers."""
+        try:
+            return httpx.get(f"{self.url}api/v1/health/live", trust_env=False, timeout=0.2).is_success
+        except httpx.TransportError:
+            return False
+
+    def kill(self) -> None:
+        """Kill it by SIGKILL and start it again."""
+        self.end()
+        self._process = self._started()
+
+    def end(self) -> None:
+        """Kill it."""
+        self._process.kill()
+        self._process.wait()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            self._command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "SLIDERCRANK_TOKEN": TOKEN},
+            preexec_fn=die_with_parent,
+        )
+
+
+@contextmanager
+def api(address: str) -> Iterator[Api]:
+    """Give an API while it is needed."""
+    started = Api(address)
+    try:
+        yield started
+    finally:
+        started.end()
