@@ -103,7 +103,10 @@ def select(rows: list[Row], conditions: Collection[str]) -> list[int]:
     if not rows:
         return []
     parsed = [parse_condition(text, list(rows[0]), rows[0]) for text in conditions]
-    return [n for n, row in enumerate(rows) if all(condition.holds(row) for condition in parsed)]
+    chosen = list(range(len(rows)))
+    for condition in parsed:
+        chosen = [n for n in chosen if condition.holds(rows[n])]
+    return chosen
 
 
 def order_key(cell: Cell) -> tuple[bool, float, str]:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from ..choosing import chosen_rows
 from ..columns import find_columns
 from ..result import finite
-from .fronts import Cells, ColumnModel, Where, columns_of
+from .fronts import Cells, ColumnModel, Where, column_model
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
@@ -59,11 +59,9 @@ def list_designs(
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = found.result
-    shown = columns_of(result.designs)
+    shown = found.columns
     if columns is not None and result.designs:
-        keys = [column.key for column in find_columns(columns, list(result.designs[0]))]
-        known = {column.key: column for column in shown}
-        shown = [known[key] for key in dict.fromkeys(keys)]
+        shown = list({column.key: column for column in find_columns(columns, list(result.designs[0]))}.values())
     chosen = chosen_rows(result, where, sort=sort, reverse=reverse)
     page = chosen[offset : offset + limit]
     return DesignsModel(
@@ -71,7 +69,7 @@ def list_designs(
         count=len(result.designs),
         chosen=len(chosen),
         offset=offset,
-        columns=shown,
+        columns=[column_model(column) for column in shown],
         numbers=[row + 1 for row in page],
         designs=[{column.key: finite(result.designs[row][column.key]) for column in shown} for row in page],
     )
@@ -81,4 +79,6 @@ def list_designs(
 def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
-    return DesignModel(job=found.job.id, number=design, columns=columns_of([row]), design=finite(row))
+    return DesignModel(
+        job=found.job.id, number=design, columns=[column_model(column) for column in found.columns], design=finite(row)
+    )

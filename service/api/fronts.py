@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -10,9 +9,9 @@ from pydantic import BaseModel, BeforeValidator, Field
 
 from ...model.errors import InputError, NotFound
 from ..choosing import chosen_rows, none_meets
-from ..columns import find_column
+from ..columns import Column, find_column
 from ..picking_options import picked_row
-from ..result import Row, finite
+from ..result import finite
 from .models import JobNumber
 from .problems import problem_responses
 from .state import StoreDep
@@ -92,7 +91,7 @@ def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     # Only results of the first stores have no summary.
     count = len(store.result(number).designs) if summary is None else summary["designs"]
     keys = record.pop("columns")
-    return FrontModel(**record, job=number, count=count, columns=[column_model(key, keys) for key in keys])
+    return FrontModel(**record, job=number, count=count, columns=[column_model(find_column(key, keys)) for key in keys])
 
 
 @router.get("/jobs/{number}/pick")
@@ -130,12 +129,6 @@ def pick_design(
     return PickedModel(job=found.job.id, number=row + 1, design=finite(result.designs[row]))
 
 
-def columns_of(designs: list[Row]) -> list[ColumnModel]:
-    """Return the columns of designs, with title and unit; none without designs."""
-    return [column_model(key, designs[0]) for key in designs[0]] if designs else []
-
-
-def column_model(key: str, keys: Collection[str]) -> ColumnModel:
-    """Return a column by its key."""
-    column = find_column(key, keys)
+def column_model(column: Column) -> ColumnModel:
+    """Return a column as JSON has it."""
     return ColumnModel(key=column.key, title=column.title, unit=column.unit)

@@ -13,6 +13,7 @@ from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
 from ..allowed_quantities import require_allowed
+from ..columns import Column, find_column
 from ..result import Result, Row
 from ..store import Job, Store
 from ..stored_designs import StoredDesign, design_of, front_of
@@ -46,6 +47,12 @@ class StoredFront:
         """The problem that the job stated, with the seed of its search. Raises `JobError`."""
         problem = self._read()
         return replace(problem, settings=replace(problem.settings, seed=self.result.seed))
+
+    @cached_property
+    def columns(self) -> list[Column]:
+        """The columns of the designs; none without designs."""
+        keys = list(self.result.designs[0]) if self.result.designs else []
+        return [find_column(key, keys) for key in keys]
 
     @cached_property
     def front(self) -> ParetoFront:

@@ -197,11 +197,13 @@ def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> No
     claim = taken(store)
     claim.tell(progress(1))
     running = client.get("/jobs/1").json()
+    assert running == job_record(store.job(1))
     assert running["progress"]["round"] == 1
     assert running["worker"] == "first"
     assert client.post("/jobs/1/cancel").json()["cancel_asked"]
     claim.finish(result())
     done = client.get("/jobs/1").json()
+    assert done == job_record(store.job(1))
     assert done["state"] == "done"
     assert done["summary"]["designs"] == 2
     assert client.delete("/jobs/1").status_code == 204
