@@ -1,8 +1,8 @@
 """The API against its own description: cases made by schemathesis, also one after the other along the links.
 
-    python -m tests.service.api.schema_cases 10000
+    python -m tests.service.api.schema_cases 10000 1
 
-asks that many and more. Meanwhile jobs come, are solved, fail and are cancelled, so that every answer occurs.
+asks about that many, with a seed. Meanwhile jobs come, are solved, fail and are cancelled, so that every answer occurs.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Outcome:
     text: str
 
 
-def run(place: Path, each: int, phases: str = ALL) -> Outcome:
+def run(place: Path, each: int, phases: str = ALL, seed: int = 1) -> Outcome:
     """Serve a store in a folder and ask `each` cases of every operation, and as many chains along the links.
 
     phases: of schemathesis, separated by commas.
@@ -62,7 +62,16 @@ def run(place: Path, each: int, phases: str = ALL) -> Outcome:
             command = [
                 *(sys.executable, "-m", "schemathesis.cli", "run", f"{address}/api/v1/openapi.json"),
                 *("--header", f"Authorization: Bearer {TOKEN}", "--checks", "all", "--exclude-checks", _UNCHECKED),
-                *("--phases", phases, "--max-examples", str(each), "--seed", "1", "--generation-database", "none"),
+                *(
+                    "--phases",
+                    phases,
+                    "--max-examples",
+                    str(each),
+                    "--seed",
+                    str(seed),
+                    "--generation-database",
+                    "none",
+                ),
                 *("--report", "ndjson", "--report-ndjson-path", str(report), "--no-color", "--warnings", "off"),
                 *("--suppress-health-check", "all", "--request-timeout", "60"),
             ]
@@ -136,9 +145,9 @@ def _statuses_in(node: object) -> Iterator[int]:
 
 
 if __name__ == "__main__":
-    wanted = int(sys.argv[1])
+    wanted, chosen = int(sys.argv[1]), int(sys.argv[2])
     with tempfile.TemporaryDirectory() as folder:
-        outcome = run(Path(folder), max(1, wanted // 36))
+        outcome = run(Path(folder), max(1, wanted // 28), seed=chosen)
     sys.stdout.write(outcome.text)
     statuses = ", ".join(f"{status}: {count}" for status, count in sorted(outcome.statuses.items()))
     sys.stdout.write(f"{outcome.cases} cases in {outcome.seconds:.0f} s; {statuses}\n")

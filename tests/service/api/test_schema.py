@@ -10,7 +10,7 @@ import httpx
 from tests.service.api import schema_cases
 
 CASES = "SLIDERCRANK_CASES"
-"""How many cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000`."""
+"""How many cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000 1`."""
 
 
 def test_every_answer_is_as_described(tmp_path: Path) -> None:
