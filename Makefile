@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test lint benchmark clean
+.PHONY: run test lint benchmark faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed $(VENV)/.kernels
@@ -22,9 +22,13 @@ lint: $(VENV)/.installed-test
 benchmark: $(VENV)/.installed-benchmark $(VENV)/.kernels
 	$(BIN)/python -m benchmarks
 
+# Kills, pauses, crashes of databases, full disks: about half an hour.
+faults: $(VENV)/.installed-test $(VENV)/.kernels
+	$(BIN)/python -m faults
+
 clean:
 	rm -rf $(VENV) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
-	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
+	find .package model objectives optimise service tests benchmarks faults -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \

@@ -6,6 +6,7 @@
     |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
     |   `-- NotFound        what was asked for by its name or number is not there
+    |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
         |-- LeaseLost       a job that is another worker's by now
@@ -40,6 +41,10 @@ class JobError(InputError):
 
 class NotFound(InputError):
     """What was asked for by its name or number is not there."""
+
+
+class EngineError(SlidercrankError):
+    """The processes or the cluster that evaluate designs cannot be used, or are lost."""
 
 
 class RunError(SlidercrankError):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -28,7 +30,8 @@ def challengers(
     First those that dominate a polished design. Then, where designs are wanting, those that no polished design
     dominates, and points half-way between neighbours.
     """
-    best = pile.best()
+    poll = evaluators[0].ledger.poll
+    best = pile.best(poll)
     front = pile.values[best] / pile.span
     _sample(problem, evaluators, archive, pile, best, attempt)
     screened = archive.values / pile.span
@@ -36,10 +39,10 @@ def challengers(
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(beating)[:_POOL] if not archive.band else np.zeros(0, np.int64)
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
-    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32)))
+    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), poll))
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~beating)
-        rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting)
+        rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting, poll)
         starts += by_sheet(evaluators, archive.sheet, archive.u, rows)
         starts += _half_way(evaluators, pile, best, wanting)
     return starts
@@ -82,14 +85,16 @@ def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[
     return beating, kept[len(front) :]
 
 
-def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int) -> NDArray[np.int64]:
+def _few(
+    screened: Array, rows: NDArray[np.int64], front: Array, count: int, poll: Callable[[], None]
+) -> NDArray[np.int64]:
     """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
     if len(rows) <= count:
         return rows
     if front.shape[1] == 1:
         return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
     union = np.concatenate([front, screened[rows]])
-    picked = choose(union, len(front) + count, always=tuple(range(len(front))))
+    picked = choose(union, len(front) + count, always=tuple(range(len(front))), poll=poll)
     return rows[picked[picked >= len(front)] - len(front)]
 
 

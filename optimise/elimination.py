@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,12 +28,19 @@ ZERO = 1e-300
 
 @dataclass(frozen=True)
 class Rule:
-    """One way to compute an unknown: `target` from `sources`, by `formula`. `origin` names the requirement."""
+    """One way to compute an unknown: `target` from `sources`, by `formula`. `origin` names the requirement.
+
+    wanted: the values that its formula was made of; another process makes it of them again.
+    """
 
     origin: str
     target: str
     sources: tuple[str, ...]
     formula: Callable[..., Any]
+    wanted: tuple[tuple[str, float], ...] = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.wanted, self.origin, self.target, self.sources)
 
 
 @dataclass(frozen=True)
@@ -232,4 +239,10 @@ def _rules(wanted: dict[str, float]) -> list[Rule]:
             Rule("stroke", "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
             Rule("stroke", "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
         ]
-    return rules
+    return [replace(rule, wanted=tuple(wanted.items())) for rule in rules]
+
+
+def _again(wanted: tuple[tuple[str, float], ...], origin: str, target: str, sources: tuple[str, ...]) -> Rule:
+    """Return the rule that the wanted values gave."""
+    rules = _rules(dict(wanted))
+    return next(rule for rule in rules if (rule.origin, rule.target, rule.sources) == (origin, target, sources))

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objectives.cycle_peak import CyclePeak, screen_peaks
 from ..objectives.quantity import Array, Pieces, Quantity
-from ..objectives.robust.quantity import RobustQuantity
 from .elimination import UNKNOWNS, Sheet
+from .engine.chunks import Chunked
+from .engine.engine import Engine
+from .engine.serial import Serial
+from .engine.shared import Shared
+from .judging import exactly, joined, quickly
 from .ledger import Ledger, floats, integers
 from .problem import Constraint, Objective, Problem
 
@@ -74,14 +77,20 @@ def minimised(objective: Objective, values: Array) -> Array:
 
 
 class Evaluator:
-    """Evaluates one sheet of a problem."""
+    """Evaluates one sheet of a problem.
 
-    def __init__(self, problem: Problem, sheet: Sheet, ledger: Ledger | None = None) -> None:
+    engine: where heavy batches are evaluated; it does not show in the results.
+    """
+
+    def __init__(
+        self, problem: Problem, sheet: Sheet, ledger: Ledger | None = None, engine: Engine | None = None
+    ) -> None:
         """Prepare the constraints that remain on the sheet, cheapest first.
 
         ledger: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
         """
         self.ledger = ledger or Ledger()
+        self.engine = engine or Serial()
         problem = problem.part(sheet.variant)
         self.problem = problem
         self.sheet = sheet
@@ -92,6 +101,10 @@ class Evaluator:
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
+        self.chunked = Chunked(Shared(self), self.engine, self.ledger.poll)
+
+    def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
+        return Evaluator, (self.problem, self.sheet)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
@@ -133,28 +146,8 @@ class Evaluator:
         return rows[had], objectives[had], violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
-        quantities = [self.problem.quantity(name) for name in names]
-        peaks = [quantity for quantity in quantities if isinstance(quantity, CyclePeak)]
-        screened = dict(
-            zip((peak.name for peak in peaks), screen_peaks(peaks, self.mechanism, dimensions), strict=True)
-        )
-        return [
-            self._robustly(quantity, dimensions)
-            if isinstance(quantity, RobustQuantity)
-            else (
-                screened[quantity.name] if quantity.name in screened else quantity.evaluate(self.mechanism, dimensions)
-            ).values
-            for quantity in quantities
-        ]
-
-    def _robustly(self, quantity: RobustQuantity, dimensions: Array) -> Array:
-        """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
-        inner = quantity.inner
-        if isinstance(inner, CyclePeak):
-            found = screen_peaks([inner], self.mechanism, dimensions, gradients=True)[0]
-        else:
-            found = inner.evaluate(self.mechanism, dimensions, gradients=True)
-        return quantity.estimate(self.mechanism, dimensions, found)
+        parts: list[list[Array]] = self.chunked(_quickly, tuple(names), dimensions)
+        return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
@@ -189,11 +182,14 @@ class Evaluator:
         dimensions = self.sheet.dimensions(u)
         jacobian = self.sheet.jacobian(u)
         self.evaluations += len(u)
+        wanted = [objective.quantity for objective in self.problem.objectives]
+        names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
+        found_of = dict(zip(names, joined(self.chunked(_exactly, names, dimensions)), strict=True))
         cache: dict[str, Pieces] = {}
 
         def pieces(name: str) -> Pieces:
             if name not in cache:
-                found = self.problem.quantity(name).pieces(self.mechanism, dimensions)
+                found = found_of[name]
                 # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
                 bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
                 values = np.where(bounded, found.values, np.copysign(np.inf, found.values))
@@ -228,6 +224,14 @@ class Evaluator:
         if owner < len(self.constraints):
             return self.constraints[owner].quantity
         return self.computed[owner - len(self.constraints)]
+
+
+def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+    return quickly(evaluator.problem, names, dimensions)
+
+
+def _exactly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+    return exactly(evaluator.problem, names, dimensions)
 
 
 def _costly(quantity: Quantity) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 
 import moocore
 import numpy as np
@@ -45,11 +46,13 @@ def hypervolume(values: Array, ideal: Array, span: Array) -> float:
     return float(volume / REFERENCE ** scaled.shape[1])
 
 
-def choose(values: Array, count: int, *, always: tuple[int, ...] = ()) -> NDArray[np.int64]:
+def choose(
+    values: Array, count: int, *, always: tuple[int, ...] = (), poll: Callable[[], None] = lambda: None
+) -> NDArray[np.int64]:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
-    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978).
+    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978). poll: called for every gain.
     """
     n = len(values)
     if n <= count:
@@ -67,6 +70,7 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = ()) -> NDArra
     heap = [(-float(np.prod(REFERENCE - row)), index, -1) for index, row in enumerate(scaled) if index not in picked]
     heapq.heapify(heap)
     while len(picked) < count and heap:
+        poll()
         _, index, age = heapq.heappop(heap)
         if age == len(picked):
             picked.append(index)

@@ -19,17 +19,17 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..objectives.registry import quantity
+from .assemble import empty, only
 from .challenge import by_sheet
-from .deliver import empty, only
 from .elimination import UNKNOWNS, sheets
 from .evaluation import FEASIBLE, Evaluator
 from .front import ParetoFront
 from .pile import STATIONARY, Pile
-from .polish import polish
 from .problem import Constraint, Problem, Range, Settings
 from .sampling import generator
 from .search import Archive, Run, explore
 from .solve import solve
+from .spread import polish
 from .stationarity import Array
 
 Ends = tuple[float | None, float | None]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,14 +55,25 @@ class Pile:
         self.goals += [part.goals[row] for row in rows]
         self.active += [part.active[row] for row in rows]
 
-    def best(self) -> NDArray[np.int64]:
-        """Return the rows that none dominates, fewer where they hardly differ; ascending."""
+    def part(self, rows: NDArray[np.int64]) -> Pile:
+        """Return a pile of these rows only."""
+        part = Pile(self.span)
+        for name in ("sheet", "u", "dimensions", "values", "residual"):
+            setattr(part, name, getattr(self, name)[rows])
+        part.goals, part.active = [self.goals[row] for row in rows], [self.active[row] for row in rows]
+        return part
+
+    def best(self, poll: Callable[[], None] = lambda: None) -> NDArray[np.int64]:
+        """Return the rows that none dominates, fewer where they hardly differ; ascending. poll: called for each."""
         scaled = self.values / self.span
         doubtful = self.residual > STATIONARY
         covered = COVERED if len(self.span) > 1 else SAME
         sure = scaled[~doubtful]
         if len(sure):
-            apart = np.array([np.min(np.max(sure - own, axis=1)) for own in scaled])
+            apart = np.zeros(len(scaled))
+            for row in np.flatnonzero(doubtful).tolist():
+                poll()
+                apart[row] = np.min(np.max(sure - scaled[row], axis=1))
             rows = np.flatnonzero(~doubtful | (apart > covered))
         else:
             rows = np.arange(len(scaled))
@@ -69,6 +82,7 @@ class Pile:
         # What is proven first, then what is best in an objective.
         order = np.lexsort([scaled[rows].sum(axis=1), np.where(_leads(scaled[rows]), 0, 1), doubtful[rows]])
         for row in rows[order].tolist():
+            poll()
             if not kept or np.min(np.max(scaled[kept] - scaled[row], axis=1)) > SAME:
                 kept.append(row)
         return np.array(sorted(kept), dtype=np.int64)

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from .evaluation import Evaluator
 from .ledger import Numbers, floats, integers
-from .polish import ITERATIONS, Evaluates, Polished, polish, project
+from .polish import ITERATIONS, Evaluates, Polished
+from .spread import polish, project
 from .stationarity import Array
 
 

@@ -129,10 +129,13 @@ class Run:
         if self.ledger.turn() and self.progress is not None:
             self.progress(entry)
 
-    def history(self, ideal: Array, span: Array) -> tuple[Progress, ...]:
-        """Return the rounds with hypervolumes of one scaling, so that they compare."""
+    def history(self, ideal: Array, span: Array, most: int = _SHOWN) -> tuple[Progress, ...]:
+        """Return the rounds with hypervolumes of one scaling, so that they compare.
+
+        most: designs of each round that count; the others would add little.
+        """
         return tuple(
-            replace(entry, hypervolume=hypervolume(front, ideal, span))
+            replace(entry, hypervolume=hypervolume(front[:: -(-len(front) // most) or 1], ideal, span))
             for entry, front in zip(self.told, self.fronts, strict=True)
         )
 

@@ -7,9 +7,11 @@ from functools import partial
 
 import numpy as np
 
+from .assemble import empty
 from .certificate.infeasible import prove_infeasible
-from .deliver import as_found, deliver, empty, planned, so_far
+from .deliver import as_found, deliver, planned
 from .elimination import Sheet, sheets
+from .engine.engine import Engine
 from .evaluation import Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
@@ -19,6 +21,7 @@ from .ledger import Cancelled, Ledger, Record
 from .methods.registry import require_eliminated, require_fit, search_of
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
+from .so_far import so_far
 from .stationarity import Array
 
 
@@ -29,6 +32,7 @@ def solve(
     cancelled: Callable[[], bool] | None = None,
     resume: Sequence[Record] = (),
     keep: Callable[[Record], None] | None = None,
+    engine: Engine | None = None,
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
@@ -37,13 +41,14 @@ def solve(
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
     many; the run goes on from them and gives what it would have given without a stop, bit for bit.
+    engine: where heavy work is done, in this process by default; it does not show in the front. Who gives it closes it.
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
     """
     require_fit(problem)
     require_gradients(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    evaluators = [Evaluator(problem, sheet, ledger) for sheet in sheets(problem)]
+    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
     require_eliminated(problem, evaluators)
     run = Run(problem, 1, progress, ledger)
     try:
@@ -94,7 +99,7 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float |
 
     run, evaluators: of the search that wants to know it.
     """
-    own = [Evaluator(problem, sheet, run.ledger) for sheet in sheets(problem)]
+    own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
     inner = Run(problem, 1, ledger=run.ledger)
     archive = explore(problem, own, inner)
     front = deliver(problem, own, archive, inner) if len(archive) else None

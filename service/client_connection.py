@@ -20,6 +20,10 @@ _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
 _AWAY = 503
 
 
+class Away(ServiceError):
+    """The service answers that it cannot do it now, but later."""
+
+
 class Connection:
     """A connection to a service. Threads may share it."""
 
@@ -110,7 +114,7 @@ class Tries:
     def wait(self, error: Exception) -> None:
         """Wait before the next one after an error. Raises `ServiceError` if there is no patience left."""
         if not self.left:
-            raise self._connection.unreachable(error) from error
+            raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
         self.pause()
 
 
@@ -118,11 +122,12 @@ def refusal(answer: httpx.Response) -> SlidercrankError:
     """Return what a service refused as an exception with its sentence.
 
     `NotFound` for 404, `InputError` for what was wrong in the request, `RunError` for what a job cannot do or give as
-    it stands, `ServiceError` for all others.
+    it stands, `ServiceError` for all others, of which `Away` may pass.
     """
     try:
         detail = str(answer.json()["detail"])
     except (ValueError, KeyError, TypeError):
         detail = f"the service answered {answer.status_code} {answer.reason_phrase}; see its log"
-    kinds = {400: InputError, 404: NotFound, 409: RunError, 413: InputError, 415: InputError, 422: InputError}
+    kinds: dict[int, type[SlidercrankError]] = {404: NotFound, 409: RunError, _AWAY: Away}
+    kinds |= dict.fromkeys((400, 413, 415, 422), InputError)
     return kinds.get(answer.status_code, ServiceError)(detail)

@@ -8,13 +8,13 @@ from typing import Any
 
 import httpx
 
-from ..model.errors import ServiceError
-from .client_connection import Connection, Tries
+from .client_connection import Away, Connection, Tries
 
 _ENDED = 204
+Event = dict[str, Any]
 
 
-def followed(connection: Connection, number: int, after: int) -> Iterator[dict[str, Any]]:
+def followed(connection: Connection, number: int, after: int) -> Iterator[Event]:
     """Yield the events of a job after one, as they happen, until the service says that there will be no more.
 
     Every connection says which event came last, so none is missed and none comes twice.
@@ -27,22 +27,28 @@ def followed(connection: Connection, number: int, after: int) -> Iterator[dict[s
                 if answer.status_code == _ENDED:
                     return
                 for event in _events(answer.iter_lines()):
-                    after = int(event["number"])
                     tries = Tries(connection)
-                    yield event
-        except httpx.TransportError as error:
+                    if event is not None:
+                        after = int(event["number"])
+                        yield event
+        except (httpx.TransportError, Away) as error:
             tries.wait(error)
-        except ServiceError:
-            if not tries.left:
-                raise
-            tries.pause()
+        else:
+            if tries.made:
+                tries.wait(Away("the events of a job end with the job; the service broke them off; see its log"))
+            tries.made += 1
 
 
-def _events(lines: Iterator[str]) -> Iterator[dict[str, Any]]:
-    """Yield the data of server-sent events; one that is cut off is left out. (WHATWG, HTML standard, 9.2.6)"""
+def _events(lines: Iterator[str]) -> Iterator[Event | None]:
+    """Yield the data of server-sent events, None for a sign of life; an event that is cut off is left out.
+
+    WHATWG, HTML standard, 9.2.6.
+    """
     data: list[str] = []
     for line in lines:
-        if line.startswith("data:"):
+        if line.startswith(":"):
+            yield None
+        elif line.startswith("data:"):
             data.append(line.removeprefix("data:").removeprefix(" "))
         elif not line and data:
             yield json.loads("\n".join(data))

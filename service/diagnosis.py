@@ -23,6 +23,7 @@ Grade = Literal["ok", "note", "problem"]
 _LEAST_ROOM, _LITTLE_ROOM = 200e6, 2e9  # bytes
 _CLOCKS = 2.0  # s between clocks that is worth a note
 _SILENT = 120.0  # s; a worker with the default lease is heard of every 10 s
+_REMEDY = "; stop the service and restore a backup, see docs/service.md"
 _PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
 _OPTIONAL = ("psycopg", "distributed", "pyarrow")
 
@@ -78,7 +79,8 @@ def _database(address: str, database: Database) -> Iterator[Check]:
         return
     yield Check(name="tables", grade="ok", text=f"version {version}")
     wrong = damages(database)
-    yield Check(name="integrity", grade="problem" if wrong else "ok", text="; ".join(wrong) or "nothing is damaged")
+    text = "; ".join(wrong) + _REMEDY if wrong else "nothing is damaged"
+    yield Check(name="integrity", grade="problem" if wrong else "ok", text=text)
     ahead = clock_ahead(database)
     text = f"the one of the store differs by {ahead:+.2f} s from the one of this machine"
     far = abs(ahead) > _CLOCKS

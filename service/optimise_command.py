@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..model.errors import InputError
+from .engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
 from .interruption import Interruption
 from .result import Result, json_text, result_of
 from .run_folder import RunFolder, disk, runs_place
@@ -20,6 +21,7 @@ from .stores import Address, open_store
 from .tables import show_design, show_front
 
 if TYPE_CHECKING:
+    from ..optimise.engine.engine import Engine
     from ..optimise.front import ParetoFront, Progress
     from ..optimise.problem import Problem
     from .store import Claim, Store
@@ -44,6 +46,11 @@ def optimise(
     store: Address = None,
     designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of everything random.")] = None,
+    cores: Cores = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
     json: Json = False,
     figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
 ) -> None:
@@ -61,6 +68,7 @@ def optimise(
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
     if resume is not None and (designs is not None or seed is not None):
         raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+    options = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key)
     with contextlib.ExitStack() as opened:
         if job is not None:
             problem, tables = _problem(job, designs, seed)
@@ -75,7 +83,8 @@ def optimise(
         opened.enter_context(Pulse(claim))
         run.log(f"command: {' '.join(sys.argv[1:])}")
         run.log(f"job {claim.job.id} of the store {jobs.name}")
-        front = _solve(problem, run, interruption, claim)
+        engine = opened.enter_context(engine_of(options))
+        front = _solve(problem, run, interruption, claim, engine)
         result = result_of(front, str(run.path))
         versions = _versions(front)
         run.keep_result(result, versions)
@@ -170,7 +179,7 @@ def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem,
     return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **given}}
 
 
-def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim) -> ParetoFront:
+def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim, engine: Engine) -> ParetoFront:
     from ..optimise.solve import solve
 
     with progress_bar() as show:
@@ -189,6 +198,7 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
             cancelled=lambda: interruption.asked() or claim.cancel_asked,
             resume=tuple(claim.generations()),
             keep=claim.keep,
+            engine=engine,
         )
 
 

@@ -15,7 +15,7 @@ from .sizes import size_text
 from .store import Claim
 
 _log = logging.getLogger(__name__)
-PULSE = 0.5
+PULSE = 0.25
 """Time between two beats, s: a cancelled job has to end within 2 s, of which its search takes up to one to hear."""
 EXHAUSTED = 75
 """Exit code of a process whose job took more memory than it may; another process is to take its place."""

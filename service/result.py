@@ -174,22 +174,16 @@ def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow([_inert(key) for key in rows[0]] if spreadsheet else rows[0])
         for row in rows:
-            cells = row.values()
+            # The writer writes every number as repr does, None as nothing, and only NaN differs from itself.
+            cells = ["" if cell != cell else cell for cell in row.values()]
             if spreadsheet:
-                writer.writerow([_inert(cell) if isinstance(cell, str) else _csv_cell(cell) for cell in cells])
-            else:
-                writer.writerow([_csv_cell(cell) for cell in cells])
+                cells = [_inert(cell) if isinstance(cell, str) else cell for cell in cells]
+            writer.writerow(cells)
     return out.getvalue()
 
 
 def _inert(text: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) else text
-
-
-def _csv_cell(cell: Cell) -> str:
-    if cell is None or (isinstance(cell, float) and math.isnan(cell)):
-        return ""
-    return cell if isinstance(cell, str) else repr(float(cell))
 
 
 def rows_from_csv(text: str) -> list[Row]:

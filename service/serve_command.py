@@ -66,6 +66,7 @@ def serve(
     from .store import Limits
     from .supervisor import Supervisor
     from .termination import Termination
+    from .worker import Terms
     from .worker_process import WorkerSettings
 
     secret, made = _token(token, no_token, host)
@@ -83,9 +84,7 @@ def serve(
         address=store_address(store),
         lease=lease,
         most_running=most_running,
-        limits=limits,
-        grace=grace,
-        allowed_quantities=allowed,
+        terms=Terms(limits=limits, grace=grace, allowed_quantities=allowed),
         log_format=log_format.value,
     )
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers

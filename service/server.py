@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import os
 import socket
 from typing import TYPE_CHECKING
 
@@ -40,11 +41,17 @@ def listen(host: str, port: int) -> socket.socket:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
         return socket.create_server(address[:2], family=family, backlog=_WAITING)
     except (OSError, UnicodeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise InputError(
-            f"the service needs an address of this machine and a free port; {host} port {port} gave: {reason}; "
+            f"the service needs an address of this machine and a free port; {host} port {port} gave: {_why(error)}; "
             "choose another one with --port (0 takes any that is free) or --host"
         ) from None
+
+
+def _why(error: OSError | UnicodeError) -> str:
+    if isinstance(error, UnicodeError):
+        return str(error)
+    known = error.errno is not None and error.errno > 0  # those of a name that is not found are negative
+    return os.strerror(error.errno or 0) if known else error.strerror or str(error)
 
 
 def url_of(host: str, listening: socket.socket, token: str | None) -> str:

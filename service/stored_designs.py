@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..model.errors import RunError
 from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
+from ..model.varying import Varying
 from ..objectives.varying_column import varying_column
-from ..optimise.problem import Problem, choice_field
+from ..optimise.problem import Problem, Range, Variant, choice_field
 from .result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -38,9 +39,8 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
 
     Raises `RunError` for a row that does not belong to the problem.
     """
-    variant = _variant(problem, row)
-    part = problem.part(variant)
-    values = _values(row, _factors(part.mechanism))
+    values = _values(row, _factors(problem.mechanism))
+    part = problem.part(_variant(problem, row, values))
     mechanism = part.mechanism.at(values[3:])
     crank, rod, offset = values[:3]
     return StoredDesign(part, values, mechanism, Linkage(crank, rod, offset, mechanism.branch))
@@ -54,14 +54,16 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     from ..optimise.front import ParetoFront
     from .picking_options import minimised_values
 
-    sizes = _factors(problem.part(0).mechanism)  # the same numbers vary in all variants
+    sizes = _factors(problem.mechanism)
+    dimensions = [_values(row, sizes) for row in result.designs]
+    variants = [_variant(problem, *of) for of in zip(result.designs, dimensions, strict=True)]
     factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     return ParetoFront(
         problem=problem,
         status="done",
         message=result.message,
         designs=pd.DataFrame(result.designs),
-        dimensions=np.array([_values(row, sizes) for row in result.designs]).reshape(len(result.designs), -1),
+        dimensions=np.array(dimensions).reshape(len(dimensions), -1),
         values=minimised_values(result) / factors,
         goals=(),
         active=(),
@@ -70,18 +72,28 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
         evaluations=result.evaluations,
         seconds=result.seconds,
         seed=result.seed,
-        variants=tuple(_variant(problem, row) for row in result.designs) if problem.variants else (),
+        variants=tuple(variants) if problem.variants else (),
     )
 
 
-def _variant(problem: Problem, row: Row) -> int:
+def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
+    """Return which variant a design is of: that of its labels, and of those the one whose ranges it is in."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
-    for index, variant in enumerate(problem.variants):
-        if variant.labels == labels:
-            return index
-    raise _foreign(f"nothing of its job is called {' with '.join(map(str, labels))}")
+    own = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
+    if not own:
+        raise _foreign(f"nothing of its job is called {' with '.join(map(str, labels))}")
+    return min(own, key=lambda index: _outside(problem.variants[index], values))
+
+
+def _outside(variant: Variant, values: Sequence[float]) -> float:
+    """Return how far values are out of the ranges of a variant, as a share of each."""
+    ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
+    return max(
+        max(of.lower - value, value - of.upper, 0.0) / max(abs(of.lower), abs(of.upper), 1e-300)
+        for of, value in zip(ranges, values, strict=True)
+    )
 
 
 def _factors(mechanism: Mechanism) -> dict[str, float]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 FAILED = 2
 _LOOK = 0.25  # s between two looks for new events
+_AWAY = 1.0  # s between two tries while the database is away
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
@@ -124,7 +125,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
             if not away:
                 say(f"slidercrank: {error}; trying again")
             away = True
-            time.sleep(1.0)
+            time.sleep(_AWAY)
             continue
         away = False
         for event in found:

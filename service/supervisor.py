@@ -71,7 +71,10 @@ class Supervisor:
         try:
             while not self._leaving.wait(_LOOK):
                 for place in self._places:
-                    self._look_after(place)
+                    try:
+                        self._look_after(place)
+                    except Exception:  # noqa: BLE001 - whatever it is, the other workers are looked after
+                        _log.exception("worker %d could not be looked after; trying again", place.number)
         finally:
             self._stop()
 
@@ -119,7 +122,7 @@ class Supervisor:
         running = [place.process for place in self._places if place.process is not None]
         for process in running:
             _release(process)
-        end = time.monotonic() + self.settings.grace + MARGIN
+        end = time.monotonic() + (self.settings.terms.grace or 0.0) + MARGIN
         for process in running:
             try:
                 process.wait(max(0.0, end - time.monotonic()))

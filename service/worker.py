@@ -9,7 +9,8 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..model.errors import InputError, LeaseLost, StoreError
@@ -24,7 +25,25 @@ if TYPE_CHECKING:
     from ..optimise.front import Progress
 
 _log = logging.getLogger(__name__)
+_AWAY = 1.0  # s between two tries while the database cannot be reached
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Terms:
+    """What a worker lets jobs use and do.
+
+    limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
+    in s that a round has to end once the worker is to stop, too; see `Pulse`. allowed_quantities: functions,
+    "module:function", that jobs may name as quantities.
+    """
+
+    limits: Limits = NO_LIMITS
+    grace: float | None = None
+    allowed_quantities: tuple[str, ...] = ()
+
+
+DEFAULT = Terms()
 
 
 class Stopped(Exception):
@@ -44,24 +63,19 @@ def work(
     stop: Stop | None = None,
     drain: bool = False,
     most_running: int | None = None,
-    limits: Limits = NO_LIMITS,
-    grace: float | None = None,
-    allowed_quantities: Collection[str] = (),
+    terms: Terms = DEFAULT,
 ) -> int:
     """Solve jobs of a store one after the other, and return how many were taken on.
 
     lease: for how long, in s, a job stays this worker's without a word of it; a third of it is how often it renews one.
     stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
     the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
-    limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
-    in s that a round has to end after `stop`, too; see `Pulse`. allowed_quantities: functions, "module:function", that
-    jobs may name as quantities.
 
     While the database cannot be reached, it is tried again every second.
     """
     name = name or worker_name()
     stop = stop or (lambda: False)
-    taken, greeted = 0, -lease
+    taken, greeted, away = 0, -lease, False
     with about(worker=name):
         while not stop():
             try:
@@ -72,10 +86,16 @@ def work(
             except StoreError as error:
                 if drain:
                     raise
-                _log.warning("%s", error)
-                claim = None
+                if not away:
+                    _log.warning("%s; trying again until it is there", error)
+                away = True
+                time.sleep(_AWAY)
+                continue
+            if away:
+                _log.info("the store is there again")
+                away = False
             if claim is not None:
-                solve_claimed(store, claim, stop, limits=limits, grace=grace, allowed_quantities=allowed_quantities)
+                solve_claimed(store, claim, stop, terms)
                 taken += 1
             elif drain:
                 break
@@ -86,27 +106,18 @@ def work(
     return taken
 
 
-def solve_claimed(
-    store: Store,
-    claim: Claim,
-    stop: Stop,
-    *,
-    limits: Limits = NO_LIMITS,
-    grace: float | None = None,
-    allowed_quantities: Collection[str] = (),
-) -> None:
+def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT) -> None:
     """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
 
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
-    The options are those of `work`.
     """
-    limits = within(claim.job.limits, limits)
+    limits = within(claim.job.limits, terms.limits)
     with about(job=claim.job.id):
         _log.info("claimed")
         try:
-            with Pulse(claim, memory=limits.memory, stop=stop, grace=grace) as pulse:
-                _end(claim, lambda: _solve(store, claim, Budget(limits), allowed_quantities, pulse, stop))
+            with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace) as pulse:
+                _end(claim, lambda: _solve(store, claim, Budget(limits), terms, pulse, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
 
@@ -134,15 +145,13 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         raise
 
 
-def _solve(
-    store: Store, claim: Claim, budget: Budget, allowed_quantities: Collection[str], pulse: Pulse, stop: Stop
-) -> None:
+def _solve(store: Store, claim: Claim, budget: Budget, terms: Terms, pulse: Pulse, stop: Stop) -> None:
     from ..optimise.job import parse_job
     from ..optimise.solve import solve
 
     tables = store.tables(claim.job.id)
-    require_allowed(tables, allowed_quantities)
-    problem = parse_job(tables, allow_user_code=bool(allowed_quantities))
+    require_allowed(tables, terms.allowed_quantities)
+    problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
     past = tuple(claim.generations())
 
     def tell(at: Progress) -> None:

@@ -33,16 +33,17 @@ def worker(
     from .store import Limits
     from .supervisor import Supervisor
     from .termination import Termination
+    from .worker import Terms
     from .worker_process import WorkerSettings
 
     memory = None if most_memory is None else size_of(most_memory, "--most-memory")
+    limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
     settings = WorkerSettings(
         address=store_address(store),
         lease=lease,
         drain=drain,
         most_running=most_running,
-        limits=Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory),
-        grace=grace,
+        terms=Terms(limits=limits, grace=grace),
         log_format=log_format.value,
     )
     with Termination() as termination:

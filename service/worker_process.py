@@ -18,9 +18,9 @@ from dataclasses import asdict, dataclass
 from ..model.errors import SlidercrankError
 from .logs import Format, set_up_logs
 from .pulse import leave
-from .store import LEASE, NO_LIMITS, Limits, Store
+from .store import LEASE, Limits, Store
 from .store.database import Unavailable
-from .worker import work
+from .worker import Terms, work
 
 GRACE = 10.0
 """Time that a worker has to stop, s; then its job is handed back wherever its search is."""
@@ -39,9 +39,7 @@ class WorkerSettings:
     lease: float = LEASE
     drain: bool = False
     most_running: int | None = None
-    limits: Limits = NO_LIMITS
-    grace: float = GRACE
-    allowed_quantities: tuple[str, ...] = ()
+    terms: Terms = Terms(grace=GRACE)
     log_format: Format = "text"
 
     def line(self) -> bytes:
@@ -52,8 +50,9 @@ class WorkerSettings:
     def read(cls, line: bytes) -> WorkerSettings:
         """Return the settings of a line."""
         fields = json.loads(line)
-        allowed = tuple(fields["allowed_quantities"])
-        return cls(**{**fields, "limits": Limits(**fields["limits"]), "allowed_quantities": allowed})
+        terms = fields["terms"]
+        terms |= {"limits": Limits(**terms["limits"]), "allowed_quantities": tuple(terms["allowed_quantities"])}
+        return cls(**{**fields, "terms": Terms(**terms)})
 
 
 def main() -> int:
@@ -66,7 +65,7 @@ def main() -> int:
         return 0
     settings = WorkerSettings.read(line)
     set_up_logs(settings.log_format)
-    threading.Thread(target=_wait_for_end, args=(stop, settings.grace), daemon=True).start()
+    threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
     try:
         with _opened(settings, stop) as store:
             work(
@@ -75,9 +74,7 @@ def main() -> int:
                 stop=stop.is_set,
                 drain=settings.drain,
                 most_running=settings.most_running,
-                limits=settings.limits,
-                grace=settings.grace,
-                allowed_quantities=settings.allowed_quantities,
+                terms=settings.terms,
             )
     except _Ended:
         return 0
@@ -93,13 +90,16 @@ class _Ended(Exception):
 
 def _opened(settings: WorkerSettings, stop: threading.Event) -> Store:
     """Return the store, as soon as it can be reached."""
+    away = False
     while not stop.is_set():
         try:
             return Store(settings.address)
         except Unavailable as error:
             if settings.drain:
                 raise
-            _log.warning("%s", error)
+            if not away:
+                _log.warning("%s; trying again until it is there", error)
+            away = True
             stop.wait(1.0)
     raise _Ended
 
@@ -115,7 +115,7 @@ def _line() -> bytes:
     return line
 
 
-def _wait_for_end(stop: threading.Event, grace: float) -> None:
+def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
     """Stop when standard input ends, and leave when more than the time for that has passed: no supervisor may be left.
 
     That is the end of what even its pulse cannot stop, such as a database that does not answer.
@@ -123,7 +123,7 @@ def _wait_for_end(stop: threading.Event, grace: float) -> None:
     while os.read(0, 64):
         pass
     stop.set()
-    time.sleep(grace + MARGIN)
+    time.sleep((grace or 0.0) + MARGIN)
     leave(1)
 
 

@@ -55,8 +55,8 @@ def weights(share: float, samples: int) -> Array:
 
 @lru_cache(maxsize=32)
 def interpolation(columns: tuple[int, ...], shape: Shape, samples: int, seed: int) -> Array:
-    """Return what makes the sample from the values at the star: (samples, points)."""
-    found = np.asarray(_basis(sample(columns, shape, samples, seed), columns) @ _fit(columns))
+    """Return what makes the sample from the values at the star: (points, samples)."""
+    found = np.ascontiguousarray((_basis(sample(columns, shape, samples, seed), columns) @ _fit(columns)).T)
     found.setflags(write=False)
     return found
 

@@ -201,12 +201,12 @@ class RobustQuantity:
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
         matrix = interpolation(columns, self.shape, self.samples, self.seed)
         rows = np.flatnonzero(good)
-        step = max(1, _BLOCK // (len(matrix) * values.shape[2]))
+        step = max(1, _BLOCK // (matrix.shape[1] * values.shape[2]))
         for begin in range(0, len(rows), step):
             some = rows[begin : begin + step]
             quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], columns, matrix)
         rows = np.flatnonzero(kinked)
-        step = max(1, _BLOCK // (32 * len(matrix)))
+        step = max(1, _BLOCK // (32 * matrix.shape[1]))
         for begin in range(0, len(rows), step):
             some = rows[begin : begin + step]
             quantiles[some], gradients[some] = self._of_machines(mechanism, dimensions[some], columns)
@@ -227,8 +227,8 @@ class RobustQuantity:
         if self.side == "low":
             machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
         order, rank = self._ranked(machines)
-        found = np.take_along_axis(machines, order, axis=1) @ rank
-        slope = np.einsum("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
+        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
+        slope = _each("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
         return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
 
     def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
@@ -240,31 +240,40 @@ class RobustQuantity:
 
     def _of_sample(self, values: Array, slopes: Array, columns: tuple[int, ...], matrix: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
-        absent = ~np.isfinite(values[:, :1])
-        drawn = matrix @ np.where(absent, 0.0, values)  # (n, samples, p)
+        absent = ~np.isfinite(values[:, 0])[:, :, None]
+        drawn = _each("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), matrix)
         drawn = np.where(absent, -np.inf, drawn)
-        piece = np.argmax(drawn, axis=2)
-        machines = np.take_along_axis(drawn, piece[:, :, None], axis=2)[:, :, 0]
+        piece = np.argmax(drawn, axis=1)
+        machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
         order, rank = self._ranked(machines)
-        found = np.take_along_axis(machines, order, axis=1) @ rank
+        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
         which = np.take_along_axis(piece, order, axis=1)
         slope = np.zeros((len(values), slopes.shape[3]))
+        weighed = matrix.T[order]
         for p in range(values.shape[2]):
-            share_of = np.einsum("ns,nsq->nq", rank * (which == p), matrix[order])
-            slope += np.einsum("nq,nqd->nd", share_of, slopes[:, :, p])
+            share_of = _each("ns,nsq->nq", rank * (which == p), weighed)
+            slope += _each("nq,nqd->nd", share_of, slopes[:, :, p])
         if self.shape != "normal":
             return found, slope
         rows = np.arange(len(values))
         top = np.argmax(values[:, 0], axis=1)
         ends = linear(columns)
-        control = values[rows, :, top] @ ends.T  # (n, d)
-        drawn = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
-        order, rank = self._ranked(control @ drawn.T)
-        shift = np.einsum("s,nsd->nd", rank, drawn[order])
+        control = _each("nq,dq->nd", values[rows, :, top], ends)
+        deviations = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
+        order, rank = self._ranked(_each("nd,ds->ns", control, deviations.T))
+        shift = _each("s,nsd->nd", rank, deviations[order])
         exact, exact_slope = linear_quantile(control, self.share if self.side == "high" else 1.0 - self.share)
-        by_control = (exact_slope - shift) @ ends  # (n, q)
-        found = found + exact - np.einsum("nd,nd->n", shift, control)
-        return found, slope + np.einsum("nq,nqd->nd", by_control, slopes[rows, :, top])
+        by_control = _each("nd,dq->nq", exact_slope - shift, ends)
+        found = found + exact - _each("nd,nd->n", shift, control)
+        return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
+
+
+def _each(sums: str, *factors: Array) -> Array:
+    """Return sums of products, those of a design the same to the last bit whatever stands beside it.
+
+    BLAS sums otherwise for other numbers of rows, einsum for other strides.
+    """
+    return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))
 
 
 def require_options(kind: str, order: int, share: float, samples: int, shape: str) -> None:

@@ -10,11 +10,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ...objectives.cycle_peak import CyclePeak
-from ..deliver import span_of
+from ..assemble import span_of
 from ..elimination import sheets
 from ..evaluation import FEASIBLE, Evaluator, constraints_of, minimised
-from ..polish import polish
 from ..problem import Problem
+from ..spread import polish
 from .boxes import Boxes, usable
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, thinned, volume_gap

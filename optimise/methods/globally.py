@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..deliver import span_of
+from ..assemble import span_of
 from ..evaluation import FEASIBLE, Evaluator
 from ..ledger import floats
 from ..problem import Problem

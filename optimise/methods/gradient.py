@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..deliver import span_of
+from ..assemble import span_of
 from ..evaluation import Evaluator
 from ..problem import Problem
 from ..search import Archive, Run

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -133,9 +134,12 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 @contextlib.contextmanager
 def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
-    """Show a live bar of the turns done on standard error if it is a terminal; yield what is called after each."""
+    """Show a live bar of the turns done on standard error if it is a terminal; yield what is called after each.
+
+    Threads other than the main one show nothing: a service simulates for others.
+    """
     screen = error_console()
-    if not screen.is_terminal:
+    if not screen.is_terminal or threading.current_thread() is not threading.main_thread():
         yield None
         return
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

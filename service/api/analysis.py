@@ -22,7 +22,7 @@ from .given_jobs import given_problem
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
-from .turns import SIMULATING, in_turn
+from .turns import SIMULATING
 
 if TYPE_CHECKING:
     from ...model.linkage import Linkage
@@ -145,7 +145,7 @@ def _with_topics(
     row: Row, mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
-    with in_turn(SIMULATING, "simulation") if topics else nullcontext():
+    with SIMULATING.turn() if topics else nullcontext():
         analysed = analysis_of(row, mechanism, linkage, topics, cancelled=_over(_LONGEST), lenient=lenient)
     return finite(analysed.record()), analysed.notes
 

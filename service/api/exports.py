@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 from fastapi import APIRouter, HTTPException, Response
 
-from ..result import csv_text, json_text
+from ..result import csv_text
 from ..run_folder import slug
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
@@ -40,8 +40,10 @@ def export_csv(found: FrontDep) -> Response:
     responses={200: {"content": {"application/json": {}}}},
 )
 def export_json(found: FrontDep) -> Response:
-    """Give the whole front, as `slidercrank export --json` does."""
-    return _file(found, "json", "application/json", json_text(found.result.record()))
+    """Give the whole front, as `slidercrank export --json` does but in one line."""
+    from pydantic_core import to_json  # a tenth of the time of json's
+
+    return _file(found, "json", "application/json", to_json(found.result.record(), inf_nan_mode="null"))
 
 
 @router.get(

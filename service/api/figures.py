@@ -12,7 +12,7 @@ from ...model.errors import NotFound
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
-from .turns import DRAWING, in_turn
+from .turns import DRAWING
 
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
@@ -83,7 +83,7 @@ def draw_svg(found: FrontDep, name: Name) -> Response:
 
 def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
     """Return a figure as a file; what was drawn before is kept with the front."""
-    from ..figures.of_front import front_figures, sheet_of
+    from ..figures.of_front import FrontFigure, front_figures, sheet_of
     from ..figures.style import image
 
     single = _DESIGN.fullmatch(name)
@@ -92,17 +92,23 @@ def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
         found.row(row + 1)
     elif not found.result.designs:
         raise _unknown(name, [])
-    with in_turn(DRAWING, "drawing"):
-        if (name, kind) in found.images:
-            return found.images[name, kind]
+    drawn = found.image(name, kind)
+    if drawn is not None:
+        return drawn
+    with DRAWING.turn():
+        drawn = found.image(name, kind)  # by whoever was first
+        if drawn is not None:
+            return drawn
         if single is not None:
-            return image(sheet_of(found.front, row, f"design {row + 1}"), kind)
-        listed = front_figures(found.front)
-        figure = next((item for item in listed if name in item.names), None)
-        if figure is None:
-            raise _unknown(name, [name for item in listed for name in item.names])
+            figure = FrontFigure((name,), "", lambda: sheet_of(found.front, row, f"design {row + 1}"))
+        else:
+            listed = front_figures(found.front)
+            named = next((item for item in listed if name in item.names), None)
+            if named is None:
+                raise _unknown(name, [name for item in listed for name in item.names])
+            figure = named
         content = image(figure.draw(), kind)
-        found.images |= {(same, kind): content for same in figure.names}
+        found.keep_image(figure.names, kind, content)
         return content
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Annotated, Any
 from fastapi import Header, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
@@ -19,6 +21,8 @@ from .models import LARGEST
 from .settings import Settings
 from .strict_input import read_json, require_moderate
 
+# A dotted key of so many words: tomllib takes a time for it that grows with the square of its length.
+_DOTTED = r"""(?:(?:[\w-]{1,100}|"[^"\n]{0,100}"|'[^'\n]{0,100}')[ \t]{0,9}\.[ \t]{0,9}){%d}"""
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
     "name": "Feeder",
@@ -63,7 +67,7 @@ class Submission(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
+    job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
     priority: Priority = 0
     limits: AskedLimits = AskedLimits()
 
@@ -99,14 +103,15 @@ async def asked_for(request: Request) -> Asked:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        return Asked(tables=toml_tables(body, settings.most_depth), limits=settings.limits, source=source)
+        tables = await run_in_threadpool(toml_tables, body, settings.most_depth)
+        return Asked(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
             f"a job comes as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; give one of these content types",
         )
     try:
-        stated = Submission.model_validate(read_json(body, settings.most_depth))
+        stated = Submission.model_validate(await run_in_threadpool(read_json, body, settings.most_depth))
     except ValidationError as error:
         found = error.errors(include_url=False)
         raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None
@@ -117,7 +122,10 @@ async def asked_for(request: Request) -> Asked:
 def toml_tables(body: bytes, most_depth: int) -> dict[str, Any]:
     """Return the tables of a job file in TOML. Raises `JobError`."""
     try:
-        tables = tomllib.loads(body.decode("utf-8-sig"))
+        text = body.decode("utf-8-sig")
+        if re.search(_DOTTED % most_depth, text):
+            raise RecursionError
+        tables = tomllib.loads(text)
         require_moderate(tables, most_depth)
     except RecursionError:
         raise JobError(f"a body nests at most {most_depth} deep; got more; flatten it") from None

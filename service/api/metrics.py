@@ -74,7 +74,7 @@ class Timed:
         async def timed(message: Message) -> None:
             if message["type"] == "http.response.start":
                 # By the name of the endpoint: paths that clients make up must not become series.
-                operation = getattr(scope.get("endpoint"), "__name__", "none")
+                operation = getattr(scope.get("route"), "name", "none")
                 method = scope["method"] if operation != "none" else "any"
                 metrics: Metrics = scope["app"].state.metrics
                 labelled = metrics.requests.labels(operation, method, message["status"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from fastapi import FastAPI
@@ -26,17 +25,8 @@ stroke = { equals = "280 mm" }
 time_ratio = "maximise"
 transmission_angle = "maximise"
 """
-_OF_THE_JOB = {"number": "$response.body#/id"}
-_LINKED = (
-    "show_job",
-    "cancel_job",
-    "resume_job",
-    "delete_job",
-    "clone_job",
-    "show_tables",
-    "list_files",
-    "list_events",
-)
+_NUMBER = "/api/v1/jobs/{number}"
+_FIRST = {"design": 1}
 
 
 def describe(app: FastAPI) -> None:
@@ -55,10 +45,8 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})
     shapes["Problem"] = Problem.model_json_schema()
-    shapes |= _job_file()
     submission = Submission.model_json_schema(ref_template=f"{_PREFIX}{{model}}")
     shapes |= submission.pop("$defs", {})
-    submission["properties"]["job"] = {"$ref": f"{_PREFIX}JobFile"}
     shapes["Submission"] = submission
     content = {
         JSON: {
@@ -74,7 +62,7 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
         schema["paths"][path]["post"]["requestBody"] = {"required": True, "content": content}
     for path in ("/api/v1/jobs", "/api/v1/jobs/{number}/clone"):
         created = schema["paths"][path]["post"]["responses"]["201"]
-        created["links"] = {name: {"operationId": name, "parameters": _OF_THE_JOB} for name in _LINKED}
+        created["links"] = _links(schema["paths"])
         created["headers"] = {"Location": {"schema": {"type": "string"}, "description": "the address of the job"}}
     if secured:
         parts["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
@@ -82,11 +70,15 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     return schema
 
 
-def _job_file() -> dict[str, Any]:
-    """Return the schema of job files as components, each part under the name "JobFile.Part"."""
-    from ...optimise.job import job_schema
-
-    text = json.dumps(job_schema()).replace('"#/$defs/', f'"{_PREFIX}JobFile.')
-    job = json.loads(text)
-    del job["$schema"]
-    return {f"JobFile.{name}": part for name, part in job.pop("$defs").items()} | {"JobFile": job}
+def _links(paths: dict[str, Any]) -> dict[str, Any]:
+    """Return what may be asked next of a job that was submitted."""
+    links = {}
+    for path, methods in paths.items():
+        rest = path.removeprefix(_NUMBER)
+        if rest == path or "{name}" in rest:
+            continue
+        parameters = {"number": "$response.body#/id"} | {key: _FIRST[key] for key in _FIRST if f"{{{key}}}" in rest}
+        for operation in methods.values():
+            name = operation["operationId"]
+            links[name] = {"operationId": name, "parameters": parameters}
+    return links

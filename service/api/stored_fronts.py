@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from ...optimise.problem import Problem
 
 MOST_DESIGNS = 40_000
-"""Designs kept at hand, of all fronts together; 100 MB."""
+"""Designs kept at hand, of all fronts together; 140 MB."""
+_MOST_IMAGES = 24  # of a front, 100 kB each
 
 DesignNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
@@ -37,7 +38,7 @@ class StoredFront:
         """Take a job, what it found, and what reads the problem that it stated."""
         self.job = job
         self.result = result
-        self.images: dict[tuple[str, str], bytes] = {}
+        self._images: OrderedDict[tuple[str, str], bytes] = OrderedDict()
         self._read = problem
 
     @cached_property
@@ -50,6 +51,17 @@ class StoredFront:
     def front(self) -> ParetoFront:
         """The front as figures take it."""
         return front_of(self.problem, self.result)
+
+    def image(self, name: str, kind: str) -> bytes | None:
+        """Return a figure that was drawn lately."""
+        return self._images.get((name, kind))
+
+    def keep_image(self, names: Sequence[str], kind: str, content: bytes) -> None:
+        """Take in a figure that was drawn, under its names."""
+        for name in names:
+            self._images[name, kind] = content
+        while len(self._images) > _MOST_IMAGES:
+            self._images.popitem(last=False)
 
     def row(self, number: int) -> Row:
         """Return a design by its number, counted from 1. Raises `NotFound`."""

@@ -8,20 +8,39 @@ from collections.abc import Iterator
 
 from fastapi import HTTPException
 
-_PATIENCE = 10.0  # s
+_PATIENCE = 30.0  # s
+_MOST = 8  # requests that wait or work; each holds a thread, of which a service has 40
 
-DRAWING = threading.Lock()
+
+class Turns:
+    """A kind of work, and who waits to do it."""
+
+    def __init__(self, name: str) -> None:
+        """Name it."""
+        self.name = name
+        self._waiting = threading.BoundedSemaphore(_MOST)
+        self._working = threading.Lock()
+
+    @contextlib.contextmanager
+    def turn(self) -> Iterator[None]:
+        """Wait for a turn; give up with a 503 that says so where too many wait, or it does not come soon."""
+        if not self._waiting.acquire(blocking=False):
+            raise self._busy(f"{_MOST} others wait")
+        try:
+            if not self._working.acquire(timeout=_PATIENCE):
+                raise self._busy(f"others were first for {_PATIENCE:g} s")
+            try:
+                yield
+            finally:
+                self._working.release()
+        finally:
+            self._waiting.release()
+
+    def _busy(self, why: str) -> HTTPException:
+        detail = f"{self.name} is done for one request at a time; {why}; try again"
+        return HTTPException(503, detail, headers={"Retry-After": "5"})
+
+
+DRAWING = Turns("drawing")
 """matplotlib is not made for threads."""
-SIMULATING = threading.Lock()
-
-
-@contextlib.contextmanager
-def in_turn(lock: threading.Lock, what: str) -> Iterator[None]:
-    """Wait for a turn; give up with a 503 that says so when it does not come soon."""
-    if not lock.acquire(timeout=_PATIENCE):
-        message = f"{what} is done for one request at a time; others were first for {_PATIENCE:g} s; try again"
-        raise HTTPException(503, message, headers={"Retry-After": "5"})
-    try:
-        yield
-    finally:
-        lock.release()
+SIMULATING = Turns("simulation")

@@ -7,18 +7,29 @@ import time
 
 from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
 
+from ...model.errors import StoreError
 from .clock import now
-from .database import Database
+from .database import Database, Unavailable
 from .schema import designs, events, generations, jobs
 
 _MOST = 5  # of a kind that are named
+_SETTINGS = ("fsync", "full_page_writes")
+"""Of PostgreSQL: without them what was committed may not outlive a crash."""
 
 
 def damages(database: Database) -> list[str]:
-    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences."""
-    with database.reading() as connection:
-        found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
-        return found or _miscounts(connection)  # a damaged file need not be counted
+    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences.
+
+    Raises `StoreError` if it cannot be reached.
+    """
+    try:
+        with database.reading() as connection:
+            found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
+            return found or _miscounts(connection)  # a damaged file need not be counted
+    except Unavailable:
+        raise
+    except StoreError as error:  # a file may be too damaged to be looked through
+        return [str(error)]
 
 
 def clock_ahead(database: Database) -> float:
@@ -38,7 +49,7 @@ def server_version(database: Database) -> str:
 
 
 def _of_sqlite(connection: Connection) -> list[str]:
-    found = [str(row[0]) for row in connection.execute(text(f"PRAGMA integrity_check({_MOST})"))]
+    found = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
     if found != ["ok"]:
         return found
     rows = connection.execute(text("PRAGMA foreign_key_check")).all()
@@ -59,7 +70,7 @@ def _of_postgresql(connection: Connection) -> list[str]:
     )
     if failures:
         found.append(f"{failures} pages failed their checksum; restore a backup")
-    off = [name for name in ("fsync", "full_page_writes") if connection.scalar(text(f"SHOW {name}")) != "on"]
+    off = [name for name in _SETTINGS if connection.scalar(text(f"SHOW {name}")) != "on"]
     return [*found, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,9 +41,7 @@ class Progress:
     seconds: float
 
 
-def solve(
-    store: Store, claim: Claim, budget: Budget, allowed_quantities: Collection[str], pulse: Pulse, stop: Stop
-) -> None:
+def solve(store: Store, claim: Claim, budget: Budget, terms: worker.Terms, pulse: Pulse, stop: Stop) -> None:
     """Go on with a job, to its end."""
     for number in range(claim.job.generations, ROUNDS):
         if worker._ends(claim, pulse, stop):

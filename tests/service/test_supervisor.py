@@ -18,6 +18,7 @@ import pytest
 from slidercrank.service.pulse import EXHAUSTED
 from slidercrank.service.store import Job, Limits, Store
 from slidercrank.service.supervisor import WORKER, Supervisor, reason_of
+from slidercrank.service.worker import Terms
 from slidercrank.service.worker_process import REFUSED, WorkerSettings
 from tests.service import made_up_process
 from tests.service.made_up_process import ROUNDS
@@ -35,9 +36,9 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
         yield opened
 
 
-def settings(store: Store, **more: object) -> WorkerSettings:
+def settings(store: Store, *, lease: float = 2.0, grace: float = 0.5, drain: bool = False) -> WorkerSettings:
     """Return settings of workers with a short lease."""
-    return WorkerSettings(address=store.name, **{"lease": 2.0, "grace": 0.5, **more})  # type: ignore[arg-type]
+    return WorkerSettings(address=store.name, lease=lease, drain=drain, terms=Terms(grace=grace))
 
 
 def put_in(store: Store, name: str, limits: Limits | None = None) -> Job:
@@ -134,8 +135,9 @@ def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
     script = (
         "import sys, time\n"
         "from slidercrank.service.supervisor import Supervisor\n"
+        "from slidercrank.service.worker import Terms\n"
         "from slidercrank.service.worker_process import WorkerSettings\n"
-        f"settings = WorkerSettings(address={store.name!r}, lease=60.0, grace=0.5)\n"
+        f"settings = WorkerSettings(address={store.name!r}, lease=60.0, terms=Terms(grace=0.5))\n"
         f"with Supervisor(settings, 1, program={MADE_UP!r}) as supervisor:\n"
         "    while not supervisor.processes(): time.sleep(0.02)\n"
         "    print(*supervisor.processes(), flush=True)\n"
@@ -217,8 +219,7 @@ def test_exit_codes_are_told_in_words(code: int, reason: str) -> None:
 def test_settings_come_as_they_were_sent() -> None:
     sent = WorkerSettings(
         address="postgresql://me:secret@there/jobs",
-        limits=Limits(seconds=3.0, memory=10**9),
-        allowed_quantities=("mine:cost",),
+        terms=Terms(limits=Limits(seconds=3.0, memory=10**9), allowed_quantities=("mine:cost",)),
         most_running=2,
     )
     assert WorkerSettings.read(sent.line()) == sent

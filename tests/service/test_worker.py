@@ -4,29 +4,25 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pandas as pd
 import pytest
 
 from slidercrank.model.errors import InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
 from slidercrank.service.pulse import Pulse
-from slidercrank.service.store import Claim, Limits, Store
+from slidercrank.service.store import Claim, Store
 from slidercrank.service.submission import submit
 from slidercrank.service.worker import solve_claimed, work, worker_name
 from tests.service import fronts
+from tests.service.made_up_search import Search, found, search, until
 from tests.service.store.contents import end_lease, generation, progress
 
 TABLES = tomllib.loads(fronts.JOB)
-ROUNDS = 3
-Search = Callable[..., ParetoFront]
 
 
 @pytest.fixture
@@ -46,46 +42,6 @@ def store(address: Path) -> Iterator[Store]:
 def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
     """Return what puts another search in the place of `solve`."""
     return lambda search: monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
-
-
-def found(problem: Problem, status: str) -> ParetoFront:
-    """Return a front of one design, as a search finds it."""
-    return ParetoFront(
-        problem=problem,
-        status=status,  # type: ignore[arg-type]
-        message="1 design",
-        designs=pd.DataFrame({"crank_mm": [140.0], "time_ratio": [1.5], "least_transmission_angle_deg": [45.0]}),
-        dimensions=np.array([[0.14, 0.4, 0.05]]),
-        values=np.array([[-1.5, -0.8]]),
-        goals=((np.array([0.0, 1.0]), np.array([[1.0], [-1.0]])),),
-        active=(np.zeros((0, 1)),),
-        hypervolume=0.5,
-        history=(),
-        evaluations=48,
-        seconds=0.1,
-        seed=1,
-        versions={"slidercrank": "0"},
-    )
-
-
-def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep: Any) -> ParetoFront:
-    """Keep `ROUNDS` generations, beginning after those given."""
-    from tests.service.store.contents import progress as at
-
-    for number in range(len(resume), ROUNDS):
-        if cancelled():
-            return found(problem, "cancelled")
-        keep(generation(number))
-        progress(at(number + 1))
-    return found(problem, "done")
-
-
-def until(condition: Callable[[], bool]) -> None:
-    """Wait until something is so."""
-    end = time.monotonic() + 30.0
-    while not condition():
-        assert time.monotonic() < end, "it did not come about within 30 s"
-        time.sleep(0.005)
 
 
 def test_a_worker_solves_what_waits_and_writes_what_it_found(store: Store, searches: Any) -> None:
@@ -208,18 +164,6 @@ def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> No
     assert len(store.result(job.id).designs) == 1
 
 
-def test_a_search_ends_at_its_limit_of_time_with_what_it_found(store: Store, searches: Any) -> None:
-    def long(problem: Problem, *, cancelled: Any, **_: Any) -> ParetoFront:
-        until(cancelled)
-        return found(problem, "cancelled")
-
-    searches(long)
-    job = submit(store, TABLES, limits=Limits(seconds=0.05))
-    assert work(store, drain=True) == 1
-    ended = store.job(job.id)
-    assert (ended.state, ended.reason) == ("cancelled", "1 design; its search took longer than its limit of 0.05 s")
-
-
 def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> None:
     submit(store, TABLES)
     claim = store.claim("first", lease=1.0)
@@ -282,8 +226,10 @@ def test_a_paused_search_learns_between_its_writes_that_its_lease_was_lost(
     assert (store.job(job.id).state, store.job(job.id).worker) == ("running", "second")
 
 
-def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.service.worker.PULSE", 0.0)
+def test_a_worker_waits_for_a_database_that_is_away_and_tells_it_once(
+    store: Store, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("slidercrank.service.worker._AWAY", 0.0)
     asked: list[bool] = []
 
     def away(*_: Any, **_more: Any) -> None:
@@ -292,6 +238,7 @@ def test_a_worker_waits_for_a_database_that_is_away(store: Store, monkeypatch: p
 
     monkeypatch.setattr(store, "claim", away)
     assert work(store, stop=lambda: len(asked) >= 3) == 0
+    assert caplog.messages == ["the server restarts; trying again until it is there"]
     with pytest.raises(StoreError, match="the server restarts"):
         work(store, drain=True)
 

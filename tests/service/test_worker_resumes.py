@@ -20,11 +20,14 @@ from tests.service.store.contents import end_lease
 TABLES = tomllib.loads(fronts.JOB)
 
 
-def test_a_killed_job_goes_on_and_finds_the_same_designs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("optimiser", [{"method": "nsga2", "samples": 16, "evaluations": 64}, {"samples": 128}])
+def test_a_killed_job_goes_on_and_finds_the_same_designs(
+    optimiser: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     address = str(tmp_path / "store.db")
     store = Store(address)
-    evolving = {**TABLES, "optimiser": {"method": "nsga2", "samples": 16, "evaluations": 64, "designs": 6, "seed": 4}}
-    whole, killed = submit(store, evolving), submit(store, evolving)
+    tables = {**TABLES, "optimiser": {**optimiser, "designs": 6, "seed": 4}}
+    whole, killed = submit(store, tables), submit(store, tables)
     lengths: list[int] = []
 
     class Killed(BaseException):
@@ -53,11 +56,11 @@ def test_a_killed_job_goes_on_and_finds_the_same_designs(tmp_path: Path, monkeyp
     with pytest.raises(Killed):
         solve_claimed(store, claim, lambda: False)
     kept = claim.generations()
-    assert len(kept) == 2
+    assert len(kept) >= 2  # more where a round took long
     end_lease(address, killed.id)
     monkeypatch.setattr("slidercrank.optimise.solve.solve", watched)
     assert work(store, drain=True) == 1
-    assert lengths == [0, 2]
+    assert lengths == [0, len(kept)]
     one, other = store.result(whole.id), store.result(killed.id)
     assert (one.status, one.message, one.hypervolume) == (other.status, other.message, other.hypervolume)
     assert one.designs

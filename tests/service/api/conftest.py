@@ -11,6 +11,7 @@ import httpx
 import pytest
 
 from slidercrank.service.store import Artefact, Store
+from tests.service.api.fixed_front import Solved, solved_in
 from tests.service.api.serving import TOKEN, client_of
 from tests.service.store.contents import add
 
@@ -56,6 +57,13 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     """Return a client of a service with a token, `TOKEN`, which it does not send."""
     with Store(tmp_path_factory.mktemp("guarded") / "store.db") as store, client_of(store, token=TOKEN) as client:
         yield client
+
+
+@pytest.fixture(scope="session")
+def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
+    """Return a small job that was solved, which the tests leave as it is."""
+    with solved_in(tmp_path_factory.mktemp("solved")) as found:
+        yield found
 
 
 @pytest.fixture(autouse=True)

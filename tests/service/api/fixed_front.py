@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import threading
-import time
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -13,7 +11,6 @@ from typing import Any
 
 import httpx
 import pytest
-import uvicorn
 from typer.testing import CliRunner
 
 from slidercrank.service.api.app import create_app
@@ -25,6 +22,7 @@ from slidercrank.service.stored_runs import read_run
 from slidercrank.service.submission import submit
 from slidercrank.service.worker import work
 from tests.service import fronts as made
+from tests.service.api.serving import serving
 
 API = "/api/v1"
 
@@ -61,21 +59,10 @@ def solved_in(place: Path) -> Iterator[Solved]:
 
 
 @contextlib.contextmanager
-def served(store: Store, settings: Settings = DEFAULT) -> Iterator[str]:
+def served(store: Store, settings: Settings = DEFAULT, *, port: int = 0) -> Iterator[str]:
     """Serve a store on loopback while entered; yield the address."""
-    config = uvicorn.Config(create_app(store, settings), host="127.0.0.1", port=0, log_level="error")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run, name="server of a test")
-    thread.start()
-    end = time.monotonic() + 30.0
-    while not server.started and thread.is_alive():
-        assert time.monotonic() < end
-        time.sleep(0.005)
-    try:
-        yield f"http://127.0.0.1:{server.servers[0].sockets[0].getsockname()[1]}"
-    finally:
-        server.should_exit = True
-        thread.join()
+    with serving(create_app(store, settings), port=port) as address:
+        yield address
 
 
 @contextlib.contextmanager

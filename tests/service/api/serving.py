@@ -21,9 +21,9 @@ TOKEN = "a-long-random-text"
 
 
 @contextlib.contextmanager
-def serving(app: FastAPI) -> Iterator[str]:
-    """Serve an application while entered; gives its address."""
-    with socket.create_server(("127.0.0.1", 0)) as listening:
+def serving(app: FastAPI, *, port: int = 0) -> Iterator[str]:
+    """Serve an application while entered; gives its address. port: any free one unless given."""
+    with socket.create_server(("127.0.0.1", port)) as listening:
         config = uvicorn.Config(app, ws="none", lifespan="off", log_config=None, timeout_graceful_shutdown=1)
         server = uvicorn.Server(config)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)

@@ -13,24 +13,22 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from slidercrank.model.errors import RunError
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.optimise.job import job_schema, load_job, parse_job
+from slidercrank.optimise.problem import choice_field
+from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.cycle_table import cycle_table
-from slidercrank.service.stored_designs import design_of
-from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, solved_in
+from slidercrank.service.design_analysis import numbers_of
+from slidercrank.service.result import result_of
+from slidercrank.service.stored_designs import design_of, front_of
+from tests.service import fronts, test_variables
+from tests.service.api.fixed_front import API, Solved, client_of
 
 TABLES = tomllib.loads(fronts.JOB)
 SIZES = {"crank": "120 mm", "rod": "400 mm", "offset": "50 mm"}
-
-
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a solved job."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -68,8 +66,8 @@ def test_every_stored_number_comes_out_of_its_analysis_again(solved: Solved, cli
 
 
 def test_topics_are_added(solved: Solved, client: httpx.Client) -> None:
-    found = client.get(f"{solved.path}/designs/1/analysis", params={"show": ["balance", "motor,polygons"]}).json()
-    assert {"balance", "motor", "polygons"} <= set(found["analysis"])
+    found = client.get(f"{solved.path}/designs/1/analysis", params={"show": ["static-forces", "motor,friction"]}).json()
+    assert {"static_forces", "motor", "friction"} <= set(found["analysis"])
     assert found["notes"] == []
 
 
@@ -126,9 +124,9 @@ def test_curves_without_a_speed_are_per_crank_speed() -> None:
 
 
 def test_what_if_is_what_the_command_line_analyses(solved: Solved, client: httpx.Client) -> None:
-    answer = client.post(f"{API}/analyse", json={"job": TABLES, **SIZES, "show": ["balance"]})
+    answer = client.post(f"{API}/analyse", json={"job": TABLES, **SIZES, "show": ["motor"]})
     lengths = [f"--{name}={size}" for name, size in SIZES.items()]
-    assert answer.json()["analysis"] == command("analyse", solved.job, *lengths, "--show", "balance", "--json")
+    assert answer.json()["analysis"] == command("analyse", solved.job, *lengths, "--show", "motor", "--json")
 
 
 def test_what_if_takes_other_numbers_of_the_job(solved: Solved, client: httpx.Client) -> None:
@@ -193,31 +191,31 @@ def test_a_wrong_job_is_refused_before_anything_runs(
     assert words in answer.json()["detail"]
 
 
-VARIED = """
-name = "Varied"
-[mechanism]
-speed = "300 rpm"
-crank = { mass = "1 kg" }
-slider = { mass = ["1 kg", "3 kg"] }
-[variables]
-crank = ["20 mm", "200 mm"]
-rod = { choices = ["350 mm", "400 mm"] }
-offset = ["0 mm", "100 mm"]
-[objectives]
-time_ratio = "maximise"
-peak_torque = "minimise"
-"""
+def test_stored_designs_have_the_choices_and_the_varying_numbers_of_their_rows() -> None:
+    problem = parse_job(tomllib.loads(test_variables.JOB))
+    front = solve(problem)
+    result = result_of(front, "x")
+    again = front_of(problem, result)
+    assert again.variants == front.variants
+    assert len(set(front.variants)) > 1
+    assert again.dimensions == pytest.approx(front.dimensions, rel=1e-15)
+    assert again.values == pytest.approx(front.values, rel=1e-14)
+    assert (again.knee(), again.extremes()) == (result.knee, result.extremes)
+    for row, given in enumerate(result.designs):
+        stored = design_of(problem, given)
+        assert stored.part.rod == front.part(row).rod
+        assert stored.mechanism == again.mechanism(row)
+        for key, value in numbers_of(stored.mechanism, stored.values[:3]).items():
+            assert value == (pytest.approx(given[key], rel=1e-9, abs=1e-12) if isinstance(value, float) else value), key
 
 
-def test_a_design_has_the_choices_and_the_varying_numbers_of_its_row() -> None:
-    problem = parse_job(tomllib.loads(VARIED))
-    factor = 1.0 / 3.0
-    row: dict[str, Any] = {"crank_mm": 1e3 * 0.1 * factor, "rod_mm": 400.0, "offset_mm": 1e3 * 0.07}
-    row |= {"slider_mass_kg": 2.5, **{f"choice_{name}": "400 mm" for name in problem.choices}}
-    stored = design_of(problem, row)
-    assert stored.mechanism.slider_mass == 2.5
-    assert not stored.mechanism.varying
-    assert 1e3 * stored.linkage.crank == row["crank_mm"]
-    assert stored.part.rod.lower == stored.part.rod.upper == pytest.approx(0.4)
-    with pytest.raises(Exception, match="a stored design must be one of its job"):
-        design_of(problem, {**row, "crank_mm": math.nan})
+@pytest.mark.parametrize("change", [{"crank_mm": math.nan}, {"choice_rod_section": "1 m"}, {"slider_mass_kg": "heavy"}])
+def test_a_row_of_another_job_is_refused(change: dict[str, Any]) -> None:
+    problem = parse_job(tomllib.loads(test_variables.JOB))
+    row: dict[str, Any] = {"crank_mm": 40.0, "rod_mm": 150.0, "offset_mm": 10.0, "slider_mass_kg": 1.0}
+    labels = zip(problem.choices, problem.variants[0].labels, strict=True)
+    row |= {choice_field(name): label for name, label in labels}
+    assert change.keys() <= row.keys()
+    design_of(problem, row)
+    with pytest.raises(RunError, match="a stored design must be one of its job"):
+        design_of(problem, {**row, **change})

@@ -6,7 +6,6 @@ import json
 import math
 import tomllib
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -17,16 +16,9 @@ from slidercrank.service.cli import app as command_line
 from slidercrank.service.result import finite
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with, solved_in
+from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with
 
 TABLES = tomllib.loads(fronts.JOB)
-
-
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a solved job."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -187,13 +179,6 @@ def test_values_out_of_bounds_are_problems(
 def test_a_job_that_is_not_there_is_not_found(place: str, client: httpx.Client) -> None:
     answer = client.get(f"{API}/jobs/99/{place}")
     assert (answer.status_code, answer.json()["detail"]) == (404, "there is no job 99; list the jobs")
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    """Return an empty store."""
-    with Store(tmp_path / "store.db") as opened:
-        yield opened
 
 
 @pytest.fixture

@@ -52,7 +52,7 @@ def test_its_own_origin_is_let_in(guarded: httpx.Client) -> None:
     ["", "Bearer", f"Bearer {TOKEN}x", f"Bearer {TOKEN[:-1]}", f"Basic {TOKEN}", TOKEN, "Bearer \xe9"],
 )
 def test_a_missing_or_wrong_token_is_refused(guarded: httpx.Client, given: str) -> None:
-    headers = {b"Authorization": given.encode("latin-1")} if given else {}
+    headers = [(b"Authorization", given.encode("latin-1"))] if given else []
     for path in ("/jobs", "/metrics", "/health/ready", "/openapi.json", "/nothing", "/jobs/1/events"):
         response = guarded.get(path, headers=headers)
         assert "carries the token" in refused(response, 401)

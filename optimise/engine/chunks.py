@@ -1,0 +1,117 @@
+"""Batches of rows on an engine, in chunks that are worth the way; light batches stay where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from statistics import median
+from time import perf_counter
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import Engine, Poll
+from .serial import LONGEST, Serial
+from .shared import Shared
+
+Array = NDArray[np.float64]
+Subject = TypeVar("Subject")
+Asked = TypeVar("Asked", bound=Hashable)
+Part = TypeVar("Part")
+Work = Callable[[Subject, Asked, Array], Part]
+"""What is done with rows, a function of a module: of the subject, what is asked, and rows (n, k). It judges each row by
+itself, to the last bit, so that chunks do not show."""
+
+CHUNK = 0.05
+"""s, that a chunk takes at least: sending it costs about 1 ms here, a few on a cluster."""
+_EACH = 4  # chunks for every worker, so that none waits long for the last one
+_FIRST = 4  # rows, of the first chunk of a kind: kernels are loaded and samples drawn with it
+_SURE = 0.5 * CHUNK  # s, after which a pace is believed
+
+
+@dataclass
+class _Pace:
+    """How long a row takes, s, and over how many seconds that was measured; less than zero before the first."""
+
+    row: float = 0.0
+    over: float = -1.0
+
+    def measured(self, seconds: float, rows: int) -> None:
+        if self.over < 0.0:  # the first time counts for nothing: something may have been compiled
+            self.row, self.over = seconds / rows, 0.0
+        elif seconds >= _SURE or self.over < _SURE:
+            self.row, self.over = seconds / rows, seconds
+
+
+@dataclass(frozen=True)
+class Chunked(Generic[Subject]):
+    """Does work on rows of one subject, on an engine where they are heavy.
+
+    Whether they are is measured: a batch leaves this process when two chunks of 50 ms are left of it and the engine
+    finds it worth it. What is done here and what elsewhere does not show in the results. poll: called between chunks.
+    """
+
+    shared: Shared[Subject]
+    engine: Engine
+    poll: Poll | None = None
+    _paces: dict[Hashable, _Pace] = field(default_factory=dict, init=False)
+
+    def __call__(
+        self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, *, kind: Hashable = None
+    ) -> list[Part]:
+        """Return the parts of the work on rows (n, k), in order; one for all of them where that is light.
+
+        kind: of work that takes alike for a row, what is asked if not given. Raises what the work, the engine and
+        `poll` raise.
+        """
+        n = len(rows)
+        if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):
+            return [work(self.shared.value, asked, rows)]
+        pace = self._paces.setdefault((work, asked if kind is None else kind), _Pace())
+        parts: list[Part] = []
+        begin, count = 0, _FIRST
+        while begin < n:
+            left = n - begin
+            light = pace.row * left < 2.0 * CHUNK
+            if pace.over >= _SURE and not light:
+                if self.engine.worth(pace.row * left):
+                    return parts + self._mapped(work, asked, rows[begin:], pace)
+                light = True
+            if self.poll is not None:
+                self.poll()
+            if pace.over >= 0.0:
+                count = left if light else max(2 * count if pace.over > 0.0 else 1, int(CHUNK / pace.row))
+            start = perf_counter()
+            parts.append(work(self.shared.value, asked, rows[begin : begin + count]))
+            pace.measured(perf_counter() - start, min(count, left))
+            begin += count
+        return parts
+
+    def _mapped(self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, pace: _Pace) -> list[Part]:
+        engine = self.engine
+        if not isinstance(engine, Serial) and not self.shared.portable:
+            engine = Serial()
+        seconds = pace.row * len(rows)
+        most = max(_EACH * engine.workers, int(seconds / LONGEST))
+        count = max(1, min(int(seconds / CHUNK), most, len(rows)))
+        edges = np.linspace(0, len(rows), count + 1).astype(int)
+        tasks = [_Task(work, self.shared, asked, rows[a:b]) for a, b in pairwise(edges.tolist())]
+        found = engine.map(_timed, tasks, poll=self.poll)
+        pace.row = median(seconds / len(task.rows) for task, (seconds, _) in zip(tasks, found, strict=True))
+        return [part for _, part in found]
+
+
+@dataclass(frozen=True)
+class _Task:
+    work: Callable[..., Any]
+    shared: Shared[Any]
+    asked: Any
+    rows: Array
+
+
+def _timed(task: _Task) -> tuple[float, Any]:
+    start = perf_counter()
+    part = task.work(task.shared.value, task.asked, task.rows)
+    return perf_counter() - start, part

@@ -1,0 +1,239 @@
+"""Evaluation on a Dask cluster; what is lost with a worker or with the scheduler is done again."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import time
+import uuid
+from collections.abc import Callable, Sequence
+from concurrent.futures import CancelledError
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+from platform import python_version_tuple
+from typing import Any
+
+from ...model.errors import EngineError, InputError, SlidercrankError
+from .engine import Found, Item, Poll
+
+_log = logging.getLogger(__name__)
+PATIENCE = 300.0
+"""s, without a scheduler or without a single worker, after which a search is given up."""
+MOST_KILLED = 3
+"""How often Dask may give up an item because its workers died, four of them each time."""
+_START = 1.0  # s, that connecting takes about
+_CONNECT = 5.0  # s, of one attempt
+_TICK = 0.1
+_LOOK = 2.0  # s, between two looks for workers while nothing arrives
+_DELAYS = 0.25, 8.0  # s, before connecting again: the first, doubled up to the last
+_SAME = ("slidercrank", "numpy", "numba", "scipy")  # whose versions decide about the last bit
+
+
+@dataclass(frozen=True)
+class Tls:
+    """Files of an encrypted connection: certificate of the authority, own certificate and its key."""
+
+    authority: Path
+    certificate: Path
+    key: Path
+
+
+class _Lost(Exception):
+    """The scheduler, or what it knew of this client."""
+
+
+class Cluster:
+    """A Dask cluster that runs already, with the same versions of this software as here.
+
+    It is connected to when it is first needed. Not to be used by several threads at once.
+    """
+
+    def __init__(self, address: str, *, tls: Tls | None = None, patience: float = PATIENCE) -> None:
+        """Take the scheduler's address, "tcp://host:8786" or "tls://host:8786", and how long to wait for it, s.
+
+        Raises `InputError` for another kind of address, and for one that is encrypted without the files for it.
+        """
+        scheme, _, rest = address.partition("://")
+        if scheme not in ("tcp", "tls") or not rest.rpartition(":")[2].isdigit():
+            raise InputError(f"a scheduler's address is like tcp://host:8786 or tls://host:8786; got {address!r}")
+        if (scheme == "tls") != (tls is not None):
+            raise InputError(
+                f"certificates belong to an address with tls://, and it needs them; got {address} "
+                f"{'with' if tls else 'without'}; give authority, certificate and key with tls:// only"
+            )
+        if not patience >= 0.0:
+            raise InputError(f"the patience with a lost scheduler must be zero or more; got {patience:g} s")
+        self.address, self.tls, self.patience = address, tls, patience
+        self.workers = 4  # until it is known
+        self._client: Any = None
+        self._refused = 0.0
+
+    def worth(self, seconds: float) -> bool:
+        """Whether so much work pays; see `Engine`."""
+        if self._client is None:
+            self._refused += seconds
+        return self._client is not None or self._refused >= _START
+
+    def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
+        """Return function(item) for every item; see `Engine`.
+
+        Raises `EngineError` when there is no scheduler or no worker for longer than the patience, when workers have
+        other versions, and for an item under which workers died again and again.
+        """
+        found: dict[int, Found] = {}
+        killed = [0] * len(items)
+        delay, known, since = _DELAYS[0], 0, time.monotonic()
+        while len(found) < len(items):
+            try:
+                self._round(self._connected(), function, items, found, killed, poll)
+            except (_Lost, OSError, CancelledError, TimeoutError) as error:
+                self._drop()
+                if len(found) > known:
+                    delay, known, since = _DELAYS[0], len(found), time.monotonic()
+                if time.monotonic() - since >= self.patience:
+                    raise EngineError(
+                        f"the scheduler must be reached within {self.patience:g} s; {self.address} was not "
+                        f"({_said(error)}); start it, or correct the address"
+                    ) from None
+                _log.warning("scheduler %s lost (%s); connecting again", self.address, _said(error))
+                _pause(delay, poll)
+                delay = min(2.0 * delay, _DELAYS[1])
+        return [found[index] for index in range(len(items))]
+
+    def close(self) -> None:
+        """End the connection; the cluster goes on."""
+        self._drop()
+
+    def _round(
+        self,
+        client: Any,
+        function: Callable[[Item], Found],
+        items: Sequence[Item],
+        found: dict[int, Found],
+        killed: list[int],
+        poll: Poll | None,
+    ) -> None:
+        """Put the results that are missing into `found`; raise `_Lost` and the like when the scheduler goes."""
+        dask: Any = import_module("distributed")
+        self.workers = max(1, sum(client.nthreads().values()))
+        pending: dict[Any, int] = {}
+
+        def give(indices: list[int]) -> None:
+            name = uuid.uuid4().hex
+            keys = [f"slidercrank-{name}-{index}" for index in indices]
+            futures = client.map(_call, [(_versions(), function, items[index]) for index in indices], key=keys)
+            pending.update(zip(futures, indices, strict=True))
+
+        give([index for index in range(len(items)) if index not in found])
+        heard = looked = time.monotonic()
+        try:
+            while pending:
+                with contextlib.suppress(TimeoutError), client.as_current():
+                    dask.wait(list(pending), timeout=_TICK, return_when="FIRST_COMPLETED")
+                done = [future for future in pending if future.done()]
+                states = {future.status for future in done}
+                if client.status != "running" or states & {"cancelled", "lost"}:
+                    raise _Lost("it does not know this client any more")
+                good = [future for future in done if future.status == "finished"]
+                for future, result in zip(good, client.gather(good), strict=True):
+                    found[pending.pop(future)] = result
+                again = []
+                for future in done:
+                    if future.status == "error":
+                        index, error = pending.pop(future), future.exception()
+                        if not isinstance(error, dask.KilledWorker):
+                            raise _told(error)
+                        killed[index] += 1
+                        if killed[index] >= MOST_KILLED:
+                            raise EngineError(
+                                f"workers must outlive what they evaluate; {4 * MOST_KILLED} of them died at the same "
+                                f"designs (chunk {index + 1} of {len(items)}); look for a lack of memory or a crash "
+                                "in a function of your own"
+                            )
+                        again.append(index)
+                if again:
+                    give(again)
+                if poll is not None:
+                    poll()
+                now = time.monotonic()
+                heard = now if done else heard
+                if now - max(heard, looked) > _LOOK:
+                    looked = now
+                    self.workers = max(1, sum(threads := client.nthreads().values()))
+                    heard = now if threads else heard
+                    if not threads and now - heard > self.patience:
+                        raise EngineError(
+                            f"a cluster needs workers; the scheduler at {self.address} had none for "
+                            f"{self.patience:g} s; start some"
+                        )
+        except BaseException:
+            with contextlib.suppress(Exception):
+                client.cancel(list(pending), force=True)
+            raise
+
+    def _connected(self) -> Any:
+        if self._client is None:
+            try:
+                dask: Any = import_module("distributed")
+            except ImportError:
+                raise EngineError(
+                    "a Dask cluster needs the package distributed, which is not installed; install slidercrank[dask]"
+                ) from None
+            for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
+                logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised, and logged, here
+            security = None
+            if self.tls is not None:
+                security = dask.Security(
+                    require_encryption=True,
+                    tls_ca_file=str(self.tls.authority),
+                    tls_client_cert=str(self.tls.certificate),
+                    tls_client_key=str(self.tls.key),
+                )
+            self._client = dask.Client(self.address, timeout=_CONNECT, set_as_default=False, security=security)
+        return self._client
+
+    def _drop(self) -> None:
+        client, self._client = self._client, None
+        if client is not None:
+            with contextlib.suppress(Exception):  # it may be lost already
+                client.close(timeout=_CONNECT)
+
+
+def _call(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
+    """Return function(item) on a worker."""
+    versions, function, item = task
+    if versions != _versions():
+        raise EngineError(
+            f"workers must have the versions of who asks; got {', '.join(_versions())} for {', '.join(versions)}; "
+            "install the same"
+        )
+    return function(item)
+
+
+@lru_cache(maxsize=1)
+def _versions() -> tuple[str, ...]:
+    return (f"python {'.'.join(python_version_tuple()[:2])}", *(f"{name} {version(name)}" for name in _SAME))
+
+
+def _told(error: BaseException) -> BaseException:
+    """Return what a task raised, in words where it is the cluster's fault."""
+    if isinstance(error, SlidercrankError) or not isinstance(error, ImportError | AttributeError | RuntimeError):
+        return error
+    return EngineError(
+        f"scheduler and workers must have the same software as here; got {_said(error)}; install the same there"
+    )
+
+
+def _said(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}".splitlines()[0][:200].rstrip(": ")
+
+
+def _pause(seconds: float, poll: Poll | None) -> None:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if poll is not None:
+            poll()
+        time.sleep(min(_TICK, max(0.0, end - time.monotonic())))

@@ -1,0 +1,42 @@
+"""The protocol of what evaluates chunks: this process, several processes, or a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol, TypeVar
+
+Item = TypeVar("Item")
+Found = TypeVar("Found")
+Poll = Callable[[], None]
+
+
+class Engine(Protocol):
+    """Applies a function to items, somewhere, and gives the results in the items' order.
+
+    The same function of the same item gives the same bits on every engine, on processors of the same kind.
+    """
+
+    @property
+    def workers(self) -> int:
+        """How many items are worked on at once, at least one."""
+        ...
+
+    def worth(self, seconds: float) -> bool:
+        """Whether work that takes so long in this process, s, should rather be mapped.
+
+        Asked of all that is heavy: an engine that takes time to start waits until that much of it was refused.
+        """
+        ...
+
+    def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
+        """Return function(item) for every item, in order.
+
+        function: of a module, so that another process can import it. poll: called between items and while waiting; what
+        it raises ends the map. Raises that, what the function raises, and `EngineError` where the engine is lost. What
+        is lost with a worker is done again and not told.
+        """
+        ...
+
+    def close(self) -> None:
+        """End what the engine has started. It starts again with the next map."""
+        ...

@@ -1,0 +1,146 @@
+"""Evaluation in processes of this machine; one that ends in the middle is replaced and its chunks are done again."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from itertools import islice
+from typing import Any, cast
+
+from ...model.errors import EngineError, InputError
+from .engine import Found, Item, Poll
+
+MOST_BREAKS = 3
+"""How often a process may end abruptly with nothing but one item under way before that is given up."""
+_STARTS = 8  # in a row that may fail
+_START = 3.0  # s, that it takes about to start them and to load what is compiled
+_TICK = 0.1  # s, between two questions whether to stop
+
+
+class Processes:
+    """Processes that are started when they are first needed, and kept.
+
+    They are spawned: nothing is inherited but the environment. They end with this process, however it ends. Not to be
+    used by several threads at once.
+    """
+
+    def __init__(self, workers: int | None = None) -> None:
+        """Take how many, the number of processors if not given. Raises `InputError` for fewer than one."""
+        if workers is not None and workers < 1:
+            raise InputError(f"there must be at least one process; got {workers}; leave it out for one a processor")
+        self.workers = workers or os.cpu_count() or 1
+        self._pool: ProcessPoolExecutor | None = None
+        self._refused = 0.0
+
+    def worth(self, seconds: float) -> bool:
+        """Whether so much work pays; see `Engine`."""
+        if self._pool is None:
+            self._refused += seconds
+        return self._pool is not None or self._refused >= _START
+
+    def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
+        """Return function(item) for every item; see `Engine`.
+
+        Raises `EngineError` for an item under which the processes ended three times.
+        """
+        found: dict[int, Found] = {}
+        suspects, breaks = set[int](), [0] * len(items)
+        while len(found) < len(items):
+            left = [index for index in range(len(items)) if index not in found]
+            # Those that were under way when processes ended go one at a time: who ends one alone is to blame, not who
+            # was beside it.
+            alone = next((index for index in left if index in suspects), None)
+            broken = self._take(function, items, left if alone is None else [alone], found, poll)
+            suspects.update(broken)
+            for index in broken:
+                breaks[index] += len(broken) == 1
+                if breaks[index] >= MOST_BREAKS:
+                    raise EngineError(
+                        f"a process that evaluates must not end by itself; got {MOST_BREAKS} that did at the same "
+                        f"designs (chunk {index + 1} of {len(items)}); look for a lack of memory or a crash in a "
+                        "function of your own, or evaluate without processes"
+                    )
+        return [found[index] for index in range(len(items))]
+
+    def close(self) -> None:
+        """End the processes, when they have finished what they are at."""
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+            self._pool = None
+
+    def _take(
+        self,
+        function: Callable[[Item], Found],
+        items: Sequence[Item],
+        chosen: list[int],
+        found: dict[int, Found],
+        poll: Poll | None,
+    ) -> list[int]:
+        """Put the chosen items' results into `found` until the processes break; return what was under way then."""
+        running: dict[Future[Found], int] = {}
+        waiting = iter(chosen)
+        try:
+            while True:
+                for index in islice(waiting, self.workers - len(running)):
+                    running[self._started().submit(function, items[index])] = index
+                if not running:
+                    return []
+                for future in wait(running, timeout=_TICK, return_when=FIRST_COMPLETED).done:
+                    found[running[future]] = future.result()
+                    del running[future]
+                if poll is not None:
+                    poll()
+        except BrokenProcessPool:
+            self.close()
+            for future, index in running.items():
+                if future.done() and not future.cancelled() and future.exception() is None:
+                    found[index] = future.result()
+            return [index for index in running.values() if index not in found]
+        except BaseException:
+            for future in running:
+                future.cancel()
+            raise
+
+    def _started(self) -> ProcessPoolExecutor:
+        """Return the pool, its first process ready: how a process starts is not the fault of what it is given."""
+        for _ in range(_STARTS):
+            if self._pool is not None:
+                return self._pool
+            import multiprocessing
+
+            pool = ProcessPoolExecutor(
+                self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
+            )
+            try:
+                pool.submit(_ready).result()
+                self._pool = pool
+            except BrokenProcessPool:
+                pool.shutdown()
+        raise EngineError(
+            f"processes must be able to start; got {_STARTS} that ended at once; a script that asks for them needs "
+            'its own work under if __name__ == "__main__", else look for a lack of memory'
+        )
+
+
+def _ready() -> None:
+    """Do nothing, when the process has started."""
+
+
+def _begin() -> None:
+    """Prepare a process: Ctrl-C is for its parent, and it ends with its parent, also when that is killed."""
+    import multiprocessing
+    from multiprocessing.connection import wait as wait_for
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        wait_for([cast(Any, parent).sentinel])
+        os._exit(1)
+
+    threading.Thread(target=follow, name="end with the parent", daemon=True).start()

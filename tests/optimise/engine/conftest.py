@@ -1,0 +1,34 @@
+"""The engines under test, each started once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from slidercrank.optimise.engine.cluster import Cluster
+from slidercrank.optimise.engine.engine import Engine
+from slidercrank.optimise.engine.processes import Processes
+from slidercrank.optimise.engine.serial import Serial
+from tests.optimise.engine.dask_processes import DaskProcesses
+
+
+@pytest.fixture(scope="session")
+def processes() -> Iterator[Processes]:
+    made = Processes(2)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[Cluster]:
+    with DaskProcesses(2) as dask:
+        made = Cluster(dask.address, patience=60.0)
+        yield made
+        made.close()
+
+
+@pytest.fixture(params=["serial", "processes", "cluster"])
+def engine(request: pytest.FixtureRequest) -> Engine:
+    made: Engine = Serial() if request.param == "serial" else request.getfixturevalue(request.param)
+    return made

@@ -1,0 +1,133 @@
+"""Processes, workers and schedulers that end in the middle."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from slidercrank.model.errors import EngineError, InputError
+from slidercrank.optimise.engine.cluster import Cluster, Tls
+from slidercrank.optimise.engine.processes import Processes
+from tests.optimise.engine import work
+from tests.optimise.engine.dask_processes import DaskProcesses
+
+
+def test_what_a_killed_process_was_at_is_done_again(processes: Processes, tmp_path: Path) -> None:
+    items = [(number, str(tmp_path / "killed")) for number in range(6)]
+    assert processes.map(work.end_once, items) == list(range(6))
+    assert (tmp_path / "killed").exists()
+
+
+def test_designs_under_which_processes_end_again_and_again_are_named(processes: Processes) -> None:
+    with pytest.raises(EngineError, match=r"got 3 that did at the same designs \(chunk 3 of 5\); look for"):
+        processes.map(work.end_always, range(5))
+    assert processes.map(work.square, range(3)) == [0, 1, 4]
+
+
+def test_processes_killed_at_random_lose_nothing(processes: Processes) -> None:
+    processes.map(work.process, range(4))
+    over, chance = threading.Event(), random.Random(1)
+
+    def kill() -> None:
+        while not over.wait(1.0 + chance.random()):
+            children = [child for child in psutil.Process().children() if "spawn_main" in " ".join(child.cmdline())]
+            if children:
+                children[-1].kill()
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    try:
+        assert processes.map(work.slow, range(30)) == list(range(30))
+    finally:
+        over.set()
+        killer.join()
+
+
+def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
+    code = (
+        "import sys, time\n"
+        "from slidercrank.optimise.engine.processes import Processes\n"
+        "from tests.optimise.engine import work\n"
+        "if __name__ == '__main__':\n"
+        "    print(*set(Processes(2).map(work.process, range(8))), flush=True)\n"
+        "    time.sleep(60)\n"
+    )
+    script = tmp_path / "started.py"
+    script.write_text(code)
+    root = str(Path(__file__).parents[3])
+    parent = subprocess.Popen(
+        [sys.executable, str(script)], stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": root}
+    )
+    assert parent.stdout is not None
+    with parent, parent.stdout:
+        children = [int(text) for text in parent.stdout.readline().split()]
+        parent.send_signal(signal.SIGKILL)
+        parent.wait()
+    assert children
+    end = time.monotonic() + 10.0
+    while any(psutil.pid_exists(pid) for pid in children) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert not [pid for pid in children if psutil.pid_exists(pid)]
+
+
+def test_what_a_killed_dask_worker_was_at_is_done_again_and_a_lost_scheduler_is_found_again() -> None:
+    with DaskProcesses(2) as dask:
+        engine = Cluster(dask.address, patience=60.0)
+        assert engine.map(work.square, range(3)) == [0, 1, 4]
+
+        def harm() -> None:
+            for _ in range(2):
+                time.sleep(0.5)
+                dask.kill_worker()
+            dask.kill_scheduler()
+            time.sleep(1.0)
+            dask.start_scheduler()
+
+        harmer = threading.Thread(target=harm)
+        harmer.start()
+        try:
+            assert engine.map(work.slow, range(40)) == list(range(40))
+        finally:
+            harmer.join()
+            engine.close()
+
+
+def test_a_scheduler_that_stays_away_is_given_up() -> None:
+    engine = Cluster("tcp://127.0.0.1:9", patience=0.5)
+    with pytest.raises(EngineError, match=r"within 0.5 s; tcp://127.0.0.1:9 was not .*; start it"):
+        engine.map(work.square, range(3))
+
+
+def test_a_cluster_without_workers_is_given_up() -> None:
+    with DaskProcesses(0) as dask:
+        engine = Cluster(dask.address, patience=1.0)
+        with pytest.raises(EngineError, match="a cluster needs workers"):
+            engine.map(work.square, range(3))
+        engine.close()
+
+
+@pytest.mark.parametrize(
+    ("address", "tls", "words"),
+    [
+        ("127.0.0.1:8786", False, "is like tcp://host:8786"),
+        ("tcp://127.0.0.1", False, "is like tcp://host:8786"),
+        ("tls://127.0.0.1:8786", False, "got tls://127.0.0.1:8786 without"),
+        ("tcp://127.0.0.1:8786", True, "got tcp://127.0.0.1:8786 with;"),
+    ],
+)
+def test_an_address_that_cannot_be_one_is_refused(address: str, tls: bool, words: str) -> None:
+    files = Tls(Path("ca.pem"), Path("own.pem"), Path("own.key")) if tls else None
+    with pytest.raises(InputError, match=words):
+        Cluster(address, tls=files)
+
+
+def test_fewer_than_one_process_is_refused() -> None:
+    with pytest.raises(InputError, match="at least one process; got 0"):
+        Processes(0)

@@ -1,0 +1,116 @@
+"""Whatever the engine, the workers and the chunks, a search finds the same bits."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.tolerance.spreads import Shape
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.robust.quantity import Kind, RobustQuantity, Side
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.engine.engine import Engine
+from slidercrank.optimise.evaluation import Evaluator
+from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.judging import exactly, joined, quickly
+from slidercrank.optimise.polish import polish
+from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.robust import Robust, robust
+from slidercrank.optimise.solve import solve
+from slidercrank.optimise.stationarity import Array
+from tests.optimise.engine import work
+from tests.optimise.problems import problem, shipped
+from tests.optimise.test_robust import TOLERANT, plain
+
+JOB = robust(replace(plain(3), settings=replace(plain(3).settings, samples=500)), Robust(samples=1024))
+CUTS = ([0, 1, 40], [0, 7, 16, 33, 40], [0, 39, 40])
+
+
+@pytest.fixture(scope="module")
+def serial() -> ParetoFront:
+    return solve(JOB)
+
+
+def test_a_robust_job_gives_the_same_bits_on_every_engine(engine: Engine, serial: ParetoFront) -> None:
+    engine.map(work.square, [1])  # started, so that it takes whatever is heavy
+    mapped = 0
+
+    class Counting:
+        workers = engine.workers
+        worth = engine.worth
+        close = engine.close
+
+        def map(self, function: Callable[[Any], Any], items: list[Any], *, poll: object = None) -> list[Any]:
+            nonlocal mapped
+            mapped += len(items)
+            return engine.map(function, items)
+
+    found = solve(JOB, engine=Counting())  # type: ignore[arg-type]
+    assert mapped > 8 or engine.workers == 1
+    assert found.dimensions.tobytes() == serial.dimensions.tobytes()
+    assert found.values.tobytes() == serial.values.tobytes()
+    assert found.designs.equals(serial.designs)
+    assert (found.evaluations, found.hypervolume) == (serial.evaluations, serial.hypervolume)
+
+
+def all_quantities() -> Problem:
+    """A problem with every quantity there is, and robust ones of every kind."""
+    kinds: tuple[tuple[Kind, int, Shape], ...] = (
+        ("percentile", 2, "normal"),
+        ("percentile", 2, "uniform"),
+        ("worst case", 1, "normal"),
+    )
+    sides: tuple[Side, ...] = ("high", "low")
+    made = [
+        RobustQuantity(
+            inner=QUANTITIES[name],
+            side=side,
+            kind=kind,
+            order=order,
+            shape=shape,
+            samples=1024,
+            suffix=f"{kind[0]}_{shape}_{side}",
+        )
+        for name in ("peak_torque", "transmission_angle")
+        for side in sides
+        for kind, order, shape in kinds
+    ]
+    return replace(problem({"time_ratio": "maximise"}, mechanism=TOLERANT), own=tuple(made))
+
+
+def designs(count: int) -> Array:
+    random = np.random.default_rng(3)
+    found = np.stack([random.uniform(*ends, count) for ends in ((0.02, 0.06), (0.15, 0.4), (-0.05, 0.05))], axis=1)
+    found[5, 2], found[17, 2] = 0.0, 1e-5  # at the kink of |offset| every machine of a sample is evaluated
+    return found
+
+
+def test_no_quantity_of_a_design_depends_on_the_designs_beside_it() -> None:
+    job, dimensions = all_quantities(), designs(40)
+    names = (*QUANTITIES, *(quantity.name for quantity in job.own))
+    whole, quick = exactly(job, names, dimensions), quickly(job, names, dimensions)
+    for cuts in CUTS:
+        parts = [dimensions[begin:end] for begin, end in pairwise(cuts)]
+        for name, one, other in zip(names, whole, joined([exactly(job, names, part) for part in parts]), strict=True):
+            for field in ("values", "gradients", "labels"):
+                assert np.array_equal(getattr(one, field), getattr(other, field), equal_nan=True), (name, field)
+        for column, name in enumerate(names):
+            found = np.concatenate([quickly(job, (name,), part)[0] for part in parts])
+            assert np.array_equal(found, quick[column], equal_nan=True), name
+
+
+@pytest.mark.parametrize("job", ["feeder", "sieve"])
+def test_the_polish_of_a_design_does_not_depend_on_the_designs_beside_it(job: str) -> None:
+    evaluator = Evaluator(shipped(job), sheets(shipped(job))[0])
+    start = np.random.default_rng(1).random((200, evaluator.dimension))
+    start = start[evaluator.valid(start)][:12]
+    scale = np.ones(len(shipped(job).objectives))
+    whole = polish(evaluator, start, scale, iterations=10)
+    parts = [polish(evaluator, part, scale, iterations=10) for part in (start[:1], start[1:8], start[8:])]
+    assert np.array_equal(whole.u, np.concatenate([part.u for part in parts]))
+    assert np.array_equal(whole.values, np.concatenate([part.values for part in parts]))
+    assert np.array_equal(whole.residual, np.concatenate([part.residual for part in parts]))
+    assert [len(each) for each in whole.active] == [len(each) for part in parts for each in part.active]

@@ -1,0 +1,47 @@
+"""What those who run the service ask it."""
+
+from __future__ import annotations
+
+import httpx
+from prometheus_client.parser import text_string_to_metric_families
+
+from slidercrank.service.store import Store
+from tests.service.store.contents import add, taken
+
+
+def figures(client: httpx.Client) -> dict[tuple[str, tuple[str, ...]], float]:
+    """Return the value of every figure by its name and labels."""
+    response = client.get("/metrics")
+    assert response.status_code == 200
+    assert response.headers["content-type"].startswith("text/plain; version=")
+    families = text_string_to_metric_families(response.text)
+    return {(one.name, tuple(one.labels.values())): one.value for family in families for one in family.samples}
+
+
+def test_the_service_tells_whether_it_can_work(client: httpx.Client, store: Store) -> None:
+    assert client.get("/health/live").json() == {"status": "live"}
+    assert client.get("/health/ready").json() == {"status": "ready", "workers": 0, "waiting": 0}
+    store.greet("one")
+    add(store)
+    assert client.get("/health/ready").json() == {"status": "ready", "workers": 1, "waiting": 1}
+
+
+def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: Store) -> None:
+    assert figures(client)["slidercrank_queue_seconds", ()] == 0.0
+    for _ in range(3):
+        add(store)
+    taken(store)
+    store.greet("one")
+    for _ in range(5):
+        client.get("/jobs/1")
+    client.get("/jobs/99")
+    client.get("/made/up")
+    found = figures(client)
+    assert found["slidercrank_jobs", ("queued",)] == 2.0
+    assert found["slidercrank_jobs", ("running",)] == 1.0
+    assert found["slidercrank_jobs", ("failed",)] == 0.0
+    assert found["slidercrank_workers", ()] == 1.0
+    assert 0.0 < found["slidercrank_queue_seconds", ()] < 60.0
+    assert found["slidercrank_request_seconds_count", ("GET", "show_job", "200")] == 5.0
+    assert found["slidercrank_request_seconds_count", ("GET", "show_job", "404")] == 1.0
+    assert found["slidercrank_request_seconds_count", ("any", "none", "404")] == 1.0

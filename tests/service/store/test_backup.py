@@ -1,0 +1,97 @@
+"""A backup is whole while the store is in use, and what is restored from it goes on."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import InputError, StoreError
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from slidercrank.service.store.database import Database
+from slidercrank.service.store.inspection import damages
+from tests.service.store.contents import add, everything, generation, progress, result, same, taken
+
+
+def copy(file: Path, target: Path) -> None:
+    """Back up a store."""
+    database = Database(file)
+    try:
+        back_up(database, target)
+    finally:
+        database.close()
+
+
+def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> None:
+    file, backup = tmp_path / "store.db", tmp_path / "backup.db"
+    with Store(file) as store:
+        add(store)
+        claim = taken(store)
+        claim.keep(generation(0))
+        claim.tell(progress(1))
+        claim.hand_back("the backup comes")
+        before = everything(str(file))
+        copy(file, backup)
+        add(store, "after the backup")
+    assert [path.name for path in sorted(tmp_path.glob("backup*"))] == ["backup.db"]
+    for path in tmp_path.glob("store.db*"):
+        path.unlink()
+    shutil.copy(backup, file)
+    assert everything(str(file)) == before
+    with Store(file) as store:
+        claim = taken(store)
+        assert same(claim.generations()[0], generation(0))
+        claim.finish(result())
+        assert store.job(1).state == "done"
+
+
+def test_a_backup_is_of_one_moment_while_others_write(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    stop = threading.Event()
+
+    def submit() -> None:
+        with Store(file) as own:
+            while not stop.is_set():
+                add(own)
+
+    with Store(file) as store:
+        thread = threading.Thread(target=submit)
+        thread.start()
+        try:
+            for number in range(5):
+                count = len(store.jobs(limit=10_000))
+                copy(file, tmp_path / f"{number}.db")
+                database = Database(tmp_path / f"{number}.db")
+                assert damages(database) == []
+                database.close()
+                with Store(tmp_path / f"{number}.db") as copied:
+                    assert len(copied.jobs(limit=10_000)) >= count
+        finally:
+            stop.set()
+            thread.join()
+
+
+def test_a_backup_never_takes_the_place_of_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    Store(file).close()
+    with pytest.raises(InputError, match=r"a backup is a new file; .*store\.db is there already"):
+        copy(file, file)
+
+
+def test_a_backup_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    Store(file).close()
+    with pytest.raises(StoreError, match="a backup needs a place that can be written"):
+        copy(file, tmp_path / "none" / "backup.db")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_store_on_a_server_is_not_copied_so(address: str, store: Store, tmp_path: Path) -> None:
+    database = Database(address)
+    if not database.sqlite:
+        with pytest.raises(InputError, match="back it up with pg_dump"):
+            back_up(database, tmp_path / "backup.db")
+    database.close()

@@ -1,0 +1,99 @@
+"""What is wrong in a database is found, on both kinds; what is right is not."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+import pytest
+from sqlalchemy import delete, insert, update
+
+from slidercrank.service.store import Store
+from slidercrank.service.store.database import Database
+from slidercrank.service.store.inspection import clock_ahead, damages, server_version
+from slidercrank.service.store.schema import designs, events, jobs
+from slidercrank.service.store.schema_version import versions
+from tests.service.store.contents import add, generation, progress, result, taken
+
+UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
+"""The servers of the tests run so."""
+
+
+def found(address: str) -> list[str]:
+    """Return what is wrong."""
+    database = Database(address)
+    wrong = damages(database)
+    database.close()
+    return wrong
+
+
+@pytest.fixture
+def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Return the address of a store in which jobs have ended, were cancelled, and are under way."""
+    monkeypatch.setattr("slidercrank.service.store.inspection._SETTINGS", ())
+    for _ in range(4):
+        add(store)
+    for status in ("done", "cancelled", "infeasible"):
+        claim = taken(store)
+        claim.keep(generation(0))
+        claim.tell(progress(1))
+        claim.finish(result(status, rows=[] if status == "infeasible" else None))
+    claim = taken(store)
+    claim.keep(generation(0))
+    claim.tell(progress(1))
+    return address
+
+
+def test_a_store_in_use_has_no_damages(used: str) -> None:
+    assert found(used) == []
+
+
+def test_rows_that_are_missing_or_too_many_are_named(used: str) -> None:
+    database = Database(used)
+    with database.writing() as connection:
+        connection.execute(delete(designs).where(designs.c.job == 1, designs.c.number == 1))
+        connection.execute(insert(events).values(job=2, number=99, at=0.0, kind="message", data="{}"))
+        connection.execute(update(jobs).where(jobs.c.id == 4).values(generations=3))
+    database.close()
+    assert found(used) == [
+        "job 1 says that it has 2 designs, 1 are there",
+        "job 2 says that it has 4 events, 5 are there",
+        "job 4 says that it has 3 generations, 1 are there",
+    ]
+
+
+def test_clock_and_version_are_those_of_the_database(store: Store, address: str) -> None:
+    database = Database(address)
+    assert abs(clock_ahead(database)) < 5.0
+    assert server_version(database).startswith(("SQLite 3.", "PostgreSQL 1"))
+    version, latest, known = versions(database)
+    assert version == latest
+    assert known
+    database.close()
+
+
+def test_a_server_that_does_not_write_through_is_told(server: object, tmp_path: Path) -> None:
+    from tests.service.store.postgresql import Cluster
+
+    assert isinstance(server, Cluster)
+    with Store(server.new_address()) as store:
+        database = Database(store.name)
+        assert UNSAFE in damages(database)
+        database.close()
+
+
+def test_a_damaged_file_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    with Store(file) as store:
+        for _ in range(50):
+            add(store)
+    with sqlite3.connect(file) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    connection.close()
+    content = bytearray(file.read_bytes())
+    pages = len(content) // 4096
+    content[(pages - 4) * 4096 :] = b"\xa5" * (4 * 4096)
+    file.write_bytes(content)
+    database = Database(file)
+    assert damages(database)
+    database.close()

@@ -1,0 +1,160 @@
+"""`slidercrank doctor`: what it looks at, and that its exit code says whether anything is wrong."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+from collections import namedtuple
+from pathlib import Path
+
+import pytest
+from sqlalchemy import update
+
+from slidercrank.service.store import Store
+from slidercrank.service.store.clock import now
+from slidercrank.service.store.database import Database
+from slidercrank.service.store.schema import workers
+from tests.service.conftest import Command
+from tests.service.store.contents import add, end_lease, result, taken
+
+
+@pytest.fixture
+def file(runs: Path) -> Path:
+    """Return where the store is, in a folder that is there."""
+    runs.mkdir()
+    return runs / "slidercrank.db"
+
+
+def looked_at(command: Command, *options: object) -> tuple[int, dict[str, tuple[str, str]]]:
+    """Return the exit code, and grade and text of every check by its name."""
+    done = command("doctor", "--json", *options)
+    found = json.loads(done.stdout)
+    assert found["healthy"] == (done.exit_code == 0)
+    return done.exit_code, {check["name"]: (check["grade"], check["text"]) for check in found["checks"]}
+
+
+def test_a_fresh_machine_is_healthy_and_stays_as_it_is(runs: Path, command: Command) -> None:
+    code, found = looked_at(command)
+    assert code == 0
+    assert found["store"] == ("ok", f"there is none at {runs / 'slidercrank.db'} yet; the first job makes it")
+    assert "slidercrank 0." in found["versions"][1]
+    assert not runs.exists()
+
+
+def test_a_store_in_use_is_healthy(file: Path, command: Command) -> None:
+    with Store(file) as store:
+        store.greet("one")
+        add(store)
+        taken(store).finish(result())
+        add(store)
+        code, found = looked_at(command)
+    assert code == 0
+    assert {name: grade for name, (grade, _) in found.items() if grade != "ok"} == {}
+    assert found["jobs"] == ("ok", "1 done, 1 queued")
+    assert found["workers"] == ("ok", "1 at work")
+    text = command("doctor").stdout
+    assert "ok       integrity          nothing is damaged\n" in text
+
+
+def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Command) -> None:
+    with Store(file) as store:
+        add(store)
+    code, found = looked_at(command)
+    assert (code, found["workers"][0]) == (2, "problem")
+    assert "1 jobs wait for one; start slidercrank serve or slidercrank worker" in found["workers"][1]
+
+
+def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) -> None:
+    with Store(file) as store:
+        for name in ("one", "lost"):
+            store.greet(name)
+        add(store)
+        taken(store, "lost")
+        database = Database(file)
+        with database.writing() as connection:
+            connection.execute(update(workers).where(workers.c.id == "lost").values(seen=now() - 300.0))
+        database.close()
+        end_lease(str(file), 1)
+        code, found = looked_at(command)
+    assert code == 0
+    assert found["workers"] == ("note", "1 at work; 1 not heard of for more than 120 s: stopped, or cut off")
+    assert found["leases"] == ("note", "those of jobs 1 have ended; the next free worker goes on with them")
+
+
+def test_what_is_no_database_is_a_problem(file: Path, command: Command) -> None:
+    file.write_text("no database")
+    code, found = looked_at(command)
+    assert (code, found["store"][0]) == (2, "problem")
+    assert "file is not a database" in found["store"][1]
+
+
+def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, command: Command) -> None:
+    Store(file).close()
+    with sqlite3.connect(file) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+    connection.close()
+    code, found = looked_at(command)
+    assert (code, found["tables"][0]) == (2, "problem")
+    assert "they have version 9999, this software knows" in found["tables"][1]
+    with sqlite3.connect(file) as connection:
+        assert connection.execute("SELECT version_num FROM alembic_version").fetchall() == [("9999",)]
+    connection.close()
+
+
+def test_a_database_without_tables_is_noted_and_gets_none(file: Path, command: Command) -> None:
+    sqlite3.connect(file).close()
+    code, found = looked_at(command)
+    assert (code, found["tables"][0]) == (0, "note")
+    connection = sqlite3.connect(file)
+    assert connection.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,)
+    connection.close()
+
+
+def test_a_server_that_is_away_is_a_problem(command: Command) -> None:
+    code, found = looked_at(command, "--store", "postgresql://nobody:secret@/none?host=/no/such/place")
+    assert (code, found["store"][0]) == (2, "problem")
+    assert "must be a database that can be reached" in found["store"][1]
+    assert "secret" not in found["store"][1]
+
+
+@pytest.mark.parametrize(("free", "grade", "code"), [(1e6, "problem", 2), (1e9, "note", 0), (1e10, "ok", 0)])
+def test_a_full_disk_is_a_problem(
+    free: float, grade: str, code: int, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usage = namedtuple("usage", "total used free")
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage(0, 0, free))
+    got, found = looked_at(command)
+    assert (got, found["disk of runs"][0]) == (code, grade)
+
+
+def test_a_place_that_cannot_be_written_is_a_problem(command: Command) -> None:
+    code, found = looked_at(command, "--runs", "/proc/none")
+    assert (code, found["runs"][0]) == (2, "problem")
+    assert "/proc/none cannot be written" in found["runs"][1]
+
+
+def test_a_model_that_would_be_compiled_anew_every_time_is_a_problem(
+    command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/proc/none")
+    code, found = looked_at(command)
+    assert (code, found["compiled model"][0]) == (2, "problem")
+
+
+def test_a_backup_is_made_and_checked_in_one_go(file: Path, tmp_path: Path, command: Command) -> None:
+    with Store(file) as store:
+        store.greet("one")
+        add(store)
+        done = command("doctor", "--backup", tmp_path / "backup.db")
+    assert done.exit_code == 0
+    assert f"{tmp_path / 'backup.db'}: a copy of" in done.stderr
+    with Store(tmp_path / "backup.db") as copied:
+        assert [job.name for job in copied.jobs()] == ["Feeder"]
+
+
+def test_without_a_store_there_is_no_backup(command: Command, tmp_path: Path) -> None:
+    done = command("doctor", "--backup", tmp_path / "backup.db")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "there is no store at" in done.stderr
+    assert not (tmp_path / "backup.db").exists()

@@ -1,0 +1,54 @@
+"""Options that say where heavy evaluation is done."""
+
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.optimise.engine.cluster import Cluster
+from slidercrank.optimise.engine.processes import Processes
+from slidercrank.optimise.engine.serial import Serial
+from slidercrank.service.engines import EngineOptions, engine_of, engine_options
+
+
+def test_the_options_name_the_engine() -> None:
+    with engine_of(engine_options(cores=1)) as alone, engine_of(engine_options(cores=3)) as three:
+        assert isinstance(alone, Serial)
+        assert isinstance(three, Processes)
+        assert three.workers == 3
+    with engine_of(engine_options(scheduler="tcp://127.0.0.1:8786")) as cluster:
+        assert isinstance(cluster, Cluster)
+
+
+def test_certificates_reach_the_cluster(tmp_path: Path) -> None:
+    files = [tmp_path / name for name in ("ca.pem", "own.pem", "own.key")]
+    for file in files:
+        file.touch()
+    with engine_of(engine_options(None, "tls://127.0.0.1:8786", *files)) as cluster:
+        assert isinstance(cluster, Cluster)
+        assert cluster.tls is not None
+        assert [cluster.tls.authority, cluster.tls.certificate, cluster.tls.key] == files
+
+
+def test_workers_share_the_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 8)
+    assert [EngineOptions().shared_by(workers).cores for workers in (1, 3, 16)] == [8, 2, 1]
+    assert EngineOptions(cores=5).shared_by(3).cores == 5
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"cores": 2, "scheduler": "tcp://127.0.0.1:8786"}, "keep one"),
+        ({"tls_ca": Path("ca.pem")}, "are for --scheduler"),
+        ({"scheduler": "tls://127.0.0.1:8786", "tls_ca": Path("ca.pem")}, "give all three"),
+        ({"scheduler": "somewhere"}, "is like tcp://host:8786"),
+        (
+            {"scheduler": "tls://h:1", "tls_ca": Path("a"), "tls_cert": Path("b"), "tls_key": Path("c")},
+            "must be there; got a;",
+        ),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(options: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        engine_options(**options)  # type: ignore[arg-type]

@@ -1,0 +1,281 @@
+"""The commands of the queue: submit, jobs, watch, cancel, resume, delete. All searches are made up."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from slidercrank.optimise.front import Progress
+from slidercrank.service.job_record import job_record
+from slidercrank.service.store import Limits, Store
+from slidercrank.service.submit_command import events_until_end
+from slidercrank.service.worker import work
+from tests.service import fronts
+from tests.service.conftest import Command
+from tests.service.store.contents import result
+
+
+@pytest.fixture
+def job(tmp_path: Path) -> Path:
+    """Return a job file."""
+    return fronts.job_file(tmp_path)
+
+
+@pytest.fixture
+def store(runs: Path) -> Iterator[Store]:
+    """Return the store that the commands use."""
+    runs.mkdir()
+    with Store(runs / "slidercrank.db") as opened:
+        yield opened
+
+
+def solved(store: Store, monkeypatch: pytest.MonkeyPatch, status: str = "done") -> None:
+    """Let a worker solve what waits, with a made-up search."""
+    front = fronts.front(designs=4) if status == "done" else fronts.empty_front(status, "none")
+    fronts.found(monkeypatch, front)
+    work(store, drain=True)
+
+
+def test_a_job_is_queued_as_it_is_given(store: Store, job: Path, command: Command) -> None:
+    options = ("--priority", 3, "--key", "one", "--attempts", 5, "--seconds", 60, "--evaluations", 999)
+    done = command("submit", job, *options, "--memory", "2 GB")
+    assert (done.exit_code, done.stdout) == (0, "job 1: Short test [job], queued\n")
+    queued = store.job(1)
+    assert (queued.priority, queued.key, queued.most_attempts) == (3, "one", 5)
+    assert queued.limits == Limits(seconds=60.0, evaluations=999, memory=2 * 10**9)
+    kept = store.artefact(1, "job.toml")
+    assert (kept.media_type, kept.content) == ("application/toml", job.read_bytes())
+
+
+def test_submitting_again_with_a_key_gives_the_same_job(store: Store, job: Path, command: Command) -> None:
+    first = json.loads(command("submit", job, "--key", "one", "--json").stdout)
+    again = json.loads(command("submit", job, "--key", "one", "--json").stdout)
+    assert first == again == job_record(store.job(1))
+    assert len(store.jobs()) == 1
+
+
+def test_a_job_that_needs_a_file_beside_it_is_kept_whole(
+    store: Store, job: Path, tmp_path: Path, command: Command
+) -> None:
+    (tmp_path / "points.csv").write_text("crank_angle_deg,position_mm\n0,400\n90,350\n180,200\n270,300\n")
+    job.write_text(f'{fronts.JOB}\n[target_motion]\nfile = "points.csv"\n')
+    assert command("submit", job).exit_code == 0
+    assert store.artefacts(1) == ["job.json"]
+    assert len(json.loads(store.artefact(1, "job.json").content)["target_motion"]["positions"]) == 4
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("none.toml",), "none.toml: no such file"),
+        (("JOB", "--priority", "5000"), "a job has a priority from -1000 to 1000"),
+        (("JOB", "--seconds", "0"), "a limit on seconds must be a positive number of s; got 0.0"),
+        (("JOB", "--memory", "much"), "--memory must be an amount of memory with its unit; got 'much'"),
+        (("JOB", "--store", "mysql://here/jobs"), "a store is at postgresql://user@host/database"),
+        (("JOB", "--store", "/proc/none/store.db"), "/proc/none must be a folder that can be written"),
+    ],
+)
+def test_what_cannot_be_submitted_is_one_sentence(
+    arguments: tuple[str, ...], message: str, job: Path, command: Command
+) -> None:
+    done = command("submit", *(str(job) if argument == "JOB" else argument for argument in arguments))
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_job_with_functions_of_its_own_is_refused(job: Path, command: Command) -> None:
+    job.write_text(f'{fronts.JOB}\n[quantity]\nmine = {{ function = "os:getcwd", unit = "mm" }}\n')
+    done = command("submit", job)
+    assert done.exit_code == 2
+    assert "functions of your own are not run here" in done.stderr
+
+
+def test_jobs_are_listed_with_what_they_found(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command("submit", job)
+    solved(store, monkeypatch)
+    command("submit", job)
+    solved(store, monkeypatch, "infeasible")
+    command("submit", job)
+    lines = [line.split() for line in command("jobs").stdout.splitlines()]
+    rows = {line[0]: " ".join(line[3:]) for line in lines if line and line[0].isdecimal()}
+    assert rows["3"] == "Short test [job] queued"
+    assert rows["2"] == "Short test [job] infeasible none"
+    assert rows["1"].startswith("Short test [job] done 4 designs; best time ratio 1.")
+    assert list(rows) == ["3", "2", "1"]
+
+
+def test_jobs_as_json_are_those_of_the_api(store: Store, job: Path, command: Command) -> None:
+    for _ in range(3):
+        command("submit", job)
+    command("cancel", 2)
+    listed = json.loads(command("jobs", "--json", "--limit", 2).stdout)
+    assert listed == [job_record(store.job(3)), job_record(store.job(2))]
+    assert [one["id"] for one in json.loads(command("jobs", "--state", "cancelled", "--json").stdout)] == [2]
+    assert json.loads(command("jobs", "--name", "nothing", "--json").stdout) == []
+
+
+def test_without_a_store_there_are_no_jobs_and_none_is_made(runs: Path, command: Command) -> None:
+    done = command("jobs")
+    assert (done.exit_code, done.stdout) == (0, "")
+    assert "no job in" in done.stderr
+    assert command("jobs", "--json").stdout == "[]\n"
+    for name in ("watch", "cancel", "resume", "delete"):
+        done = command(name, "latest")
+        assert done.exit_code == 2
+        assert "there is no store at" in done.stderr
+    assert not (runs / "slidercrank.db").exists()
+
+
+def test_a_state_that_no_job_has_is_refused(command: Command) -> None:
+    done = command("jobs", "--state", "lost")
+    assert done.exit_code == 2
+    assert "a job is queued, running, done, infeasible, cancelled or failed; got --state 'lost'" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["watch", "cancel", "resume", "delete"])
+@pytest.mark.parametrize(
+    ("job", "message"),
+    [
+        ("9", "there is no job 9; list the jobs"),
+        ("99999999999999999999", "a job is called by its number"),
+        ("first", "a job is called by its number, or \"latest\"; got 'first'; list the jobs"),
+        ("latest", "there is no job in"),
+    ],
+)
+def test_a_job_that_is_not_there_is_one_sentence(
+    name: str, job: str, message: str, store: Store, command: Command
+) -> None:
+    done = command(name, job)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert message in done.stderr
+
+
+@pytest.mark.parametrize("name", ["jobs", "watch", "cancel"])
+def test_a_file_that_is_no_database_is_one_sentence(name: str, tmp_path: Path, command: Command) -> None:
+    (tmp_path / "no.db").write_text("no database")
+    done = command(name, *([] if name == "jobs" else ["1"]), "--store", tmp_path / "no.db")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "file is not a database" in done.stderr
+
+
+def test_a_job_is_cancelled_resumed_and_deleted(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    assert command("cancel", "latest").stdout == "job 1: Short test [job], cancelled: cancelled before it was done\n"
+    refused = command("submit", job).exit_code, command("delete", 2).stderr
+    assert refused == (0, "slidercrank: only a job that has ended can be deleted; job 2 is queued; cancel it first\n")
+    assert json.loads(command("resume", 1, "--json").stdout) == job_record(store.job(1))
+    assert store.job(1).state == "queued"
+    assert json.loads(command("cancel", 1, "--json").stdout)["state"] == "cancelled"
+    assert json.loads(command("delete", 1, "--json").stdout) == {"deleted": 1}
+    assert [one.id for one in store.jobs()] == [2]
+
+
+def test_a_running_job_is_asked_to_stop(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    store.claim("first")
+    assert command("cancel", 1).stdout == "job 1: Short test [job], asked to stop\n"
+    assert "stopping" in command("jobs").stdout
+
+
+@pytest.mark.parametrize(("status", "code"), [("done", 0), ("infeasible", 3), ("cancelled", 130)])
+def test_watching_ends_with_the_exit_code_of_the_job(
+    status: str, code: int, store: Store, job: Path, command: Command
+) -> None:
+    command("submit", job)
+    claim = store.claim("first")
+    assert claim is not None
+    claim.tell(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
+    claim.finish(result(status, rows=[]))
+    done = command("watch", "latest")
+    assert done.exit_code == code
+    said = [line[10:] for line in done.stdout.splitlines()[:4]]
+    assert said == [
+        "queued",
+        "running: claimed by first",
+        "evolving 2/9: 1,600 evaluated, 12 feasible, hypervolume 0.2500",
+        f"{status}: 0 designs",
+    ]
+
+
+def test_watching_a_failed_job_ends_with_2(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    claim = store.claim("first")
+    assert claim is not None
+    claim.fail("two problems\n  here and there", again=False)
+    done = command("watch", 1)
+    assert done.exit_code == 2
+    assert done.stdout.splitlines()[-1][10:] == "failed: two problems here and there"
+
+
+def test_watching_as_json_gives_an_event_a_line(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    command("cancel", 1)
+    events = [json.loads(line) for line in command("watch", 1, "--json").stdout.splitlines()]
+    assert [(event["number"], event["kind"], event["data"]["state"]) for event in events] == [
+        (1, "state", "queued"),
+        (2, "state", "cancelled"),
+    ]
+    assert set(events[0]) == {"number", "at", "kind", "data"}
+
+
+def test_submitting_can_watch_to_the_end(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def work_soon() -> None:
+        while not store.jobs():
+            time.sleep(0.01)
+        work(store, drain=True)
+
+    fronts.found(monkeypatch, fronts.front(designs=4))
+    thread = threading.Thread(target=work_soon)
+    thread.start()
+    done = command("submit", job, "--watch")
+    thread.join()
+    assert done.exit_code == 0
+    assert done.stdout.startswith("job 1: Short test [job], queued\n")
+    assert "Short test [job]: " not in done.stderr
+    assert "* best in an objective" in done.stdout
+
+
+def test_ctrl_c_leaves_watching_and_not_the_job(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_: float) -> None:
+        raise KeyboardInterrupt
+
+    command("submit", job)
+    monkeypatch.setattr("slidercrank.service.submit_command.time.sleep", interrupt)
+    done = command("watch", "latest")
+    assert done.exit_code == 130
+    assert "job 1 is left as it is; stop it with: slidercrank cancel 1\n" in done.stderr
+    assert store.job(1).state == "queued"
+
+
+def test_watching_waits_for_a_database_that_is_away(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from slidercrank.service.store.database import Unavailable
+
+    command("submit", job)
+    command("cancel", 1)
+    there, asked = store.events, []
+
+    def away(*given: Any, **more: Any) -> Any:
+        asked.append(True)
+        if len(asked) < 3:
+            raise Unavailable("the server restarts")
+        return there(*given, **more)
+
+    monkeypatch.setattr(store, "events", away)
+    monkeypatch.setattr("slidercrank.service.submit_command._AWAY", 0.0)
+    assert [event.number for event in events_until_end(store, 1)] == [1, 2]
+    assert capsys.readouterr().err == "slidercrank: the server restarts; trying again\n"

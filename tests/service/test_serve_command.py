@@ -1,0 +1,103 @@
+"""`slidercrank serve` and `worker`: what they refuse before anything listens."""
+
+from __future__ import annotations
+
+import socket
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.service.server import is_loopback, listen, names_of, url_of
+from slidercrank.service.store import Store
+from tests.service.conftest import Command
+
+TOKEN = "0123456789abcdef"
+
+
+def refused(command: Command, *arguments: object) -> str:
+    """Return the one sentence by which a command refuses."""
+    done = command(*arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.startswith("slidercrank: ")
+    assert done.stderr.count("\n") == 1
+    return done.stderr
+
+
+def test_a_port_that_is_taken_is_refused_and_no_store_is_made(command: Command, runs: Path) -> None:
+    with listen("127.0.0.1", 0) as taken:
+        port = taken.getsockname()[1]
+        message = refused(command, "serve", "--port", port)
+    assert f"127.0.0.1 port {port} gave: Address already in use; choose another one with --port" in message
+    assert not runs.exists()
+
+
+def test_an_address_of_another_machine_is_refused(command: Command) -> None:
+    message = refused(command, "serve", "--host", "192.0.2.1", "--port", 0)
+    assert "the service needs an address of this machine and a free port; 192.0.2.1 port 0 gave:" in message
+
+
+def test_without_a_token_only_this_machine_is_let_in(command: Command) -> None:
+    for host in ("0.0.0.0", "::", "192.168.1.2", "jobs.example.org"):
+        message = refused(command, "serve", "--no-token", "--host", host)
+        assert f"without a token only this machine may be let in; got --no-token and --host {host}" in message
+
+
+@pytest.mark.parametrize("token", ["short", "with spaces in between", "with-ümlauts-in-it", ""])
+def test_a_token_that_protects_nothing_is_refused(
+    token: str, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "a token has at least 16 printable ASCII characters" in refused(command, "serve", "--token", token)
+    monkeypatch.setenv("SLIDERCRANK_TOKEN", token)
+    assert "a token has at least 16 printable ASCII characters" in refused(command, "serve")
+
+
+def test_a_token_and_none_contradict_each_other(command: Command) -> None:
+    assert "got --token and --no-token" in refused(command, "serve", "--token", TOKEN, "--no-token")
+
+
+@pytest.mark.parametrize("name", ["serve", "worker"])
+def test_what_is_no_store_is_refused(name: str, command: Command, tmp_path: Path) -> None:
+    port = ("--port", 0) if name == "serve" else ()
+    (tmp_path / "no.db").write_text("no database")
+    assert "file is not a database" in refused(command, name, *port, "--store", tmp_path / "no.db")
+    assert "a store is at postgresql://" in refused(command, name, *port, "--store", "mysql://here/jobs")
+    Store(tmp_path / "later.db").close()
+    with sqlite3.connect(tmp_path / "later.db") as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+    connection.close()
+    message = refused(command, name, *port, "--store", tmp_path / "later.db")
+    assert "has version 9999" in message
+    assert "install the release that made it" in message
+
+
+@pytest.mark.parametrize("name", ["serve", "worker"])
+def test_limits_that_are_none_are_refused(name: str, command: Command) -> None:
+    assert "--most-memory must be an amount of memory" in refused(command, name, "--most-memory", "much")
+    assert "a limit on seconds must be a positive number" in refused(command, name, "--most-seconds", "-1")
+
+
+def test_the_service_answers_to_the_names_of_this_machine_only() -> None:
+    assert names_of("127.0.0.1") == names_of("localhost") == ("127.0.0.1", "localhost", "[::1]")
+    assert names_of("10.0.0.5") == ("127.0.0.1", "localhost", "[::1]", "10.0.0.5")
+    assert names_of("0.0.0.0")[-1] == socket.gethostname()
+    assert names_of("fe80::1")[-1] == "[fe80::1]"
+
+
+def test_the_address_has_the_port_that_was_free_and_the_token_once_it_is_made() -> None:
+    with listen("127.0.0.1", 0) as listening:
+        port = listening.getsockname()[1]
+        assert port > 0
+        assert url_of("127.0.0.1", listening, None) == f"http://127.0.0.1:{port}/"
+        assert url_of("::1", listening, TOKEN) == f"http://[::1]:{port}/?token={TOKEN}"
+
+
+def test_loopback_is_told_from_other_addresses() -> None:
+    assert all(map(is_loopback, ("127.0.0.1", "127.8.9.1", "::1", "localhost")))
+    assert not any(map(is_loopback, ("0.0.0.0", "::", "10.0.0.1", "example.org", "localhost.example.org")))
+
+
+def test_a_name_that_leads_nowhere_is_refused() -> None:
+    with pytest.raises(InputError, match="the service needs an address of this machine"):
+        listen("no such name", 8765)
