@@ -5,20 +5,24 @@ Runs, designs, events and files are made up; their columns, widths and lengths a
 
 from __future__ import annotations
 
+import asyncio
 import json
 import random
 import sys
 import time
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, insert, text
+import httpx
+from sqlalchemy import Connection, insert, select, text
 
+from slidercrank.optimise.front import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
+from slidercrank.service.api.app import create_app
 from slidercrank.service.result import Result, json_text, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.packing import cells_of, summary_of, text_of
@@ -47,13 +51,17 @@ def measure(address: str, *, runs: int = RUNS, large: int = LARGE, repeats: int 
         with store._database.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
             connection.exec_driver_sql("ANALYZE")
         filled = Row(f"filling with {runs} runs of {len(found.designs)} designs, s", [time.perf_counter() - begin])
-        return [filled, *(_timed(what, ask, repeats) for what, ask in _questions(store, tables, runs))]
+        with store._database.reading() as connection:
+            done = list(connection.execute(select(jobs.c.id).where(jobs.c.state == "done", jobs.c.id < runs)).scalars())
+        with asyncio.Runner() as loop:
+            questions = [*_questions(store, tables, done, runs), *_requests(store, loop, done, runs)]
+            return [filled, *(_timed(what, ask, repeats) for what, ask in questions)]
 
 
-def _questions(store: Store, tables: dict[str, Any], runs: int) -> Iterator[tuple[str, Callable[[], object]]]:
+def _questions(
+    store: Store, tables: dict[str, Any], done: list[int], runs: int
+) -> Iterator[tuple[str, Callable[[], object]]]:
     chance = random.Random(1)
-
-    done = [job.id for job in store.jobs(states=["done"], limit=runs)]
 
     def some() -> int:
         return chance.choice(done)
@@ -76,6 +84,36 @@ def _questions(store: Store, tables: dict[str, Any], runs: int) -> Iterator[tupl
     yield "claim", lambda: store.claim("bench", lease=60.0)
     yield "cancelling", lambda: store.cancel(store.jobs(states=["running", "queued"], limit=1)[0].id)
     yield "deleting a run", lambda: store.delete(done.pop())
+
+
+def _requests(
+    store: Store, loop: asyncio.Runner, done: list[int], runs: int
+) -> Iterator[tuple[str, Callable[[], object]]]:
+    chance = random.Random(3)
+    client = httpx.AsyncClient(transport=httpx.ASGITransport(create_app(store)), base_url="http://127.0.0.1/api/v1/")
+
+    def get(path: str) -> None:
+        answer = loop.run(client.get(path.format(chance.choice(done))))
+        if answer.status_code != 200:
+            raise SystemExit(f"{path}: {answer.status_code} {answer.text[:500]}")
+
+    for path in (
+        "jobs",
+        "jobs?before={0}",
+        "jobs?state=failed",
+        "jobs?name=press%20of%20line%207",
+        "jobs/{0}",
+        "jobs/{0}/front",
+        "jobs/{0}/designs",
+        "jobs/{0}/designs?where=transmission_angle>=30 deg&sort=peak_torque&limit=20",
+        "jobs/{0}/pick?knee=true",
+        f"jobs/{runs}/front",
+        f"jobs/{runs}/designs?sort=peak_torque&offset=5000",
+        f"jobs/{runs}/pick?knee=true",
+    ):
+        large = path.startswith(f"jobs/{runs}/")
+        shown = path.replace(f"{runs}/", "LARGE/") if large else path.replace("{0}", "N")
+        yield f"GET {shown}", lambda path=path: get(path)
 
 
 def _timed(what: str, ask: Callable[[], object], repeats: int) -> Row:
@@ -102,7 +140,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     del record["designs"]
     record["columns"] = list(found.designs[0])
     stated, result, summary = text_of(tables), text_of(record), text_of(summary_of(found))
-    progress = {"stage": "polishing", "round": 10, "rounds": 10, "evaluations": 50_000, "feasible": 900}
+    progress = asdict(Progress("polishing", 10, 10, 50_000, 900, 0.5, 9.0))
     rows = []
     for number in range(1, runs + 1):
         state = chance.choice(_STATES) if number < runs else "done"

@@ -44,9 +44,8 @@ class Caller:
                 number = int(self._client.submit(tables(kind))["id"])
                 self._jobs[number] = kind
                 self._follow(number)
-        except BaseException as error:
+        except Exception as error:  # noqa: BLE001 - whatever it is, the verdict tells it
             self.error = error
-            raise
 
     def _follow(self, number: int) -> None:
         seen = self.seen.setdefault(number, [])

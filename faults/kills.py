@@ -20,7 +20,7 @@ LEASE = 1.0
 GRACE = 2.0  # s beyond the lease within which another worker goes on
 _BETWEEN = 0.8  # s between two blows, on average
 _ALL = 0.1  # share of the blows that hit all workers and the API
-_API = 0.2  # share of those that hit the API, if it answers; one that does not is given time to start
+_API = 0.2  # share of those that hit the API only; both if it answers: else it would never come to that
 _BUSY = 0.8  # share of the others that hit a worker that has a job
 
 
@@ -74,9 +74,7 @@ def _victims(chance: random.Random, workers: Crew, feed: Feed, server: Api) -> t
     """Return which workers are to be killed next, and whether the API is."""
     names = workers.names()
     blow = chance.random()
-    if blow < _ALL:
-        return names, True
     if blow < _ALL + _API and server.answers():
-        return [], True
+        return (names if blow < _ALL else []), True
     busy = [name for name in feed.busy() if name in names]
     return [chance.choice(busy if busy and chance.random() < _BUSY else names)], False

@@ -149,7 +149,7 @@ def _judge_rounds(verdict: Verdict, number: int, events: Sequence[Event], noted:
     latest: dict[int, int] = {}
     for note in evaluated:
         if note.fence not in latest:
-            before = max((last for fence, last in latest.items() if fence < note.fence), default=-1)
+            before = max((last for fence, last in latest.items() if fence < note.fence), default=0)
             again = before + 1 - note.number
             verdict.repeated += max(0, again)
             verdict.most_repeated = max(verdict.most_repeated, again)

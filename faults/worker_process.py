@@ -31,14 +31,11 @@ def main(address: str, name: str, lease: float, journal: Path, pause: float) -> 
 
 
 def _note(journal: Journal, pause: float) -> None:
-    keep, tell, write, writing = Claim.keep, Claim.tell, Claim._write, Database.writing
+    tell, write, writing = Claim.tell, Claim._write, Database.writing
     chance = random.Random()
 
-    def noted_keep(claim: Claim, generation: Any) -> None:
-        journal.note("evaluated", claim.job.id, claim.job.fence, claim._generations + len(claim._kept))
-        keep(claim, generation)
-
     def slow_tell(claim: Claim, progress: Any) -> None:
+        journal.note("evaluated", claim.job.id, claim.job.fence, progress.round)
         time.sleep(chance.uniform(0.0, pause))
         tell(claim, progress)
 
@@ -61,7 +58,6 @@ def _note(journal: Journal, pause: float) -> None:
             raise
 
     for owner, name, noted in (
-        (Claim, "keep", noted_keep),
         (Claim, "tell", slow_tell),
         (Claim, "_write", noted_write),
         (Database, "writing", noted_writing),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -114,10 +113,12 @@ class Worker:
 
 def job_of(row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:
     """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
+    from pydantic_core import from_json  # in a quarter of the time of json's
+
     found = dict(row._mapping)
     for name in ("writes", *more):
         del found[name]
     for name in ("progress", "summary"):
-        found[name] = None if found[name] is None else json.loads(found[name])
+        found[name] = None if found[name] is None else from_json(found[name])
     seconds, evaluations, memory = (found.pop(name) for name in LIMITS)
     return Job(**found, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))
