@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
@@ -86,7 +87,9 @@ class Processes:
         try:
             while True:
                 for index in islice(waiting, self.workers - len(running)):
-                    running[self._started().submit(function, items[index])] = index
+                    pool = self._started()
+                    with _unheard():
+                        running[pool.submit(function, items[index])] = index
                 if not running:
                     return []
                 for future in wait(running, timeout=_TICK, return_when=FIRST_COMPLETED).done:
@@ -116,7 +119,9 @@ class Processes:
                 self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
             )
             try:
-                pool.submit(_ready).result()
+                with _unheard():
+                    ready = pool.submit(_ready)
+                ready.result()
                 self._pool = pool
             except BrokenProcessPool:
                 pool.shutdown()
@@ -124,6 +129,19 @@ class Processes:
             f"processes must be able to start; got {_STARTS} that ended at once; a script that asks for them needs "
             'its own work under if __name__ == "__main__", else look for a lack of memory'
         )
+
+
+@contextlib.contextmanager
+def _unheard() -> Iterator[None]:
+    """Keep Ctrl-C from processes that start meanwhile: it is for this one, which hears it afterwards."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _ready() -> None:

@@ -77,6 +77,29 @@ def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
     assert not [pid for pid in children if psutil.pid_exists(pid)]
 
 
+def test_ctrl_c_is_heard_by_nobody_but_the_one_who_asked(tmp_path: Path) -> None:
+    code = (
+        "import sys, os, signal, threading\n"
+        "from slidercrank.optimise.engine.processes import Processes\n"
+        "from tests.optimise.engine import work\n"
+        "if __name__ == '__main__':\n"
+        "    for delay in (0.05, 0.5, 1.5):\n"
+        "        threading.Timer(delay, lambda: os.killpg(0, signal.SIGINT)).start()\n"
+        "    heard, engine = [], Processes(2)\n"
+        "    signal.signal(signal.SIGINT, lambda *_: heard.append(1))\n"
+        "    assert engine.map(work.slow, range(20)) == list(range(20))\n"
+        "    engine.close()\n"
+        "    print(len(heard))\n"
+    )
+    script = tmp_path / "interrupted.py"
+    script.write_text(code)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    found = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, env=environment, start_new_session=True
+    )
+    assert (found.stdout, found.stderr) == ("3\n", "")
+
+
 def test_what_a_killed_dask_worker_was_at_is_done_again_and_a_lost_scheduler_is_found_again() -> None:
     with DaskCluster(2) as dask:
         engine = Cluster(dask.address, patience=60.0)
