@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test lint benchmark faults clean
+.PHONY: run test lint benchmark requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed $(VENV)/.kernels
@@ -21,6 +21,10 @@ lint: $(VENV)/.installed-test
 
 benchmark: $(VENV)/.installed-benchmark $(VENV)/.kernels
 	$(BIN)/python -m benchmarks
+
+# Requests made from the description of the API: about twenty minutes.
+requests: $(VENV)/.installed-test $(VENV)/.kernels
+	$(BIN)/python -m tests.service.api.schema_cases 10000 1
 
 # Kills, pauses, crashes of databases, full disks: about half an hour.
 faults: $(VENV)/.installed-test $(VENV)/.kernels

@@ -73,7 +73,15 @@ def run_server(app: FastAPI, listening: socket.socket) -> None:
         ws="none",
         timeout_graceful_shutdown=_FAREWELL,
     )
-    uvicorn.Server(config).run(sockets=[listening])
+
+    class Server(uvicorn.Server):
+        """Ends the streams of events first: they would wait until they are cut."""
+
+        async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+            app.state.feed.close()
+            await super().shutdown(sockets)
+
+    Server(config).run(sockets=[listening])
 
 
 def _bracketed(host: str) -> str:
