@@ -80,8 +80,8 @@ def diagnose(
 ) -> Diagnosis:
     """Return feasible designs after all, or which requirements contradict each other.
 
-    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger, engine: of the
-    search that wants to know it. First the greatest relative violation is minimised from many starts, without
+    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger, engine: of
+    the search that wants to know it. First the greatest relative violation is minimised from many starts, without
     eliminating anything. If it stays positive, each requirement in turn becomes the objective of the problem without
     it. Both searches are local from many starts: strong evidence; `certificate.infeasible` gives the proof where it
     can.
