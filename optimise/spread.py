@@ -46,7 +46,7 @@ class _Asked:
 
 def _shared_out(evaluator: Evaluator, asked: _Asked, start: Array) -> Polished:
     before = evaluator.evaluations
-    parts = evaluator.chunked(_polish, asked, start, kind="polish")
+    parts = evaluator.chunked(_polish, asked, start, kind="polish", together=True)
     evaluator.evaluations = before + sum(count for _, count in parts)
     found = [part for part, _ in parts]
     return Polished(

@@ -59,29 +59,36 @@ class Chunked(Generic[Subject]):
     _paces: dict[Hashable, _Pace] = field(default_factory=dict, init=False)
 
     def __call__(
-        self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, *, kind: Hashable = None
+        self,
+        work: Work[Subject, Asked, Part],
+        asked: Asked,
+        rows: Array,
+        *,
+        kind: Hashable = None,
+        together: bool = False,
     ) -> list[Part]:
         """Return the parts of the work on rows (n, k), in order; one for all of them where that is light.
 
-        kind: of work that takes alike for a row, what is asked if not given. Raises what the work, the engine and
-        `poll` raise.
+        kind: of work that takes alike for a row, what is asked if not given. together: rows are much quicker together
+        than one by one, so that they are not cut here, and into no more chunks than there are workers elsewhere. Raises
+        what the work, the engine and `poll` raise.
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):
             return [work(self.shared.value, asked, rows)]
         pace = self._paces.setdefault((work, asked if kind is None else kind), _Pace())
         parts: list[Part] = []
-        begin, count = 0, _FIRST
+        begin, count = 0, n if together else _FIRST
         while begin < n:
             left = n - begin
             light = pace.row * left < 2.0 * CHUNK
             if pace.over >= _SURE and not light:
                 if self.engine.worth(pace.row * left):
-                    return parts + self._mapped(work, asked, rows[begin:], pace)
+                    return parts + self._mapped(work, asked, rows[begin:], pace, 1 if together else _EACH)
                 light = True
             if self.poll is not None:
                 self.poll()
-            if pace.over >= 0.0:
+            if pace.over >= 0.0 and not together:
                 count = left if light else max(2 * count if pace.over > 0.0 else 1, int(CHUNK / pace.row))
             start = perf_counter()
             parts.append(work(self.shared.value, asked, rows[begin : begin + count]))
@@ -89,12 +96,14 @@ class Chunked(Generic[Subject]):
             begin += count
         return parts
 
-    def _mapped(self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, pace: _Pace) -> list[Part]:
+    def _mapped(
+        self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, pace: _Pace, each: int
+    ) -> list[Part]:
         engine = self.engine
         if not isinstance(engine, Serial) and not self.shared.portable:
             engine = Serial()
         seconds = pace.row * len(rows)
-        most = max(_EACH * engine.workers, int(seconds / LONGEST))
+        most = each * engine.workers if each == 1 else max(each * engine.workers, int(seconds / LONGEST))
         count = max(1, min(int(seconds / CHUNK), most, len(rows)))
         edges = np.linspace(0, len(rows), count + 1).astype(int)
         tasks = [_Task(work, self.shared, asked, rows[a:b]) for a, b in pairwise(edges.tolist())]
