@@ -37,7 +37,7 @@ def found(problem: Problem, status: str) -> ParetoFront:
     )
 
 
-def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep: Any) -> ParetoFront:
+def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep: Any, **_: Any) -> ParetoFront:
     """Keep `ROUNDS` generations, beginning after those given."""
     from tests.service.store.contents import progress as at
 

@@ -11,6 +11,7 @@ import pytest
 
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
+from slidercrank.service.engines import EngineOptions
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.submission import submit
 from slidercrank.service.worker import Terms, work
@@ -86,3 +87,18 @@ def test_functions_of_jobs_run_only_where_the_operator_allows_them(store: Store,
     assert work(store, drain=True) == 1
     assert store.job(job.id).state == "failed"
     assert "only functions that the operator allows are run here" in store.job(job.id).reason
+
+
+def test_heavy_work_goes_where_the_worker_is_told(store: Store, searches: Any) -> None:
+    engines: list[Any] = []
+
+    def watched(*given: Any, engine: Any, **more: Any) -> ParetoFront:
+        engines.append(engine)
+        return search(*given, **more)
+
+    searches(watched)
+    for options in (EngineOptions(cores=1), EngineOptions(cores=3), EngineOptions(scheduler="tcp://127.0.0.1:8786")):
+        submit(store, TABLES)
+        work(store, drain=True, terms=Terms(engine=options))
+    assert [type(engine).__name__ for engine in engines] == ["Serial", "Processes", "Cluster"]
+    assert (engines[1].workers, engines[2].address) == (3, "tcp://127.0.0.1:8786")
