@@ -8,25 +8,44 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import httpx
+import psutil
+
+from faults.lifeline import die_with_parent
 
 TOKEN = "a-token-of-the-benchmarks"
 _PATIENCE = 120.0  # s to start
 
 
+@dataclass(frozen=True)
+class Service:
+    """A running service. url: of its API. process: that of the API; the workers have their own."""
+
+    url: str
+    process: psutil.Process
+
+    def processor_time(self) -> float:
+        """Return how much time of the processor the API has taken, s."""
+        times = self.process.cpu_times()
+        return float(times.user + times.system)
+
+
 @contextmanager
-def service(address: str, folder: Path, *, workers: int, port: int = 0) -> Iterator[str]:
-    """Give the URL of the API of a service on a store. folder: for its log."""
+def service(address: str, folder: Path, *, workers: int) -> Iterator[Service]:
+    """Give a service on a store, its workers as busy as jobs let them be. folder: for its log."""
     log = folder / "service.log"
-    command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", str(port)]
+    command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", "0"]
     options = ["--workers", str(workers), "--submissions-per-minute", "0", "--lease", "30", "--grace", "1"]
     with log.open("wb") as out:
         environment = {**os.environ, "SLIDERCRANK_TOKEN": TOKEN, "PYTHONUNBUFFERED": "1"}
-        process = subprocess.Popen([*command, *options], stdout=out, stderr=out, env=environment)
+        process = subprocess.Popen(
+            [*command, *options], stdout=out, stderr=out, env=environment, preexec_fn=die_with_parent
+        )
     try:
-        yield f"{_url(process, log)}api/v1/"
+        yield Service(f"{_url(process, log)}api/v1/", psutil.Process(process.pid))
     finally:
         process.terminate()
         try:

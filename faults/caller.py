@@ -18,7 +18,7 @@ class Caller:
         """Call an API. jobs: where number and kind of each job go."""
         self.seen: dict[int, list[int]] = {}
         self.error: BaseException | None = None
-        self._client = Client(url, TOKEN, patience=120.0)
+        self._client = Client(url, TOKEN, patience=3600.0)  # it lives for seconds, and comes back after some
         self._jobs = jobs
         self._chance = random.Random(seed)
         self._end = threading.Event()
