@@ -12,7 +12,7 @@ from .screen import say
 
 
 class Interruption:
-    """While entered, a first Ctrl-C asks to stop after the round or figure under way; a second one stops at once."""
+    """While entered, a first Ctrl-C asks to stop at the next good moment; a second one stops at once."""
 
     def __init__(self) -> None:
         self._asked = False

@@ -196,7 +196,7 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
             problem,
             progress=tell,
             cancelled=lambda: interruption.asked() or claim.cancel_asked,
-            resume=tuple(claim.generations()),
+            resume=tuple(claim.records()),
             keep=claim.keep,
             engine=engine,
         )

@@ -9,11 +9,11 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..model.errors import InputError, LeaseLost, StoreError
+from ..model.errors import ForeignRecords, InputError, LeaseLost, StoreError
 from .allowed_quantities import require_allowed
 from .engines import EngineOptions, engine_of
 from .job_limits import Budget, within
@@ -24,7 +24,8 @@ from .store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 
 if TYPE_CHECKING:
     from ..optimise.engine.engine import Engine
-    from ..optimise.front import Progress
+    from ..optimise.front import ParetoFront, Progress
+    from ..optimise.ledger import Record
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
@@ -157,7 +158,6 @@ def _solve(
     tables = store.tables(claim.job.id)
     require_allowed(tables, terms.allowed_quantities)
     problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
-    past = tuple(claim.generations())
 
     def tell(at: Progress) -> None:
         claim.tell(at)
@@ -166,7 +166,14 @@ def _solve(
     def over() -> bool:
         return _ends(claim, pulse, stop) or budget.spent()
 
-    front = solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+    def search(past: Sequence[Record]) -> ParetoFront:
+        return solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+
+    try:
+        front = search(claim.records())
+    except ForeignRecords as error:  # of an earlier release, or another kind of machine
+        claim.start_over(f"begins anew: {error}")
+        front = search([])
     result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)

@@ -75,7 +75,7 @@ class JobShown(Shown):
     finished: float | None
     worker: str | None = Field(description="who solves it")
     lease_until: float | None
-    generations: Count = Field(description="that it can go on from")
+    records: Count = Field(description="that it can go on from")
     events: Count = Field(description="the number of its last event")
     progress: JobProgress | None
     summary: JobSummary | None

@@ -17,7 +17,7 @@ from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event
 from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
 from .records import Artefact, Job
-from .schema import designs, generations, jobs, workers
+from .schema import designs, jobs, records, workers
 from .submitting import put_files
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Claim:
         self._lock = threading.RLock()
         self._writes = 0
         self._attempts = job.attempts
-        self._generations = job.generations
+        self._records = job.records
         self._kept: list[Record] = []
         self._renewed = time.monotonic()
 
@@ -55,9 +55,9 @@ class Claim:
         """Time since the lease was last renewed, in s."""
         return time.monotonic() - self._renewed
 
-    def generations(self) -> list[Record]:
+    def records(self) -> list[Record]:
         """Return what the job has evaluated so far, in order."""
-        query = select(generations.c.content).where(generations.c.job == self.job.id).order_by(generations.c.number)
+        query = select(records.c.content).where(records.c.job == self.job.id).order_by(records.c.number)
         with self._database.reading() as connection:
             return [unpacked(content) for content in connection.execute(query).scalars()]
 
@@ -88,6 +88,18 @@ class Claim:
         """Add a message to the events of the job."""
         self._write({}, [("message", {"text": plain(text)})])
 
+    def start_over(self, reason: str) -> None:
+        """Forget all records: the search begins anew. reason: for the events of the job."""
+        with self._lock:
+            self._kept = []
+            own = records.c.job == self.job.id
+
+            def forget(connection: Connection) -> None:
+                connection.execute(delete(records).where(own))
+
+            self._write({"records": 0}, [("message", {"text": plain(reason)})], forget)
+            self._records = 0
+
     def put(self, *files: Artefact) -> None:
         """Write files of the job, each in place of one of its name."""
         self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
@@ -107,9 +119,9 @@ class Claim:
                 connection.execute(insert(designs), rows)
             put_files(connection, self.job.id, files)
             if result.status != "cancelled":  # a cancelled one can go on
-                connection.execute(delete(generations).where(generations.c.job == self.job.id))
+                connection.execute(delete(records).where(records.c.job == self.job.id))
 
-        left: dict[str, Any] = {} if result.status == "cancelled" else {"generations": 0}
+        left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
         found = {"result": text_of(record), "summary": text_of(summary_of(result))}
         self._end(result.status, result.message, {**found, **left}, rest)
 
@@ -143,19 +155,19 @@ class Claim:
             kept = self._kept if keep else []
             rows = [
                 {"job": self.job.id, "number": number, "content": packed(record)}
-                for number, record in enumerate(kept, self._generations)
+                for number, record in enumerate(kept, self._records)
             ]
             values: dict[str, Any] = {
                 "writes": self._writes + 1,
                 "events": jobs.c.events + len(told),
                 "lease_until": now() + cast(literal(self.lease), Double),
-                "generations": self._generations + len(rows),
+                "records": self._records + len(rows),
             }
             if rows:
                 values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
             self._commit({**values, **changes}, told, rows, rest)
             self._writes += 1
-            self._generations += len(rows)
+            self._records += len(rows)
             self._kept = self._kept[len(kept) :]
             self._attempts = 0 if rows else self._attempts
 
@@ -197,7 +209,7 @@ class Claim:
         self.cancel_asked = self.cancel_asked or row.cancel_asked
         add_events(connection, self.job.id, row.events, told)
         if rows:
-            connection.execute(insert(generations), rows)
+            connection.execute(insert(records), rows)
         connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
         if rest is not None:
             rest(connection)

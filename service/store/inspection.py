@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
 from ...model.errors import StoreError
 from .clock import now
 from .database import Database, Unavailable
-from .schema import designs, events, generations, jobs
+from .schema import designs, events, jobs, records
 
 _MOST = 5  # of a kind that are named
 _SETTINGS = ("fsync", "full_page_writes")
@@ -84,9 +84,9 @@ def _miscounts(connection: Connection) -> list[str]:
         jobs.c.id,
         jobs.c.summary,
         jobs.c.events,
-        jobs.c.generations,
+        jobs.c.records,
         count(events).label("has_events"),
-        count(generations).label("has_generations"),
+        count(records).label("has_records"),
         count(designs).label("has_designs"),
     ).order_by(jobs.c.id)
     found = []
@@ -94,7 +94,7 @@ def _miscounts(connection: Connection) -> list[str]:
         said = 0 if row.summary is None else json.loads(row.summary)["designs"]
         for kind, expected, there in (
             ("events", row.events, row.has_events),
-            ("generations", row.generations, row.has_generations),
+            ("records", row.records, row.has_records),
             ("designs", said, row.has_designs),
         ):
             if expected != there:

@@ -52,8 +52,8 @@ class Job:
 
     run: the name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
     its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
-    state, in a sentence, or empty. attempts: since it last went forward by a generation. due: it is not claimed before.
-    worker, lease_until: of a running one. generations: how many it can go on from. events: how many there are.
+    state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
+    worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
     progress: fields of the latest `Progress`, or None. summary: what it found, see `packing.summary_of`, or None.
     """
 
@@ -75,7 +75,7 @@ class Job:
     worker: str | None
     lease_until: float | None
     fence: int
-    generations: int
+    records: int
     events: int
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None

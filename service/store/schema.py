@@ -2,7 +2,7 @@
 
     jobs          one row a job: what is asked, where it stands, who has it until when
     events        what happened to a job, numbered 1, 2, 3, ... without gaps: states, progress, messages
-    generations   what a job has evaluated, for methods that go generation by generation: it resumes from these
+    records       what the search of a job has found out, step by step: it resumes from these
     designs       the front of a finished job, one row a design
     artefacts     files of a job
     workers       who solves jobs, and when each was heard of last
@@ -71,7 +71,7 @@ jobs = Table(
     Column("lease_until", Double),
     Column("fence", Integer, nullable=False, server_default="0"),
     Column("writes", Integer, nullable=False, server_default="0"),
-    Column("generations", Integer, nullable=False, server_default="0"),
+    Column("records", Integer, nullable=False, server_default="0"),
     Column("events", Integer, nullable=False, server_default="0"),
     Column("progress", Text),
     Column("summary", Text),
@@ -83,7 +83,7 @@ jobs = Table(
 )
 """key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not
 to be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written.
-generations, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
+records, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
 designs, with the names of their columns."""
 
 events = Table(
@@ -96,8 +96,8 @@ events = Table(
     Column("data", Text, nullable=False),
 )
 
-generations = Table(
-    "generations",
+records = Table(
+    "records",
     metadata,
     _of_a_job(),
     Column("number", Integer, primary_key=True, autoincrement=False),

@@ -233,7 +233,7 @@ class Store:
             return the_job(connection, number)
 
     def resume(self, number: int) -> Job:
-        """Queue a cancelled or failed job again, to go on from the generations that it has, and return it.
+        """Queue a cancelled or failed job again, to go on from the records that it has, and return it.
 
         Raises `InputError` for a job in another state.
         """

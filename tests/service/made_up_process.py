@@ -1,6 +1,6 @@
 """A worker process with a made-up search, which does what the name of its job says.
 
-    rounds   `ROUNDS` rounds of 0.05 s, the same generations every time
+    rounds   `ROUNDS` rounds of 0.05 s, the same records every time
     stuck    one round, then it hears nothing any more
     greedy   one round, then it takes 300 MB and hears nothing any more
 
@@ -45,7 +45,7 @@ def solve(
     store: Store, claim: Claim, budget: Budget, terms: worker.Terms, engine: object, pulse: Pulse, stop: Stop
 ) -> None:
     """Go on with a job, to its end."""
-    for number in range(claim.job.generations, ROUNDS):
+    for number in range(claim.job.records, ROUNDS):
         if worker._ends(claim, pulse, stop):
             claim.finish(_result("cancelled"))
             return

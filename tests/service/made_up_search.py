@@ -11,7 +11,7 @@ import pandas as pd
 
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
-from tests.service.store.contents import generation
+from tests.service.store.contents import search_record
 
 ROUNDS = 3
 Search = Callable[..., ParetoFront]
@@ -38,13 +38,13 @@ def found(problem: Problem, status: str) -> ParetoFront:
 
 
 def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep: Any, **_: Any) -> ParetoFront:
-    """Keep `ROUNDS` generations, beginning after those given."""
+    """Keep `ROUNDS` records, beginning after those given."""
     from tests.service.store.contents import progress as at
 
     for number in range(len(resume), ROUNDS):
         if cancelled():
             return found(problem, "cancelled")
-        keep(generation(number))
+        keep(search_record(number))
         progress(at(number + 1))
     return found(problem, "done")
 

@@ -41,7 +41,7 @@ def job(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return what lets the next search end after some generations: cancelled, or killed."""
+    """Return what lets the next search end after some records: cancelled, or killed."""
 
     def after(count: int, *, killed: bool) -> None:
         def stopped(*given: Any, keep: Any, **options: Any) -> ParetoFront:
@@ -67,9 +67,9 @@ def only(runs: Path) -> Path:
 
 
 def kept(runs: Path, number: int = 1) -> int:
-    """Return how many generations of a job are in the store."""
+    """Return how many records of a job are in the store."""
     with Store(runs / "slidercrank.db") as store:
-        return store.job(number).generations
+        return store.job(number).records
 
 
 def designs(run: Path) -> str:
@@ -196,7 +196,7 @@ def test_a_cancelled_job_of_a_worker_goes_on_at_the_command_line(
     with Store(runs / "slidercrank.db") as store:
         number = submit(store, tables).id
         work(store, drain=True)
-        assert (store.job(number).state, store.job(number).generations) == ("cancelled", 3)
+        assert (store.job(number).state, store.job(number).records) == ("cancelled", 3)
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
     again = command("optimise", "--resume", number, "--no-figures")
     assert again.exit_code == 0, again.output

@@ -69,7 +69,7 @@ def test_a_worker_that_is_killed_is_replaced_and_its_job_goes_on(
     caplog.set_level(logging.INFO)
     job = put_in(store, "rounds")
     with Supervisor(settings(store), 1, program=MADE_UP) as supervisor:
-        until(lambda: store.job(job.id).generations >= 3, "third round")
+        until(lambda: store.job(job.id).records >= 3, "third round")
         (killed,) = supervisor.processes()
         os.kill(killed, signal.SIGKILL)
         until(lambda: store.job(job.id).state == "done", "end of the job")
@@ -84,10 +84,10 @@ def test_a_worker_that_is_killed_is_replaced_and_its_job_goes_on(
 def test_workers_that_are_told_to_stop_hand_their_job_back_between_rounds(store: Store) -> None:
     job = put_in(store, "rounds")
     with Supervisor(settings(store, lease=60.0), 1, program=MADE_UP):
-        until(lambda: store.job(job.id).generations >= 2, "second round")
+        until(lambda: store.job(job.id).records >= 2, "second round")
     after = store.job(job.id)
     assert (after.state, after.reason) == ("queued", "its worker stopped; another one goes on")
-    assert after.generations >= 2
+    assert after.records >= 2
     assert after.attempts == 0
     assert store.workers() == []
 
@@ -95,11 +95,11 @@ def test_workers_that_are_told_to_stop_hand_their_job_back_between_rounds(store:
 def test_a_worker_in_an_endless_round_hands_its_job_back_when_its_grace_is_over(store: Store) -> None:
     job = put_in(store, "stuck")
     with Supervisor(settings(store, lease=60.0), 1, program=MADE_UP) as supervisor:
-        until(lambda: store.job(job.id).generations == 1, "first round")
+        until(lambda: store.job(job.id).records == 1, "first round")
         (process,) = supervisor.processes()
     assert gone(process)
     after = store.job(job.id)
-    assert (after.state, after.generations) == ("queued", 1)
+    assert (after.state, after.records) == ("queued", 1)
     assert after.reason == "its worker stopped in the middle of a round; another one goes on"
 
 
@@ -147,7 +147,7 @@ def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
     with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as supervisor:
         assert supervisor.stdout is not None
         worker = int(supervisor.stdout.readline())
-        until(lambda: store.job(job.id).generations == 1, "first round")
+        until(lambda: store.job(job.id).records == 1, "first round")
         supervisor.kill()
     until(lambda: gone(worker), "end of the worker")
     assert store.job(job.id).state == "queued"

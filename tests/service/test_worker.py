@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from slidercrank.model.errors import InputError, JobError, StoreError
+from slidercrank.model.errors import ForeignRecords, InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
 from slidercrank.service.pulse import Pulse
@@ -20,7 +20,8 @@ from slidercrank.service.submission import submit
 from slidercrank.service.worker import solve_claimed, work, worker_name
 from tests.service import fronts
 from tests.service.made_up_search import Search, found, search, until
-from tests.service.store.contents import end_lease, generation, progress
+from tests.service.store.contents import end_lease, progress, search_record
+from tests.service.store.contents import progress as at_round
 
 TABLES = tomllib.loads(fronts.JOB)
 
@@ -117,6 +118,36 @@ def test_an_error_that_stays_sets_the_job_aside(store: Store, searches: Any, mon
     assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "RuntimeError: no way (attempt 3 of 3)")
 
 
+def test_a_job_with_records_of_another_release_begins_anew(
+    store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+
+    def first(_: Problem, *, keep: Any, progress: Any, **_more: Any) -> ParetoFront:
+        keep(search_record(0))
+        progress(at_round(1))
+        raise MemoryError
+
+    def second(problem: Problem, *, resume: Any, **more: Any) -> ParetoFront:
+        if resume:
+            raise ForeignRecords("a run goes on only with the versions it began with; run its job anew")
+        return search(problem, resume=resume, **more)
+
+    searches(first)
+    job = submit(store, TABLES, most_attempts=2)
+    claim = store.claim("first")
+    assert claim is not None
+    solve_claimed(store, claim, lambda: False)
+    assert store.job(job.id).records == 1
+    searches(second)
+    work(store, drain=True)
+    assert store.job(job.id).state == "done"
+    told = [event.data["text"] for event in store.events(job.id) if event.kind == "message"]
+    assert any(text.startswith("begins anew: a run goes on only with the versions") for text in told)
+    rounds = [event.data["round"] for event in store.events(job.id) if event.kind == "progress"]
+    assert rounds == [1, 1, 2, 3]
+
+
 def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> None:
     searches(search)
     job = submit(store, TABLES, most_attempts=1)
@@ -128,7 +159,7 @@ def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> Non
 
     assert work(store, stop=stop) == 1
     waiting = store.job(job.id)
-    assert (waiting.state, waiting.reason, waiting.generations, waiting.attempts) == (
+    assert (waiting.state, waiting.reason, waiting.records, waiting.attempts) == (
         *("queued", "its worker stopped; another one goes on", 2),
         0,
     )
@@ -138,21 +169,21 @@ def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> Non
 
 def test_an_interrupted_worker_hands_its_job_back(store: Store, searches: Any) -> None:
     def interrupt(*_: Any, keep: Any, **_more: Any) -> ParetoFront:
-        keep(generation(0))
+        keep(search_record(0))
         raise KeyboardInterrupt
 
     searches(interrupt)
     job = submit(store, TABLES)
     with pytest.raises(KeyboardInterrupt):
         work(store, drain=True)
-    assert (store.job(job.id).state, store.job(job.id).generations) == ("queued", 1)
+    assert (store.job(job.id).state, store.job(job.id).records) == ("queued", 1)
 
 
 def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> None:
     job = submit(store, TABLES)
 
     def long(problem: Problem, *, cancelled: Any, keep: Any, **_: Any) -> ParetoFront:
-        keep(generation(0))
+        keep(search_record(0))
         store.cancel(job.id)
         until(cancelled)
         return found(problem, "cancelled")
@@ -160,7 +191,7 @@ def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> No
     searches(long)
     assert work(store, lease=1.0, drain=True) == 1
     ended = store.job(job.id)
-    assert (ended.state, ended.reason, ended.generations) == ("cancelled", "1 design", 1)
+    assert (ended.state, ended.reason, ended.records) == ("cancelled", "1 design", 1)
     assert len(store.result(job.id).designs) == 1
 
 
@@ -201,7 +232,7 @@ def test_a_worker_that_wakes_after_its_lease_leaves_the_job_to_the_next(
 
     searches(paused)
     assert work(store, name="first", drain=True) == 1
-    assert (store.job(job.id).worker, store.job(job.id).generations) == ("second", 1)
+    assert (store.job(job.id).worker, store.job(job.id).records) == ("second", 1)
     searches(search)
     solve_claimed(store, second[0], lambda: False)
     assert store.job(job.id).state == "done"

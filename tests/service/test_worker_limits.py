@@ -53,7 +53,7 @@ def test_a_search_ends_at_its_limit_of_evaluations_with_what_it_found(store: Sto
     other = submit(store, TABLES)
     assert work(store, drain=True, terms=Terms(limits=Limits(evaluations=20))) == 2
     for ended in map(store.job, (job.id, other.id)):
-        assert (ended.state, ended.generations) == ("cancelled", 2)
+        assert (ended.state, ended.records) == ("cancelled", 2)
         assert ended.reason == "1 design; its search reached its limit of 20 evaluations"
 
 

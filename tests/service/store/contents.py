@@ -38,7 +38,7 @@ def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
     return claim
 
 
-def generation(number: int) -> Record:
+def search_record(number: int) -> Record:
     """Return what a search keeps of a round, like no other, with values that only an exact copy keeps."""
     random = np.random.default_rng(number)
     floats = np.array([*random.random(9), np.nan, np.inf, 1e-300, -0.0])

@@ -1,6 +1,6 @@
 """A worker with a made-up search, for a process of its own that can be killed.
 
-Its search makes `ROUNDS` generations that are the same every time, and finds one design a generation.
+Its search makes `ROUNDS` records that are the same every time, and finds one design a record.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from slidercrank.optimise.ledger import Record
 from slidercrank.service.result import Row
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.worker import worker_name
-from tests.service.store.contents import generation, progress, result
+from tests.service.store.contents import progress, result, search_record
 
 ROUNDS = 12
 _ROUND = 0.02  # s that one takes
 
 
-def found(generations: list[Record]) -> list[Row]:
-    """Return the designs of the generations."""
-    return [{"time_ratio": float(one.words.view(np.float64)[:9].sum())} for one in generations]
+def found(records: list[Record]) -> list[Row]:
+    """Return the designs of the records."""
+    return [{"time_ratio": float(one.words.view(np.float64)[:9].sum())} for one in records]
 
 
 def solve(claim: Claim) -> None:
     """Go on with a job, to its end."""
-    generations = claim.generations()
-    for number in range(len(generations), ROUNDS):
+    records = claim.records()
+    for number in range(len(records), ROUNDS):
         time.sleep(_ROUND)
-        generations.append(generation(number))
-        claim.keep(generations[-1])
+        records.append(search_record(number))
+        claim.keep(records[-1])
         claim.tell(progress(number + 1))
-    claim.finish(result(rows=found(generations)))
+    claim.finish(result(rows=found(records)))
 
 
 def main(address: str, lease: float) -> None:

@@ -13,7 +13,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.inspection import damages
-from tests.service.store.contents import add, everything, generation, progress, result, same, taken
+from tests.service.store.contents import add, everything, progress, result, same, search_record, taken
 
 
 def copy(file: Path, target: Path) -> None:
@@ -30,7 +30,7 @@ def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> N
     with Store(file) as store:
         add(store)
         claim = taken(store)
-        claim.keep(generation(0))
+        claim.keep(search_record(0))
         claim.tell(progress(1))
         claim.hand_back("the backup comes")
         before = everything(str(file))
@@ -43,7 +43,7 @@ def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> N
     assert everything(str(file)) == before
     with Store(file) as store:
         claim = taken(store)
-        assert same(claim.generations()[0], generation(0))
+        assert same(claim.records()[0], search_record(0))
         claim.finish(result())
         assert store.job(1).state == "done"
 

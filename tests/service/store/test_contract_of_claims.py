@@ -15,33 +15,33 @@ from tests.service.store.contents import (
     add,
     end_lease,
     everything,
-    generation,
     progress,
     result,
     same,
+    search_record,
     taken,
 )
 
 
-def test_a_job_whose_lease_has_ended_goes_on_from_its_generations(store: Store, address: str) -> None:
+def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, address: str) -> None:
     add(store)
     lost = taken(store)
     for number in (1, 2):
-        lost.keep(generation(number))
+        lost.keep(search_record(number))
         lost.tell(progress(number))
-    lost.keep(generation(3))  # never written: its round was not told
+    lost.keep(search_record(3))  # never written: its round was not told
     assert store.claim("second") is None
     end_lease(address, lost.job.id)
     again = taken(store, "second")
     assert (again.job.id, again.job.fence, again.job.worker) == (lost.job.id, 2, "second")
-    found = again.generations()
-    assert len(found) == again.job.generations == 2
-    assert all(same(one, generation(number)) for number, one in enumerate(found, 1))
+    found = again.records()
+    assert len(found) == again.job.records == 2
+    assert all(same(one, search_record(number)) for number, one in enumerate(found, 1))
     assert again.job.progress is not None
     assert again.job.progress["evaluations"] == 32
-    again.keep(generation(3))
+    again.keep(search_record(3))
     again.tell(progress(3))
-    assert same(again.generations()[2], generation(3))
+    assert same(again.records()[2], search_record(3))
 
 
 WRITES: dict[str, Callable[[Claim], None]] = {
@@ -62,9 +62,9 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
 ) -> None:
     add(store)
     paused = taken(store)
-    paused.keep(generation(1))
+    paused.keep(search_record(1))
     paused.tell(progress(1))
-    paused.keep(generation(2))
+    paused.keep(search_record(2))
     end_lease(address, paused.job.id)
     if claimed_again:
         taken(store, "second").renew()  # it has now written as often as the first: only the fence tells them apart
@@ -88,14 +88,14 @@ def test_every_write_renews_the_lease(store: Store) -> None:
     assert claim.age < 60.0
 
 
-def test_progress_is_written_with_its_generation_or_not_at_all(store: Store, address: str) -> None:
+def test_progress_is_written_with_its_record_or_not_at_all(store: Store, address: str) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     claim.tell(progress(1))
     before = everything(address)
-    claim.keep(generation(2))
-    claim._generations = 0  # the next generation takes the number of the first, which the database refuses
+    claim.keep(search_record(2))
+    claim._records = 0  # the next record takes the number of the first, which the database refuses
     claim.lease = 0.0  # at once, not after many tries
     with pytest.raises(RunError, match="the store must be a database that can be"):
         claim.tell(progress(2))
@@ -109,7 +109,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
     with pytest.raises(RunError, match="has no result: it is queued"):
         store.result(job.id)
     claim = taken(store)
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     found = result(status, [] if status == "infeasible" else None)
     claim.finish(found, [Artefact(name="versions.json", media_type="application/json", content=b"{}\0")])
     read = store.result(job.id)
@@ -118,7 +118,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
     ended = store.job(job.id)
     assert (ended.state, ended.reason, ended.worker, ended.lease_until) == (status, found.message, None, None)
     assert ended.finished is not None
-    assert ended.generations == (1 if status == "cancelled" else 0)
+    assert ended.records == (1 if status == "cancelled" else 0)
     assert store.artefacts(job.id) == ["versions.json"]
     assert store.artefact(job.id, "versions.json").content == b"{}\0"
     assert store.claim("second") is None
@@ -182,10 +182,10 @@ def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) ->
     job = add(store, most_attempts=2)
     for number in range(5):
         claim = taken(store)
-        claim.keep(generation(number))
+        claim.keep(search_record(number))
         claim.tell(progress(number))
         end_lease(address, job.id)
-    assert store.job(job.id).generations == 5
+    assert store.job(job.id).records == 5
 
 
 def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) -> None:
@@ -196,30 +196,30 @@ def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) ->
         claim.hand_back("the machine goes down")
     assert (store.job(job.id).state, store.job(job.id).reason) == ("queued", "the machine goes down")
     claim = taken(store)
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     claim.hand_back("the machine goes down")
-    assert same(taken(store).generations()[0], generation(1))
+    assert same(taken(store).records()[0], search_record(1))
 
 
 def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: Store, address: str) -> None:
     job = add(store)
     gone = taken(store)
-    gone.keep(generation(1))
+    gone.keep(search_record(1))
     gone.tell(progress(1))
     end_lease(address, job.id)
     cancelled = store.cancel(job.id)
-    assert (cancelled.state, cancelled.worker, cancelled.generations) == ("cancelled", None, 1)
+    assert (cancelled.state, cancelled.worker, cancelled.records) == ("cancelled", None, 1)
     with pytest.raises(LeaseLost):
         gone.tell(progress(2))
     store.resume(job.id)
-    assert same(taken(store, "second").generations()[0], generation(1))
+    assert same(taken(store, "second").records()[0], search_record(1))
 
 
 @pytest.mark.parametrize("hears", ["look", "renew", "tell"])
 def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     claim.tell(progress(1))
     assert not claim.cancel_asked
     assert store.cancel(job.id).cancel_asked
@@ -230,7 +230,7 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
     assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
     assert not store.resume(job.id).cancel_asked
     again = taken(store, "second")
-    assert same(again.generations()[0], generation(1))
+    assert same(again.records()[0], search_record(1))
     again.finish(result("done", ROWS[:1]))
     assert len(store.result(job.id).designs) == 1
     with pytest.raises(InputError, match="only a cancelled or failed job can go on; job 1 is done"):

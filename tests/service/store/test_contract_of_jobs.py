@@ -15,8 +15,8 @@ from tests.service.store.contents import (
     TABLES,
     add,
     everything,
-    generation,
     result,
+    search_record,
     taken,
 )
 
@@ -78,7 +78,7 @@ def test_a_waiting_job_is_cancelled_at_once(store: Store) -> None:
 def test_only_an_ended_job_is_deleted_and_nothing_of_it_stays(store: Store, address: str) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     with pytest.raises(InputError, match="job 1 is running; cancel it first"):
         store.delete(job.id)
     claim.finish(result("cancelled"), [Artefact(name="a", media_type="text/plain", content=b"")])

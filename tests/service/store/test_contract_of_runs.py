@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.errors import InputError, LeaseLost, NotFound, RunError
 from slidercrank.service.store import Artefact, Claim, Limits, Store
-from tests.service.store.contents import ROWS, TABLES, add, generation, progress, result, taken
+from tests.service.store.contents import ROWS, TABLES, add, progress, result, search_record, taken
 
 FILE = Artefact(name="job.toml", media_type="application/toml", content=b"name = 'Feeder'\n")
 
@@ -26,7 +26,7 @@ def test_a_job_begun_by_its_submitter_is_running_in_its_hands(store: Store) -> N
     assert (job.state, job.worker, job.attempts, job.most_attempts, job.fence) == ("running", "desk", 1, 1, 1)
     assert store.claim("other") is None
     assert store.artefact(job.id, "job.toml") == FILE
-    claim.keep(generation(1))
+    claim.keep(search_record(1))
     claim.tell(progress(1))
     claim.finish(result())
     assert store.job(job.id).state == "done"
@@ -55,10 +55,10 @@ def test_jobs_submitted_in_the_same_second_have_runs_of_their_own(store: Store) 
 
 def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
     first = begun(store)
-    first.keep(generation(1))
+    first.keep(search_record(1))
     first.finish(result("cancelled"))
     again = store.go_on(first.job.id, worker="desk", lease=60.0)
-    assert len(again.generations()) == 1
+    assert len(again.records()) == 1
     assert (again.job.state, again.job.fence) == ("running", 2)
     again.finish(result())
     with pytest.raises(LeaseLost):
@@ -69,12 +69,12 @@ def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
 
 def test_a_running_job_is_taken_from_its_worker_only_where_that_is_known_to_be_gone(store: Store) -> None:
     lost = begun(store)
-    lost.keep(generation(1))
+    lost.keep(search_record(1))
     lost.tell(progress(1))
     with pytest.raises(InputError, match="job 1 is running"):
         store.go_on(lost.job.id, worker="second", lease=60.0)
     again = store.go_on(lost.job.id, worker="second", lease=60.0, alone=True)
-    assert len(again.generations()) == 1
+    assert len(again.records()) == 1
     with pytest.raises(LeaseLost):
         lost.tell(progress(2))
 

@@ -19,7 +19,7 @@ from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.claiming import claim_next
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.schema import metadata
-from tests.service.store.contents import add, end_lease, everything, generation, progress, result
+from tests.service.store.contents import add, end_lease, everything, progress, result, search_record
 from tests.service.store.postgresql import Cluster
 
 
@@ -171,7 +171,7 @@ def test_a_write_that_fails_for_a_while_takes_effect_once(
     failing.after_commit = after_commit
     for number in (1, 2, 3):
         failing.left = 3 - after_commit
-        claim.keep(generation(number))
+        claim.keep(search_record(number))
         claim.tell(progress(number))
     failing.left = 1
     claim.finish(result())
@@ -244,7 +244,7 @@ def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
         claim = store.claim("first")
         assert claim is not None
         for number in (1, 2, 3):
-            claim.keep(generation(number))
+            claim.keep(search_record(number))
             claim.tell(progress(number))
             if number < 3:
                 server.stop()

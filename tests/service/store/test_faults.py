@@ -16,7 +16,7 @@ from multiprocessing.process import BaseProcess
 import pytest
 
 from slidercrank.service.store import Store
-from tests.service.store.contents import add, generation
+from tests.service.store.contents import add, search_record
 from tests.service.store.made_up_worker import ROUNDS, found, main
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the test sends signals of POSIX systems")
@@ -67,11 +67,11 @@ def test_killed_and_paused_workers_lose_and_double_nothing(store: Store, start: 
     time.sleep(2.0 * LEASE)
     send(workers[1], signal.SIGCONT)
     wait(lambda: store.counts() == {"done": JOBS})
-    expected = found([generation(number) for number in range(ROUNDS)])
+    expected = found([search_record(number) for number in range(ROUNDS)])
     for job in jobs:
         assert store.result(job).designs == expected
         events = store.events(job)
-        # What was committed is never done again: a round and its generation are there together or not at all.
+        # What was committed is never done again: a round and its record are there together or not at all.
         assert [event.data["round"] for event in events if event.kind == "progress"] == list(range(1, ROUNDS + 1))
         states = [event.data["state"] for event in events if event.kind == "state"]
         assert (states[0], states[-1], states.count("done")) == ("queued", "done", 1)

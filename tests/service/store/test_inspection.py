@@ -13,7 +13,7 @@ from slidercrank.service.store.database import Database
 from slidercrank.service.store.inspection import clock_ahead, damages, server_version
 from slidercrank.service.store.schema import designs, events, jobs
 from slidercrank.service.store.schema_version import versions
-from tests.service.store.contents import add, generation, progress, result, taken
+from tests.service.store.contents import add, progress, result, search_record, taken
 
 UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
 """The servers of the tests run so."""
@@ -35,11 +35,11 @@ def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
         add(store)
     for status in ("done", "cancelled", "infeasible"):
         claim = taken(store)
-        claim.keep(generation(0))
+        claim.keep(search_record(0))
         claim.tell(progress(1))
         claim.finish(result(status, rows=[] if status == "infeasible" else None))
     claim = taken(store)
-    claim.keep(generation(0))
+    claim.keep(search_record(0))
     claim.tell(progress(1))
     return address
 
@@ -53,12 +53,12 @@ def test_rows_that_are_missing_or_too_many_are_named(used: str) -> None:
     with database.writing() as connection:
         connection.execute(delete(designs).where(designs.c.job == 1, designs.c.number == 1))
         connection.execute(insert(events).values(job=2, number=99, at=0.0, kind="message", data="{}"))
-        connection.execute(update(jobs).where(jobs.c.id == 4).values(generations=3))
+        connection.execute(update(jobs).where(jobs.c.id == 4).values(records=3))
     database.close()
     assert found(used) == [
         "job 1 says that it has 2 designs, 1 are there",
         "job 2 says that it has 4 events, 5 are there",
-        "job 4 says that it has 3 generations, 1 are there",
+        "job 4 says that it has 3 records, 1 are there",
     ]
 
 

@@ -37,7 +37,7 @@ def upgrade() -> None:
         sa.Column("lease_until", sa.Double),
         sa.Column("fence", sa.Integer, nullable=False, server_default="0"),
         sa.Column("writes", sa.Integer, nullable=False, server_default="0"),
-        sa.Column("generations", sa.Integer, nullable=False, server_default="0"),
+        sa.Column("records", sa.Integer, nullable=False, server_default="0"),
         sa.Column("events", sa.Integer, nullable=False, server_default="0"),
         sa.Column("progress", sa.Text),
         sa.Column("summary", sa.Text),
@@ -56,7 +56,7 @@ def upgrade() -> None:
         sa.Column("data", sa.Text, nullable=False),
     )
     _of_a_job(
-        "generations",
+        "records",
         sa.Column("number", sa.Integer, nullable=False),
         sa.Column("content", sa.LargeBinary, nullable=False),
     )
