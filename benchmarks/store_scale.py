@@ -13,6 +13,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -113,7 +114,7 @@ def _requests(
     ):
         large = path.startswith(f"jobs/{runs}/")
         shown = path.replace(f"{runs}/", "LARGE/") if large else path.replace("{0}", "N")
-        yield f"GET {shown}", lambda path=path: get(path)
+        yield f"GET {shown}", partial(get, path)
 
 
 def _timed(what: str, ask: Callable[[], object], repeats: int) -> Row:
