@@ -6,7 +6,6 @@ Runs, designs, events and files are made up; their columns, widths and lengths a
 from __future__ import annotations
 
 import asyncio
-import functools
 import json
 import random
 import sys
@@ -14,6 +13,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -114,7 +114,7 @@ def _requests(
     ):
         large = path.startswith(f"jobs/{runs}/")
         shown = path.replace(f"{runs}/", "LARGE/") if large else path.replace("{0}", "N")
-        yield f"GET {shown}", functools.partial(get, path)
+        yield f"GET {shown}", partial(get, path)
 
 
 def _timed(what: str, ask: Callable[[], object], repeats: int) -> Row:
