@@ -24,7 +24,7 @@ from slidercrank.optimise.front import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.app import create_app
-from slidercrank.service.result import Result, json_text, result_of
+from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.packing import cells_of, summary_of, text_of
 from slidercrank.service.store.schema import jobs

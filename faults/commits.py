@@ -14,7 +14,7 @@ from sqlalchemy.exc import OperationalError
 from slidercrank.model.errors import StoreError
 from slidercrank.service.store import Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import work
+from slidercrank.service.workers.worker import work
 
 from .audit import keep_audit
 from .found import undisturbed

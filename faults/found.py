@@ -13,7 +13,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, jobs
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import work
+from slidercrank.service.workers.worker import work
 
 from .jobs import KINDS, Found, tables
 

@@ -14,7 +14,7 @@ from typing import Any
 from slidercrank.model.errors import LeaseLost
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.store.database import Database, Unavailable
-from slidercrank.service.worker import work
+from slidercrank.service.workers.worker import work
 
 from .journal import Journal
 from .lifeline import die_with_parent

@@ -18,24 +18,24 @@ import typer
 from typer.core import TyperGroup
 
 from ..model.errors import SlidercrankError
-from .allocate_command import allocate
-from .analyse_command import analyse
-from .balance_command import balance
-from .cases_command import cases
-from .certify_command import certify
-from .compare_command import compare
-from .doctor_command import doctor
-from .job_commands import check, schema
-from .like_command import like
-from .optimise_command import optimise
-from .queue_commands import cancel, delete, jobs, resume
-from .run_commands import export, front
-from .screen import give, say
-from .sections_command import sections
-from .serve_command import serve
-from .submit_command import submit, watch
-from .sweep_command import sweep
-from .worker_command import worker
+from .commands.allocate import allocate
+from .commands.analyse import analyse
+from .commands.balance import balance
+from .commands.cases import cases
+from .commands.certify import certify
+from .commands.compare import compare
+from .commands.doctor import doctor
+from .commands.job import check, schema
+from .commands.like import like
+from .commands.optimise import optimise
+from .commands.queue import cancel, delete, jobs, resume
+from .commands.runs import export, front
+from .commands.screen import give, say
+from .commands.sections import sections
+from .commands.serve import serve
+from .commands.submit import submit, watch
+from .commands.sweep import sweep
+from .commands.worker import worker
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"

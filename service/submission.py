@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from .allowed_quantities import require_allowed
-from .result import json_text
+from .runs.result import json_text
 from .store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
 
 

@@ -71,7 +71,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     from rich import box
     from rich.table import Table
 
-    from ..tables import print_table
+    from ..commands.tables import print_table
 
     console.print("Approximate models, inertia alone, at constant speed", style="bold", soft_wrap=True)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, pad_edge=False)

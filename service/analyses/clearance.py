@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from ..screen import error_console
+from ..commands.screen import error_console
 
 if TYPE_CHECKING:
     from rich.console import Console

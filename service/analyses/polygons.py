@@ -43,7 +43,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     from rich import box
     from rich.table import Table
 
-    from ..tables import print_table
+    from ..commands.tables import print_table
 
     title = f"Kinematic polygons at {numbers['crank_angle_deg']:.6g} deg, {numbers['speed_rad_s']:.6g} rad/s"
     console.print(title, style="bold", soft_wrap=True)

@@ -29,7 +29,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     import numpy as np
 
     from ...objectives.sensitivity import sensitivity
-    from ..result import finite, rows_of
+    from ..runs.result import finite, rows_of
 
     table = sensitivity(mechanism, np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)]))
     return {"quantities": finite(rows_of(table.to_dict("list")))}
@@ -39,7 +39,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people: change of each quantity for one millimetre more, and in percent per percent."""
     from rich.table import Table
 
-    from ..tables import print_table
+    from ..commands.tables import print_table
 
     console.print("Change of each quantity for 1 mm more of a dimension (and in % for 1 % more)", style="bold")
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))

@@ -104,7 +104,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
     from rich.table import Table
 
-    from ..tables import print_table
+    from ..commands.tables import print_table
 
     exact, angle = numbers["exact_worst_case_mm"], numbers["exact_worst_case_angle_deg"]
     console.print("Position error from tolerances, greatest over the counted part of the cycle", style="bold")

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..cycle_table import LEAST, MOST, cycle_table
-from ..design_analysis import analysis_of, numbers_of
-from ..options import length_option, speed_option
-from ..result import Row, finite
-from ..topics import ALL, TOPICS, chosen_topics
+from ..commands.options import length_option, speed_option
+from ..designs.cycle_table import LEAST, MOST, cycle_table
+from ..designs.design_analysis import analysis_of, numbers_of
+from ..designs.topics import ALL, TOPICS, chosen_topics
+from ..runs.result import Row, finite
 from .fronts import ColumnModel
 from .given_jobs import given_problem
 from .problems import problem_responses

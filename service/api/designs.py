@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from ..choosing import chosen_rows
-from ..columns import find_columns
-from ..result import finite
+from ..designs.choosing import chosen_rows
+from ..designs.columns import find_columns
+from ..runs.result import finite
 from .fronts import Cells, ColumnModel, Where, column_model
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep

@@ -7,8 +7,8 @@ from importlib.util import find_spec
 
 from fastapi import APIRouter, HTTPException, Response
 
-from ..result import csv_text
-from ..run_folder import slug
+from ..runs.result import csv_text
+from ..runs.run_folder import slug
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 

@@ -8,10 +8,10 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, BeforeValidator, Field
 
 from ...model.errors import InputError, NotFound
-from ..choosing import chosen_rows, none_meets
-from ..columns import Column, find_column
-from ..picking_options import picked_row
-from ..result import finite
+from ..designs.choosing import chosen_rows, none_meets
+from ..designs.columns import Column, find_column
+from ..designs.picking_options import picked_row
+from ..runs.result import finite
 from .models import JobNumber
 from .problems import problem_responses
 from .state import StoreDep

@@ -42,6 +42,6 @@ def show_schema() -> dict[str, Any]:
 @router.post("/check", responses=problem_responses(415))
 def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
     """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
-    from ..summary import summarise
+    from ..commands.summary import summarise
 
     return Understood(**summarise(given_problem(asked.tables, settings.allowed_quantities)))

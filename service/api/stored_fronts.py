@@ -13,10 +13,10 @@ from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
 from ..allowed_quantities import require_allowed
-from ..columns import Column, find_column
-from ..result import Result, Row
+from ..designs.columns import Column, find_column
+from ..designs.stored_designs import StoredDesign, design_of, front_of
+from ..runs.result import Result, Row
 from ..store import Job, Store
-from ..stored_designs import StoredDesign, design_of, front_of
 from .models import JobNumber
 
 if TYPE_CHECKING:

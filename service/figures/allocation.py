@@ -15,7 +15,7 @@ from ...model.tolerance.first_order import FirstOrder, first_order
 from ...model.tolerance.sources import SOURCES, counted_angles
 from ...optimise.convex.costs import Costs
 from ...optimise.convex.tolerance_allocation import Allocation
-from ..allocate_command import costs_before
+from ..commands.allocate import costs_before
 from .style import BLUE, INK, MUTED, SHADE, SMALL, TEXT, TITLE, VERMILION, dress, new_figure, place, save, shown, write
 
 Array = NDArray[np.float64]

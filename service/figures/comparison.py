@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ..result import Wanted
+from ..runs.result import Wanted
 from .scatter import MOST
 from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, unit_text, with_unit, write
 from .triangle import triangle

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ...optimise.front import ParetoFront
 from ...optimise.robust import robust_quantities
 from ...optimise.robust_cost import robust_cost
-from ..result import wanted_of
+from ..runs.result import wanted_of
 from .comparison import Drawn, comparison_matrix
 from .style import unit_text
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import ColumnElement, Connection, Double, and_, case, cast, delete, insert, literal, select, update
 
 from ...model.errors import LeaseLost
-from ..result import Result, finite
+from ..runs.result import Result, finite
 from .clock import now
 from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import RunError
-from ..result import Cell, Result, Row, finite
+from ..runs.result import Cell, Result, Row, finite
 
 if TYPE_CHECKING:
     from ...optimise.ledger import Record

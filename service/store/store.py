@@ -10,9 +10,9 @@ from typing import Any
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from ...model.errors import InputError, NotFound
-from ..result import Result
-from ..run_folder import run_name
-from ..stored_runs import result_from
+from ..runs.result import Result
+from ..runs.run_folder import run_name
+from ..runs.stored_runs import result_from
 from .claim import Claim
 from .claiming import any_claimable, claim_next, running
 from .clock import now

@@ -18,7 +18,7 @@ from slidercrank.optimise.elimination import sheets
 from slidercrank.optimise.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.problem import Constraint, Objective, Problem
-from slidercrank.service.summary import summarise
+from slidercrank.service.commands.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
 TABLE = {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}

@@ -4,8 +4,8 @@
     stuck    one round, then it hears nothing any more
     greedy   one round, then it takes 300 MB and hears nothing any more
 
-Run as `python -m tests.service.made_up_process` in place of `slidercrank.service.worker_process`. It imports little, so
-that it starts within a second.
+Run as `python -m tests.service.made_up_process` in place of `slidercrank.service.workers.worker_process`. It imports
+little, so that it starts within a second.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from slidercrank.optimise.ledger import Identity, Record
-from slidercrank.service import worker
-from slidercrank.service.job_limits import Budget
-from slidercrank.service.pulse import Pulse, Stop
-from slidercrank.service.result import Result, Wanted
+from slidercrank.service.runs.result import Result, Wanted
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.worker_process import main
+from slidercrank.service.workers import worker
+from slidercrank.service.workers.job_limits import Budget
+from slidercrank.service.workers.pulse import Pulse, Stop
+from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20
 _WANTED = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")

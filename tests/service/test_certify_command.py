@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.service.result import rows_from_csv
+from slidercrank.service.runs.result import rows_from_csv
 from tests.service import fronts
 from tests.service.conftest import Command
 

@@ -22,12 +22,12 @@ from slidercrank.service.analyses import static_forces as static_analysis
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
+from slidercrank.service.commands.screen import console
 from slidercrank.service.figures.approximations import approximations_sheet, draw_approximations
 from slidercrank.service.figures.panels import Line, Panel, Sheet, draw_sheet
 from slidercrank.service.figures.polygons import both_branches, draw_polygons, polygon_sheet
 from slidercrank.service.figures.static_forces import draw_static_forces, static_forces_sheet
-from slidercrank.service.result import json_text
-from slidercrank.service.screen import console
+from slidercrank.service.runs.result import json_text
 from tests.model.virtual_work import path
 from tests.service import fronts
 from tests.service.test_figures import overlaps

@@ -14,8 +14,8 @@ from matplotlib.colors import to_rgb
 from slidercrank.optimise.comparison import compare
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.service.figures.comparison import GREATEST, Drawn, comparison_matrix
-from slidercrank.service.result import result_of
-from slidercrank.service.run_folder import RunFolder
+from slidercrank.service.runs.result import result_of
+from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
 from tests.service.conftest import Command
 

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.conditions import parse_condition, select
-from slidercrank.service.result import Row
+from slidercrank.service.designs.conditions import parse_condition, select
+from slidercrank.service.runs.result import Row
 
 ROWS: list[Row] = [
     {

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import create_engine
 
-from slidercrank.service.server import listen
+from slidercrank.service.api.server import listen
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.conftest import Command

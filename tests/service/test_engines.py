@@ -8,7 +8,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.engine.cluster import Cluster
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.engine.serial import Serial
-from slidercrank.service.engines import EngineOptions, engine_of, engine_options
+from slidercrank.service.workers.engines import EngineOptions, engine_of, engine_options
 
 
 def test_the_options_name_the_engine() -> None:

@@ -11,9 +11,9 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from slidercrank.service.logs import about, set_up_logs
+from slidercrank.service.workers.logs import about, set_up_logs
 
-_log = logging.getLogger("slidercrank.service.worker")
+_log = logging.getLogger("slidercrank.service.workers.worker")
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def test_a_json_log_has_an_object_a_line_with_worker_and_job(stream: io.StringIO
     _log.warning("two\nlines")
     first, second = (json.loads(line) for line in stream.getvalue().splitlines())
     assert abs(datetime.fromisoformat(first.pop("time")) - datetime.now(UTC)) < timedelta(minutes=1)
-    logger = "slidercrank.service.worker"
+    logger = "slidercrank.service.workers.worker"
     assert first == {"level": "INFO", "logger": logger, "message": "claimed it", "worker": "one", "job": 7}
     del second["time"]
     assert second == {"level": "WARNING", "logger": logger, "message": "two\nlines"}

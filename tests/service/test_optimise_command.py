@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.service.stored_runs import read_run
+from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS, KEYS

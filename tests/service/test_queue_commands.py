@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from slidercrank.optimise.front import Progress
+from slidercrank.service.commands.submit import events_until_end
 from slidercrank.service.job_record import job_record
 from slidercrank.service.store import Limits, Store
-from slidercrank.service.submit_command import events_until_end
-from slidercrank.service.worker import work
+from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.store.contents import result
@@ -253,7 +253,7 @@ def test_ctrl_c_leaves_watching_and_not_the_job(
         raise KeyboardInterrupt
 
     command("submit", job)
-    monkeypatch.setattr("slidercrank.service.submit_command.time.sleep", interrupt)
+    monkeypatch.setattr("slidercrank.service.commands.submit.time.sleep", interrupt)
     done = command("watch", "latest")
     assert done.exit_code == 130
     assert "job 1 is left as it is; stop it with: slidercrank cancel 1\n" in done.stderr
@@ -276,6 +276,6 @@ def test_watching_waits_for_a_database_that_is_away(
         return there(*given, **more)
 
     monkeypatch.setattr(store, "events", away)
-    monkeypatch.setattr("slidercrank.service.submit_command._AWAY", 0.0)
+    monkeypatch.setattr("slidercrank.service.commands.submit._AWAY", 0.0)
     assert [event.number for event in events_until_end(store, 1)] == [1, 2]
     assert capsys.readouterr().err == "slidercrank: the server restarts; trying again\n"

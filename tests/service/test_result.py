@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from slidercrank.service.result import Row, csv_text, finite, json_text, result_of, rows_from_csv
+from slidercrank.service.runs.result import Row, csv_text, finite, json_text, result_of, rows_from_csv
 from tests.service import fronts
 
 DESIGN_KEYS = [

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from slidercrank.optimise.picking import Priority
-from slidercrank.service.result import Result, result_of, rows_from_csv
-from slidercrank.service.run_folder import RunFolder
+from slidercrank.service.runs.result import Result, result_of, rows_from_csv
+from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
 from tests.service.conftest import Command
 

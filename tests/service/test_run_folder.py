@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import InputError, RunError
-from slidercrank.service import run_folder
-from slidercrank.service.result import Result, result_of
-from slidercrank.service.run_folder import MARK, RunFolder, runs_place, slug, write_file
-from slidercrank.service.stored_runs import read_run
+from slidercrank.service.runs import run_folder
+from slidercrank.service.runs.result import Result, result_of
+from slidercrank.service.runs.run_folder import MARK, RunFolder, runs_place, slug, write_file
+from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 
 

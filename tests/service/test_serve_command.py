@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.server import is_loopback, listen, names_of, url_of
+from slidercrank.service.api.server import is_loopback, listen, names_of, url_of
 from slidercrank.service.store import Store
 from tests.service.conftest import Command
 

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError, RunError
-from slidercrank.service.finding_runs import find_run
-from slidercrank.service.result import result_of
-from slidercrank.service.run_folder import MARK
-from slidercrank.service.stored_runs import read_run
+from slidercrank.service.runs.finding_runs import find_run
+from slidercrank.service.runs.result import result_of
+from slidercrank.service.runs.run_folder import MARK
+from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 
 NAMES = ("20260101-100000-sieve", "20260101-100000-sieve-2", "20260102-090000-feeder", "20260102-090001-feeder")
@@ -84,7 +84,7 @@ def test_there_may_be_no_runs_yet(tmp_path: Path) -> None:
 @pytest.fixture
 def stored(tmp_path: Path) -> Path:
     """Return a run as files."""
-    from slidercrank.service.run_folder import RunFolder
+    from slidercrank.service.runs.run_folder import RunFolder
 
     with RunFolder(tmp_path / "stored", "x") as run:
         run.keep_result(result_of(fronts.front(designs=4), str(run.path)), {})

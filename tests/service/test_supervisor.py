@@ -15,12 +15,12 @@ from pathlib import Path
 import psutil
 import pytest
 
-from slidercrank.service.engines import EngineOptions
-from slidercrank.service.pulse import EXHAUSTED
 from slidercrank.service.store import Job, Limits, Store
-from slidercrank.service.supervisor import WORKER, Supervisor, reason_of
-from slidercrank.service.worker import Terms
-from slidercrank.service.worker_process import REFUSED, WorkerSettings
+from slidercrank.service.workers.engines import EngineOptions
+from slidercrank.service.workers.pulse import EXHAUSTED
+from slidercrank.service.workers.supervisor import WORKER, Supervisor, reason_of
+from slidercrank.service.workers.worker import Terms
+from slidercrank.service.workers.worker_process import REFUSED, WorkerSettings
 from tests.service import made_up_process
 from tests.service.made_up_process import ROUNDS
 
@@ -107,7 +107,7 @@ def test_a_worker_that_cannot_stop_is_killed(
     store: Store, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     deaf = (sys.executable, "-c", "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(60)")
-    monkeypatch.setattr("slidercrank.service.supervisor.MARGIN", 0.5)
+    monkeypatch.setattr("slidercrank.service.workers.supervisor.MARGIN", 0.5)
     with Supervisor(settings(store, grace=0.0), 1, program=deaf) as supervisor:
         until(supervisor.processes, "process")
         (process,) = supervisor.processes()
@@ -135,9 +135,9 @@ def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
     job = put_in(store, "stuck")
     script = (
         "import sys, time\n"
-        "from slidercrank.service.supervisor import Supervisor\n"
-        "from slidercrank.service.worker import Terms\n"
-        "from slidercrank.service.worker_process import WorkerSettings\n"
+        "from slidercrank.service.workers.supervisor import Supervisor\n"
+        "from slidercrank.service.workers.worker import Terms\n"
+        "from slidercrank.service.workers.worker_process import WorkerSettings\n"
         f"settings = WorkerSettings(address={store.name!r}, lease=60.0, terms=Terms(grace=0.5))\n"
         f"with Supervisor(settings, 1, program={MADE_UP!r}) as supervisor:\n"
         "    while not supervisor.processes(): time.sleep(0.02)\n"
@@ -156,8 +156,8 @@ def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
 def test_a_worker_that_ends_at_once_is_started_again_ever_later(
     store: Store, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("slidercrank.service.supervisor._FIRST", 0.1)
-    monkeypatch.setattr("slidercrank.service.supervisor._LONGEST", 0.3)
+    monkeypatch.setattr("slidercrank.service.workers.supervisor._FIRST", 0.1)
+    monkeypatch.setattr("slidercrank.service.workers.supervisor._LONGEST", 0.3)
     broken = (sys.executable, "-c", "raise SystemExit(7)")
     with Supervisor(settings(store), 1, program=broken):
         until(lambda: sum("ended" in message for message in caplog.messages) >= 4, "fourth end")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.sweep import Axis, sweep
+from slidercrank.service.commands.sweep import parse_axis
 from slidercrank.service.figures.sweep import sweep_figure, sweep_grid
-from slidercrank.service.sweep_command import parse_axis
 from tests.model.cases import SMOOTH
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps

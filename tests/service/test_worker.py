@@ -14,10 +14,10 @@ import pytest
 from slidercrank.model.errors import ForeignRecords, InputError, JobError, StoreError
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
-from slidercrank.service.pulse import Pulse
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import solve_claimed, work, worker_name
+from slidercrank.service.workers.pulse import Pulse
+from slidercrank.service.workers.worker import solve_claimed, work, worker_name
 from tests.service import fronts
 from tests.service.made_up_search import Search, found, search, until
 from tests.service.store.contents import end_lease, progress, search_record
@@ -83,7 +83,7 @@ def test_wrong_input_is_not_tried_again(store: Store, searches: Any) -> None:
 def test_an_error_is_tried_again_from_where_the_job_was(
     store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+    monkeypatch.setattr("slidercrank.service.workers.worker._DELAY", 0.0)
     resumed: list[int] = []
 
     def stumble(problem: Problem, *, resume: Any, progress: Any, **more: Any) -> ParetoFront:
@@ -107,7 +107,7 @@ def test_an_error_is_tried_again_from_where_the_job_was(
 
 
 def test_an_error_that_stays_sets_the_job_aside(store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+    monkeypatch.setattr("slidercrank.service.workers.worker._DELAY", 0.0)
 
     def fall(*_: Any, **_more: Any) -> ParetoFront:
         raise RuntimeError("no way")
@@ -121,7 +121,7 @@ def test_an_error_that_stays_sets_the_job_aside(store: Store, searches: Any, mon
 def test_a_job_with_records_of_another_release_begins_anew(
     store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("slidercrank.service.worker._DELAY", 0.0)
+    monkeypatch.setattr("slidercrank.service.workers.worker._DELAY", 0.0)
 
     def first(_: Problem, *, keep: Any, progress: Any, **_more: Any) -> ParetoFront:
         keep(search_record(0))
@@ -260,7 +260,7 @@ def test_a_paused_search_learns_between_its_writes_that_its_lease_was_lost(
 def test_a_worker_waits_for_a_database_that_is_away_and_tells_it_once(
     store: Store, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("slidercrank.service.worker._AWAY", 0.0)
+    monkeypatch.setattr("slidercrank.service.workers.worker._AWAY", 0.0)
     asked: list[bool] = []
 
     def away(*_: Any, **_more: Any) -> None:

@@ -11,10 +11,10 @@ import pytest
 
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Problem
-from slidercrank.service.engines import EngineOptions
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.submission import submit
-from slidercrank.service.worker import Terms, work
+from slidercrank.service.workers.engines import EngineOptions
+from slidercrank.service.workers.worker import Terms, work
 from tests.service import fronts
 from tests.service.made_up_search import Search, found, search, until
 from tests.service.store.contents import progress as progress_at

@@ -17,7 +17,7 @@ from slidercrank.model.errors import InputError, JobError, NotFound, RunError, S
 from slidercrank.service.api import events
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.client import Client
-from slidercrank.service.client_connection import Connection
+from slidercrank.service.client.connection import Connection
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, served

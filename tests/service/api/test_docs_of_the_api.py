@@ -14,7 +14,7 @@ import pytest
 from slidercrank.service.api.app import create_app
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
-from slidercrank.service.worker import work
+from slidercrank.service.workers.worker import work
 from tests.service.api.serving import TOKEN, serving
 
 BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -23,7 +23,7 @@ from slidercrank.service.api import exports, turns
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
-from slidercrank.service.result import csv_text, finite, rows_from_csv
+from slidercrank.service.runs.result import csv_text, finite, rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with, served

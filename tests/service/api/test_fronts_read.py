@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.result import finite
+from slidercrank.service.runs.result import finite
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with

@@ -11,7 +11,7 @@ from sqlalchemy import select, update
 
 from slidercrank.optimise.front import Progress
 from slidercrank.optimise.ledger import Identity, Record
-from slidercrank.service.result import Result, Row, Wanted
+from slidercrank.service.runs.result import Result, Row, Wanted
 from slidercrank.service.store import Claim, Job, Store
 from slidercrank.service.store.clock import now
 from slidercrank.service.store.database import Database

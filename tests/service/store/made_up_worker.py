@@ -11,9 +11,9 @@ import numpy as np
 
 from slidercrank.model.errors import LeaseLost, StoreError
 from slidercrank.optimise.ledger import Record
-from slidercrank.service.result import Row
+from slidercrank.service.runs.result import Row
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.worker import worker_name
+from slidercrank.service.workers.worker import worker_name
 from tests.service.store.contents import progress, result, search_record
 
 ROUNDS = 12

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from slidercrank.model.errors import InputError, LeaseLost, RunError
-from slidercrank.service.result import csv_text
+from slidercrank.service.runs.result import csv_text
 from slidercrank.service.store import Artefact, Claim, Store
 from tests.service.store.contents import (
     ROWS,

@@ -1,0 +1,88 @@
+"""The web server of the API: where it listens, under which names, and until when."""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+import socket
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+_WAITING = 2048
+"""Connections that may wait to be accepted."""
+_FAREWELL = 2
+"""Seconds that requests and streams of events have to end once the server stops; clients come back to the next."""
+_ANY = ("0.0.0.0", "::")
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches an address."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def names_of(host: str) -> tuple[str, ...]:
+    """Return the names by which a service that listens on an address is called."""
+    from .settings import LOOPBACK
+
+    own = socket.gethostname() if host in _ANY else host
+    return tuple(dict.fromkeys((*LOOPBACK, _bracketed(own))))
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Return a socket that listens; connections wait from now on. Raises `InputError` where that is not possible."""
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+        return socket.create_server(address[:2], family=family, backlog=_WAITING)
+    except (OSError, UnicodeError) as error:
+        raise InputError(
+            f"the service needs an address of this machine and a free port; {host} port {port} gave: {_why(error)}; "
+            "choose another one with --port (0 takes any that is free) or --host"
+        ) from None
+
+
+def _why(error: OSError | UnicodeError) -> str:
+    if isinstance(error, UnicodeError):
+        return str(error)
+    known = error.errno is not None and error.errno > 0  # those of a name that is not found are negative
+    return os.strerror(error.errno or 0) if known else error.strerror or str(error)
+
+
+def url_of(host: str, listening: socket.socket, token: str | None) -> str:
+    """Return the address of a service for a browser, with its token if it is given."""
+    name = socket.gethostname() if host in _ANY else host
+    address = f"http://{_bracketed(name)}:{listening.getsockname()[1]}/"
+    return address if token is None else f"{address}?token={token}"
+
+
+def run_server(app: FastAPI, listening: socket.socket) -> None:
+    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before."""
+    import uvicorn
+
+    config = uvicorn.Config(
+        app,
+        log_config=None,
+        access_log=False,  # the address that carries the token would be in it
+        server_header=False,
+        ws="none",
+        timeout_graceful_shutdown=_FAREWELL,
+    )
+
+    class Server(uvicorn.Server):
+        """Ends the streams of events first: they would wait until they are cut."""
+
+        async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+            app.state.feed.close()
+            await super().shutdown(sockets)
+
+    Server(config).run(sockets=[listening])
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

@@ -1,0 +1,286 @@
+"""A service from Python: jobs submitted and watched, fronts read.
+
+with Client("http://127.0.0.1:8765", token) as client:
+    job = client.submit("feeder.toml")
+    for event in client.events(job["id"]):
+        print(event["kind"], event["data"])
+    print(client.designs(job["id"], where=["transmission_angle >= 45 deg"], sort="peak_torque"))
+"""
+
+from __future__ import annotations
+
+import time
+import uuid
+from collections.abc import Collection, Iterator, Mapping
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError, ServiceError
+from ..runs.result import Result, Row
+from ..runs.run_folder import write_bytes
+from ..runs.stored_runs import result_from
+from .connection import Connection
+from .events import followed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+JobSource = str | PathLike[str] | Mapping[str, Any]
+"""A job: the path of its file, the text of one in TOML, or its tables. A text has more than one line."""
+Record = dict[str, Any]
+
+_PAGE = 1000
+_ENDED = ("done", "infeasible", "cancelled", "failed")
+_PAUSES = (0.1, 1.0)  # s between two looks at a job that is waited for: at first, at most
+
+
+class Client:
+    """A service. Threads may share it. Also a context manager, which closes it.
+
+    Every method raises `NotFound` for a job, design or figure that is not there, `InputError` for what is wrong in what
+    was asked, `RunError` for what a job cannot do or give as it stands, and `ServiceError` where the service refuses or
+    does not answer, all in the words of the service. What is safe to send twice is tried again while the service does
+    not answer.
+    """
+
+    def __init__(self, url: str, token: str | None = None, *, patience: float = 30.0) -> None:
+        """Prepare; nothing is sent yet.
+
+        url: where the service is, also as it prints it, with the token. patience: for how long, s, to try again.
+        """
+        self._connection = Connection(url, token, patience)
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._connection.close()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def submit(
+        self,
+        job: JobSource,
+        *,
+        priority: int = 0,
+        limits: Mapping[str, float] | None = None,
+        key: str | None = None,
+    ) -> Record:
+        """Queue a job and return it.
+
+        limits: seconds, evaluations, memory_bytes. key: of this submission; with one that was used before, nothing is
+        queued and the job of that time is returned. Without one it is made up, so that tries after a lost answer do not
+        make a second job. Raises `InputError` for a job that is not valid.
+        """
+        body = {"job": tables_of(job), "priority": priority, "limits": dict(limits or {})}
+        return self._post("jobs", body, again=True, headers={"Idempotency-Key": key or uuid.uuid4().hex})
+
+    def clone(
+        self,
+        number: int,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        priority: int | None = None,
+        limits: Mapping[str, float] | None = None,
+        key: str | None = None,
+    ) -> Record:
+        """Queue a copy of a job and return it. changes: to its tables, as a merge patch; None takes a key away."""
+        body: Record = {"changes": dict(changes or {})}
+        body |= {} if priority is None else {"priority": priority}
+        body |= {} if limits is None else {"limits": dict(limits)}
+        headers = {"Idempotency-Key": key or uuid.uuid4().hex}
+        return self._post(f"jobs/{number}/clone", body, again=True, headers=headers)
+
+    def jobs(
+        self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
+    ) -> list[Record]:
+        """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this."""
+        query: Record = {"state": list(states), "name": name, "limit": limit}
+        found: list[Record] = self._get("jobs", query if before is None else {**query, "before": before})["jobs"]
+        return found
+
+    def job(self, number: int) -> Record:
+        """Return where a job stands."""
+        return self._get(f"jobs/{number}")
+
+    def tables(self, number: int) -> Record:
+        """Return the tables of a job's file."""
+        return self._get(f"jobs/{number}/job")
+
+    def cancel(self, number: int) -> Record:
+        """Cancel a job and return it; it keeps what it found, and can go on."""
+        return self._post(f"jobs/{number}/cancel", again=True)
+
+    def resume(self, number: int) -> Record:
+        """Queue a cancelled or failed job again, to go on from where it was, and return it."""
+        return self._post(f"jobs/{number}/resume", again=False)
+
+    def delete(self, number: int) -> None:
+        """Delete a job that has ended, and everything of it."""
+        self._connection.request("DELETE", f"jobs/{number}", again=True)
+
+    def events(self, number: int, *, after: int = 0) -> Iterator[Record]:
+        """Yield what happens to a job, as it happens, until it has ended: number, at, kind, data of each event.
+
+        after: only those after the event of this number. When the connection breaks, it goes on with the next event.
+        """
+        return followed(self._connection, number, after)
+
+    def wait(self, number: int, *, seconds: float | None = None) -> Record:
+        """Wait until a job has ended, and return it. Raises `ServiceError` after so many seconds."""
+        end = None if seconds is None else time.monotonic() + seconds
+        pause, most = _PAUSES
+        while (job := self.job(number))["state"] not in _ENDED:
+            if end is not None and time.monotonic() + pause > end:
+                raise ServiceError(
+                    f"job {number} was to end within {seconds:g} s; it is {job['state']}; wait longer, or cancel it"
+                )
+            time.sleep(pause)
+            pause = min(most, 1.5 * pause)
+        return job
+
+    def front(self, number: int) -> Result:
+        """Return what a job found, with all designs; what is infinite or not defined is None."""
+        record = self._get(f"jobs/{number}/export.json")
+        rows: list[Row] = record["designs"]
+        return result_from(record, rows, str(record["run"]))
+
+    def designs(
+        self,
+        number: int,
+        *,
+        where: Collection[str] = (),
+        sort: str | None = None,
+        reverse: bool = False,
+        columns: str | None = None,
+    ) -> pd.DataFrame:
+        """Return designs of a front as a table, by their numbers in it.
+
+        where: conditions such as "transmission_angle >= 45 deg". sort: a quantity or column, best or smallest first.
+        columns: names, separated by commas; all if None.
+        """
+        import pandas as pd
+
+        query: Record = {"where": list(where), "reverse": reverse, "limit": _PAGE, "offset": 0}
+        query |= {name: value for name, value in (("sort", sort), ("columns", columns)) if value is not None}
+        rows: list[Row] = []
+        numbers: list[int] = []
+        while True:
+            page = self._get(f"jobs/{number}/designs", {**query, "offset": len(rows)})
+            rows += page["designs"]
+            numbers += page["numbers"]
+            if not page["designs"] or len(rows) >= page["chosen"]:
+                break
+        keys = [column["key"] for column in page["columns"]]
+        return pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
+
+    def design(self, number: int, design: int) -> Row:
+        """Return a design by its number in the front, counted from 1."""
+        row: Row = self._get(f"jobs/{number}/designs/{design}")["design"]
+        return row
+
+    def pick(
+        self,
+        number: int,
+        *,
+        knee: bool = False,
+        topsis: str | None = None,
+        lexicographic: str | None = None,
+        where: Collection[str] = (),
+    ) -> Record:
+        """Return one design as `number` and `design`, chosen among those that meet conditions, as `front` does it.
+
+        topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
+        """
+        ways = {"knee": knee or None, "topsis": topsis, "lexicographic": lexicographic}
+        query = {"where": list(where), **{name: value for name, value in ways.items() if value is not None}}
+        return self._get(f"jobs/{number}/pick", query)
+
+    def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
+        """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
+        found: Record = self._get(f"jobs/{number}/designs/{design}/analysis", {"show": list(show)})["analysis"]
+        return found
+
+    def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
+        """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
+        import pandas as pd
+
+        found = self._get(f"jobs/{number}/designs/{design}/curves", {"angles": angles})["curves"]
+        return pd.DataFrame(found).set_index("crank_angle_deg")
+
+    def figures(self, number: int) -> list[str]:
+        """Return the names of the figures of a front; each design has one too, called design_1 and so on."""
+        return [figure["name"] for figure in self._get(f"jobs/{number}/figures")["figures"]]
+
+    def figure(self, number: int, name: str, path: str | PathLike[str]) -> Path:
+        """Write a figure into a file, PNG or SVG by its ending, and return the file."""
+        return self._save(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
+
+    def export(self, number: int, path: str | PathLike[str]) -> Path:
+        """Write all designs of a front into a file, CSV, JSON or Parquet by its ending, and return the file."""
+        return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
+
+    def schema(self) -> Record:
+        """Return the JSON Schema of jobs."""
+        return self._get("schema")
+
+    def check(self, job: JobSource) -> Record:
+        """Return what is understood of a job, in words; nothing is queued. Raises `InputError` for a wrong one."""
+        return self._post("check", {"job": tables_of(job)}, again=True)
+
+    def analyse(
+        self,
+        job: JobSource,
+        *,
+        crank: str | None = None,
+        rod: str | None = None,
+        offset: str | None = None,
+        show: Collection[str] = (),
+    ) -> Record:
+        """Return all numbers of any design for a job. Lengths as "40 mm"; those that the job fixes may be left out."""
+        body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
+        found: Record = self._post("analyse", body, again=True)["analysis"]
+        return found
+
+    def _get(self, path: str, query: Record | None = None) -> Record:
+        found: Record = self._connection.request("GET", path, again=True, params=query).json()
+        return found
+
+    def _post(
+        self, path: str, body: Record | None = None, *, again: bool, headers: dict[str, str] | None = None
+    ) -> Record:
+        found: Record = self._connection.request("POST", path, again=again, json=body, headers=headers).json()
+        return found
+
+    def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
+        kind = file.suffix.lower().removeprefix(".")
+        if kind not in kinds:
+            raise InputError(
+                f"the file ends in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
+            )
+        write_bytes(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
+        return file
+
+
+def tables_of(job: JobSource) -> Record:
+    """Return the tables of a job file, with the points of a target motion in them. Raises `JobError`."""
+    import tomllib
+
+    from ...model.errors import JobError
+    from ...optimise.job.file import read
+    from ...optimise.job.target_motion import with_points
+
+    if isinstance(job, Mapping):
+        return dict(job)
+    if isinstance(job, str) and "\n" in job:
+        try:
+            return tomllib.loads(job)
+        except ValueError as error:
+            raise JobError(f"the text is no valid TOML: {error}; correct the line") from None
+    return with_points(read(Path(job)), Path(job).parent)

@@ -1,0 +1,133 @@
+"""Requests to a service: tried again where that is safe, and refused in the words of the service."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import httpx
+
+from ...model.errors import InputError, NotFound, RunError, ServiceError, SlidercrankError
+
+PREFIX = "/api/v1"
+_TIMEOUT = 60.0  # s without a byte
+_FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
+_LOOPBACK = ("localhost", "127.0.0.1", "::1")
+_NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
+_AWAY = 503
+
+
+class Away(ServiceError):
+    """The service answers that it cannot do it now, but later."""
+
+
+class Connection:
+    """A connection to a service. Threads may share it."""
+
+    def __init__(self, url: str, token: str | None, patience: float) -> None:
+        """Prepare a connection; nothing is sent yet.
+
+        url: "http://host:port", also with "?token=...", as the service prints it. patience: for how long, s, a request
+        is tried again. Raises `InputError` for an address of another kind.
+        """
+        parts = urlsplit(url)
+        if parts.scheme not in ("http", "https") or not parts.hostname:
+            raise InputError(f"a service is at http://host:port or https://host; got {url[:200]!r}; give its address")
+        token = token or next(iter(parse_qs(parts.query).get("token", [])), None)
+        self.url = (
+            f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"  # without the token: it is shown in errors
+        )
+        self.patience = patience
+        self._http = httpx.Client(
+            base_url=f"{self.url}{PREFIX}/",
+            headers={} if token is None else {"Authorization": f"Bearer {token}"},
+            timeout=_TIMEOUT,
+            trust_env=parts.hostname not in _LOOPBACK,  # what is on this machine is not asked for through a proxy
+        )
+
+    def close(self) -> None:
+        """Close it."""
+        self._http.close()
+
+    def request(self, method: str, path: str, *, again: bool, **content: Any) -> httpx.Response:
+        """Return the answer to a request. Raises as `refusal` says, `ServiceError` if there is no answer.
+
+        again: whether the request may be sent twice. One that the service cannot have seen is tried again anyway.
+        """
+        tries = Tries(self)
+        while True:
+            try:
+                answer = self._http.request(method, path, **content)
+            except httpx.TransportError as error:
+                if not (again or isinstance(error, _NEVER_SENT)):
+                    raise self.unreachable(error) from error
+                tries.wait(error)
+                continue
+            if answer.status_code == _AWAY and again and tries.left:
+                tries.pause()
+            elif answer.status_code == 404 and method == "DELETE" and tries.made:
+                return answer  # an earlier try, whose answer was lost, has done it
+            elif answer.is_success:
+                return answer
+            else:
+                raise refusal(answer)
+
+    @contextmanager
+    def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
+        """Enter the answer to a GET before its content has come; raises httpx's errors, and as `refusal` says."""
+        with self._http.stream("GET", path, headers=dict(headers)) as answer:
+            if not answer.is_success:
+                answer.read()
+                raise refusal(answer)
+            yield answer
+
+    def unreachable(self, error: Exception) -> ServiceError:
+        """Return the error of a service that does not answer."""
+        return ServiceError(
+            f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; "
+            "see that `slidercrank serve` runs there"
+        )
+
+
+class Tries:
+    """The tries of one request: pauses that grow, until the patience is used up."""
+
+    def __init__(self, connection: Connection) -> None:
+        """Begin."""
+        self.made = 0
+        self._connection = connection
+        self._end = time.monotonic() + connection.patience
+
+    @property
+    def left(self) -> bool:
+        """Whether there is patience for another one."""
+        return time.monotonic() < self._end
+
+    def pause(self) -> None:
+        """Wait before the next one."""
+        time.sleep(min(_LONGEST_PAUSE, _FIRST_PAUSE * 2.0**self.made, max(0.0, self._end - time.monotonic())))
+        self.made += 1
+
+    def wait(self, error: Exception) -> None:
+        """Wait before the next one after an error. Raises `ServiceError` if there is no patience left."""
+        if not self.left:
+            raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
+        self.pause()
+
+
+def refusal(answer: httpx.Response) -> SlidercrankError:
+    """Return what a service refused as an exception with its sentence.
+
+    `NotFound` for 404, `InputError` for what was wrong in the request, `RunError` for what a job cannot do or give as
+    it stands, `ServiceError` for all others, of which `Away` may pass.
+    """
+    try:
+        detail = str(answer.json()["detail"])
+    except (ValueError, KeyError, TypeError):
+        detail = f"the service answered {answer.status_code} {answer.reason_phrase}; see its log"
+    kinds: dict[int, type[SlidercrankError]] = {404: NotFound, 409: RunError, _AWAY: Away}
+    kinds |= dict.fromkeys((400, 413, 415, 422), InputError)
+    return kinds.get(answer.status_code, ServiceError)(detail)

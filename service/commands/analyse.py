@@ -1,0 +1,198 @@
+"""`slidercrank analyse`: all numbers of one design, and its figures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import InputError
+from ..designs.design_analysis import analysis_of, numbers_of
+from ..designs.topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
+from ..runs.result import Row, json_text
+from ..runs.run_folder import disk
+from .interruption import Interruption
+from .options import length_option, speed_option, value_option
+from .screen import console, give, say, waiting
+from .tables import show_design
+
+if TYPE_CHECKING:
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+    from ...optimise.problem import Problem
+
+INTERRUPTED = 130
+_NEEDS_MASSES = ("torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
+_NEEDS_TOLERANCES = ("position_error",)
+_NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
+_TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
+
+
+def analyse(
+    job: Annotated[
+        Path | None,
+        typer.Argument(metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from."),
+    ] = None,
+    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help='Crank, such as "40 mm".')] = None,
+    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod.")] = None,
+    offset: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help='Offset of the slider line, such as "-20 mm".')
+    ] = None,
+    speed: Annotated[
+        str | None,
+        typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
+    ] = None,
+    put: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="PATH=VALUE",
+            help='A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
+        ),
+    ] = None,
+    show: Annotated[list[str] | None, typer.Option(metavar="TOPIC", help=_TOPIC_HELP)] = None,
+    at: Annotated[
+        str | None, typer.Option(metavar="ANGLE", help='Crank angle of the polygons.  [default: "30 deg"]')
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Position error that a machine may have: gives the yield.")
+    ] = None,
+    fluctuation: Annotated[
+        float | None,
+        typer.Option(metavar="SHARE", help="Speed fluctuation that the flywheel is for.  [default: 0.02]"),
+    ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there, and each topic.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+) -> None:
+    """Analyse one design.
+
+    Without JOB it has no masses, loads and tolerances: motion and proportions only. Without --speed, nothing that
+    depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
+    repeated.
+    """
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+    topics = chosen_topics(show or (), job=job is not None)
+    options = _topic_options(at, limit, fluctuation, topics)
+    problem = _load(job, put or [])
+    mechanism = Mechanism() if problem is None else problem.mechanism.nominal
+    if speed is not None:
+        mechanism = replace(mechanism, speed=speed_option(speed))
+    lengths = [
+        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
+    ]
+    own = () if problem is None else problem.own
+    row = numbers_of(mechanism, lengths, own)
+    notes = _leave_out(row, mechanism, alone=problem is None)
+    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
+    with Interruption() as interruption:
+        found = analysis_of(
+            row,
+            mechanism,
+            linkage,
+            topics,
+            options=options,
+            notes=notes,
+            cancelled=interruption.asked,
+            lenient=ALL in (show or ()),
+        )
+    design = [topic for topic in found.topics if topic.name in found.found]
+    if json:
+        give(json_text(found.record()))
+    else:
+        screen = console()
+        show_design(screen, row, only=[key for key in row if key not in TOLD_THERE])
+        if problem is not None and not topics:
+            screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
+        for topic in design:
+            screen.print()
+            topic.show(screen, found.found[topic.name])
+    for note in found.notes:
+        say(note)
+    if figures is not None and not interruption.asked():
+        _draw(problem, mechanism, linkage, row, design, figures)
+    if interruption.asked():
+        raise typer.Exit(INTERRUPTED)
+
+
+def _topic_options(
+    at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
+    from ...optimise.units import ANGLE, LENGTH
+
+    options: dict[str, dict[str, Any]] = {}
+    for option, topic, given in (
+        ("--at", "polygons", at),
+        ("--limit", "tolerances", limit),
+        ("--fluctuation", "flywheel", fluctuation),
+    ):
+        if given is not None and topic not in topics:
+            raise InputError(f"{option} is for --show {topic}, which is not asked for; add it or leave {option} out")
+    if at is not None:
+        options["polygons"] = {"crank_angle": value_option("--at", at, ANGLE)}
+    if limit is not None:
+        options["tolerances"] = {"limit": value_option("--limit", limit, LENGTH, sign="positive")}
+    if fluctuation is not None:
+        options["flywheel"] = {"fluctuation": fluctuation}
+    return options
+
+
+def _draw(
+    problem: Problem | None, mechanism: Mechanism, linkage: Linkage, row: Row, topics: list[Topic], folder: Path
+) -> None:
+    from ..figures import draw_design
+
+    title = "Design" if problem is None else problem.name
+    with disk(folder), waiting("drawing the figures"):
+        files = [draw_design(mechanism, linkage, row, folder, title=title, torque=problem is not None)]
+        files += [topic.draw(folder) for topic in topics]
+    for file in files:
+        say(f"figure: {file}")
+
+
+def _load(job: Path | None, put: list[str]) -> Problem | None:
+    if job is None:
+        if put:
+            raise InputError("--set changes a number of a job; got none; give a JOB")
+        return None
+    from ...optimise.job import load_job
+
+    values = {}
+    for text in put:
+        path, sign, value = (part.strip() for part in text.partition("="))
+        if not (path and sign and value):
+            raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
+        values[path] = _plain(value)
+    return load_job(job, values)
+
+
+def _plain(value: str) -> float | str:
+    """Return a number without a unit as a number, anything else as it stands."""
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
+    """Take out what is not defined without a job or a speed; return why, in words."""
+    notes = []
+
+    def drop(parts: tuple[str, ...]) -> None:
+        for key in row:
+            if any(part in key for part in parts):
+                row[key] = None
+
+    if alone:
+        drop(_NEEDS_MASSES + _NEEDS_TOLERANCES)
+        notes.append("torque, forces and position error need masses, loads and tolerances: give a JOB")
+        if not mechanism.speed:
+            drop(_NEEDS_SPEED)
+            notes.append("slider speed and acceleration need a crank speed: give --speed")
+    return notes

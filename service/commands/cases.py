@@ -1,0 +1,50 @@
+"""`slidercrank cases`: the published mechanisms, what their authors printed, and what is exact."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..runs.result import json_text
+from ..runs.run_folder import disk
+from .screen import console, give, say
+
+
+def cases(
+    case: Annotated[
+        int | None, typer.Option("--case", min=1, max=5, metavar="N", help="Only case N, 1 to 5, in full.")
+    ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Draw the publications' figures anew, as PNG files there.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+) -> None:
+    """Show published mechanisms: printed numbers, exact ones, and a verdict.
+
+    Where print and exact value disagree both are shown, with the reason. A printed number agrees if it is the exact
+    one to a unit of its last digit.
+    """
+    from dataclasses import asdict
+
+    from ..cases.collect import collect
+    from ..cases.published import CASES
+    from ..cases.table import counted, show_case
+
+    chosen = CASES if case is None else (case,)
+    found = collect(chosen)
+    rows = [row for one in found for row in one.rows]
+    if json:
+        give(json_text({"cases": [asdict(one) for one in found]}))
+    else:
+        screen = console()
+        for one in found:
+            show_case(screen, one, full=case is not None)
+        screen.print(f"{len(rows)} numbers: {counted(rows)}", style="bold", soft_wrap=True)
+    if figures is not None:
+        from ..cases.figures import draw_cases
+
+        with disk(figures):
+            for path in draw_cases(chosen, figures):
+                say(f"figure: {path}")

@@ -1,0 +1,181 @@
+"""`slidercrank certify`: a proof of how far the front of a run can be from the true one."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import RunError
+from ..runs.finding_runs import find_run
+from ..runs.result import Result, Row, csv_text, json_text, rows_of
+from ..runs.run_folder import runs_place, write_file
+from ..runs.stored_runs import read_run
+from .interruption import Interruption
+from .optimise import INTERRUPTED, Json, Runs
+from .runs import Run
+from .screen import console, error_console, give
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...optimise.certificate.certificate import Certificate, Step
+    from ...optimise.problem import Problem
+
+NOT_PROVEN = 4
+_SHOWN_NOTES = 8
+
+
+def certify(
+    run: Run,
+    epsilon: Annotated[
+        float, typer.Option(help="What is to be proven, as a share of each objective's range over the front.")
+    ] = 0.01,
+    seconds: Annotated[float, typer.Option(help="Stop after so long with what is proven by then.")] = 60.0,
+    runs: Runs = None,
+    json: Json = False,
+) -> None:
+    """Prove how far the front of a run can be from the true one.
+
+    Searches the whole design box and adds designs where the front leaves gaps: no feasible design then beats all of
+    them by more than epsilon. Keeps certificate.json, and the added designs as certificate.csv, in the run's folder.
+    Exit code 4 if the budget does not suffice; Ctrl-C gives what is proven so far.
+    """
+    folder = find_run(run, runs_place(runs))
+    result = read_run(folder)
+    problem = _job(folder)
+    if not result.designs:
+        _nothing_feasible(result, problem, seconds, json=json)
+    with Interruption() as interruption, _progress() as show:
+        from ...optimise.certificate.certify import certify_designs
+
+        found = certify_designs(
+            problem,
+            _dimensions(result),
+            epsilon=epsilon,
+            seconds=seconds,
+            progress=show,
+            cancelled=interruption.asked,
+        )
+    rows = rows_of(found.table.to_dict("list")) if len(found.table) else []
+    record = _record(found, problem, str(folder), rows)
+    write_file(folder / "certificate.json", json_text(record))
+    write_file(folder / "certificate.csv", csv_text(rows))
+    if json:
+        give(json_text(record))
+    else:
+        _show(found, result, folder)
+    if interruption.asked():
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if found.proven else NOT_PROVEN)
+
+
+def _job(folder: Path) -> Problem:
+    from ...optimise.job import load_job
+
+    for name in ("job.toml", "job.json"):
+        if (folder / name).is_file():
+            return load_job(folder / name)
+    raise RunError(f"a run has a file job.toml or job.json; {folder} has none; name another folder")
+
+
+def _dimensions(result: Result) -> NDArray[np.float64]:
+    import numpy as np
+
+    names = ("crank_mm", "rod_mm", "offset_mm")
+    return np.array([[row[name] for name in names] for row in result.designs], dtype=np.float64) / 1e3
+
+
+def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json: bool) -> None:
+    from ...optimise.certificate.infeasible import prove_infeasible
+
+    proven = prove_infeasible(problem, seconds=seconds)
+    text = "no design of the ranges meets all requirements"
+    message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
+    if json:
+        give(json_text({"run": result.run, "name": result.name, "infeasible": proven, "message": message}))
+    else:
+        console().print(f"{result.name}: {message}", soft_wrap=True)
+    raise typer.Exit(0 if proven else NOT_PROVEN)
+
+
+def _record(found: Certificate, problem: Problem, run: str, rows: list[Row]) -> dict[str, Any]:
+    from ...objectives.registry import quantity
+
+    wanted = [quantity(objective.quantity) for objective in problem.objectives]
+    sizes = ("crank_mm", "rod_mm", "offset_mm")
+    return {
+        "run": run,
+        "name": problem.name,
+        "status": found.status,
+        "message": found.message,
+        "epsilon_asked": found.asked,
+        "epsilon": found.epsilon,
+        "epsilon_of_delivered": found.delivered,
+        "gap_of_delivered": found.gap,
+        "hole": None if found.hole is None else dict(zip(sizes, (1e3 * found.hole).tolist(), strict=True)),
+        "ranges": {of.field: float(span) * of.unit.factor for of, span in zip(wanted, found.span, strict=True)},
+        "hypervolume_gap": found.hypervolume_gap,
+        "boxes": found.boxes,
+        "open_boxes": found.open,
+        "remaining_share": found.remaining,
+        "remaining_where": None if found.where is None else dict(zip(sizes, (1e3 * found.where).tolist(), strict=True)),
+        "notes": list(found.notes),
+        "seconds": found.seconds,
+        "added": rows,
+    }
+
+
+def _show(found: Certificate, result: Result, folder: Path) -> None:
+    screen = console()
+    screen.print(f"{result.name}: {found.message}", style="bold", soft_wrap=True)
+    lines = [f"Design box: {found.boxes:,} boxes in {found.seconds:.1f} s"]
+    if found.open:
+        lines[0] += f", {found.open:,} open ({100.0 * found.remaining:.3g} % of it)"
+    if found.where is not None:
+        lines.append(f"Farthest from proven: {_ranges(found.where)}")
+    if found.hole is not None:
+        lines.append(
+            "Largest gap of the delivered front: "
+            + ", ".join(
+                f"{name} {1e3 * size:.6g} mm" for name, size in zip(("crank", "rod", "offset"), found.hole, strict=True)
+            )
+        )
+    if math.isfinite(found.hypervolume_gap):
+        lines.append(
+            f"Hypervolume: {result.hypervolume:.6g}, the true front's exceeds it by at most {found.hypervolume_gap:.3g}"
+        )
+    lines += [f"Note: {note}" for note in found.notes[:_SHOWN_NOTES]]
+    lines.append(f"Files: {folder / 'certificate.json'}")
+    if len(found.added):
+        lines.append(f"       {folder / 'certificate.csv'} ({len(found.added)} added designs)")
+    for line in lines:
+        screen.print(line, soft_wrap=True)
+
+
+def _ranges(where: NDArray[np.float64]) -> str:
+    return ", ".join(
+        f"{name} {1e3 * low:.6g} to {1e3 * high:.6g} mm"
+        for name, (low, high) in zip(("crank", "rod", "offset"), where, strict=True)
+    )
+
+
+@contextlib.contextmanager
+def _progress() -> Iterator[Callable[[Step], None]]:
+    """Show a live line on standard error if it is a terminal; yield what is to be called between rounds."""
+    screen = error_console()
+    if not screen.is_terminal:
+        yield lambda _: None
+        return
+    with screen.status("bounding the design box") as status:
+
+        def tell(at: Step) -> None:
+            proven = f"{100.0 * at.epsilon:.3g} % proven" if math.isfinite(at.epsilon) else "nothing proven yet"
+            status.update(f"{proven}, {at.open:,} of {at.boxes:,} boxes open, {at.added:,} designs added")
+
+        yield tell

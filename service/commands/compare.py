@@ -1,0 +1,239 @@
+"""`slidercrank compare`: the fronts of several runs against each other."""
+
+from __future__ import annotations
+
+import json as json_format
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import InputError, SlidercrankError
+from ..designs.picking_options import minimised_values
+from ..runs.finding_runs import find_run
+from ..runs.result import Result, json_text, wanted_record
+from ..runs.run_folder import disk, runs_place
+from ..runs.stored_runs import read_run
+from .optimise import Json, Runs
+from .screen import console, give, say
+from .tables import print_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...optimise.comparison import Comparison
+
+
+@dataclass(frozen=True)
+class _Compared:
+    """A run with the name it goes by, what found it, and its objectives in the order of the first run."""
+
+    name: str
+    method: str
+    result: Result
+
+
+def compare(
+    run: Annotated[list[str], typer.Argument(metavar="RUN...", help="The runs, two or more, as in `front`.")],
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, help="Share of an objective's range that counts as equal.")
+    ] = 1e-6,
+    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Also draw the fronts, into this folder.")] = None,
+    runs: Runs = None,
+    json: Json = False,
+) -> None:
+    """Compare the fronts of several runs: hypervolume, coverage, epsilon, who dominates whom, effort.
+
+    The runs must have the same objectives; their constraints and machines may differ.
+    """
+    from ...optimise import comparison
+
+    compared = _read(run, runs_place(runs))
+    found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)
+    pictures = [] if figures is None else [_draw(compared, figures)]
+    if json:
+        give(json_text(_record(compared, found)))
+    else:
+        _show(console(), compared, found)
+    for picture in pictures:
+        say(f"{picture}")
+
+
+def _read(names: Sequence[str], place: Path) -> list[_Compared]:
+    if len(names) < 2:
+        raise InputError("a comparison is of two runs or more; got one; name another")
+    found: list[_Compared] = []
+    folders: list[Path] = []
+    for name in names:
+        folder = find_run(name, place)
+        if folder.resolve() in folders:
+            raise InputError(f"each run is compared once; got {folder.name} twice")
+        folders.append(folder.resolve())
+        result = read_run(folder)
+        if not result.designs:
+            raise InputError(f"the run {folder.name} has no designs ({result.message}); leave it out")
+        if found:
+            result = _aligned(result, folder.name, found[0])
+        found.append(_Compared(folder.resolve().name, _method(folder), result))
+    return found
+
+
+def _aligned(result: Result, name: str, first: _Compared) -> Result:
+    """Return a result with its objectives in the order of the first one. Raises `InputError` where they differ."""
+    from dataclasses import replace
+
+    own = {(item.quantity, item.sense, item.target): item for item in result.objectives}
+    asked = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
+    if set(own) != set(asked):
+        raise InputError(
+            f"runs compare only with the same objectives; {first.name} has {_words(first.result)}, "
+            f"{name} has {_words(result)}"
+        )
+    return replace(result, objectives=tuple(own[key] for key in asked))
+
+
+def _words(result: Result) -> str:
+    return ", ".join(
+        f"{item.sense} {item.quantity}" + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
+        for item in result.objectives
+    )
+
+
+def _method(folder: Path) -> str:
+    """Return the method of a run: what its record says, else its job."""
+    with disk(folder):
+        record = json_format.loads((folder / "front.json").read_text(encoding="utf-8"))
+    if isinstance(record.get("method"), str):
+        return str(record["method"])
+    from ...optimise.job import load_job
+
+    for name in ("job.toml", "job.json"):
+        if (folder / name).is_file():
+            try:
+                return load_job(folder / name).settings.method
+            except SlidercrankError:  # written for another version: the fronts compare all the same
+                break
+    return "unknown"
+
+
+def _draw(compared: Sequence[_Compared], folder: Path) -> Path:
+    import numpy as np
+
+    from ..figures.comparison import GREATEST, Drawn, comparison_matrix
+    from ..figures.style import save
+
+    objectives = compared[0].result.objectives
+    if len(objectives) < 2:
+        raise InputError("fronts of a single objective are single values; leave out --figures")
+    if len(compared) > GREATEST:
+        raise InputError(f"a figure tells at most {GREATEST} runs apart; got {len(compared)}; leave out some")
+    drawn = [
+        Drawn(
+            f"{item.name} ({item.method})",
+            np.array([[row[wanted.column] for wanted in objectives] for row in item.result.designs], dtype=np.float64),
+        )
+        for item in compared
+    ]
+    with disk(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        save(comparison_matrix(drawn, objectives), folder / "comparison.png")
+    return folder / "comparison.png"
+
+
+def _record(compared: Sequence[_Compared], found: Comparison) -> dict[str, Any]:
+    return {
+        "objectives": [wanted_record(wanted) for wanted in compared[0].result.objectives],
+        "tolerance": found.tolerance,
+        "union_hypervolume": found.union,
+        "runs": [
+            {
+                "run": item.name,
+                "name": item.result.name,
+                "method": item.method,
+                "seed": item.result.seed,
+                "status": item.result.status,
+                "designs": int(found.sizes[index]),
+                "in_union": int(found.in_union[index]),
+                "hypervolume": float(found.hypervolumes[index]),
+                "share_of_union": float(found.shares[index]),
+                "evaluations": item.result.evaluations,
+                "seconds": item.result.seconds,
+            }
+            for index, item in enumerate(compared)
+        ],
+        "coverage": found.coverage.tolist(),
+        "epsilon": found.epsilon.tolist(),
+        "dominates": found.dominates.tolist(),
+    }
+
+
+def _show(screen: Console, compared: Sequence[_Compared], found: Comparison) -> None:
+    screen.print(f"{len(compared)} runs: {_words(compared[0].result)}", style="bold", soft_wrap=True)
+    screen.print(
+        "Scaled by the ranges of the union front; hypervolume is the share of the box up to 1.1 ranges.\n",
+        style="dim",
+        soft_wrap=True,
+    )
+    rows = [
+        [
+            f"{index + 1} {item.name}",
+            item.method,
+            str(item.result.seed),
+            f"{found.sizes[index]}",
+            f"{found.in_union[index]}",
+            f"{found.hypervolumes[index]:.5f}",
+            f"{100.0 * found.shares[index]:.3f}",
+            f"{item.result.evaluations}",
+            f"{item.result.seconds:.1f}",
+        ]
+        for index, item in enumerate(compared)
+    ]
+    heads = ["run", "method", "seed", "designs", "in union\nfront", "hyper-\nvolume", "% of\nunion's", "evaluated", "s"]
+    _print(screen, heads, rows)
+    numbers = [str(place) for place in range(1, len(compared) + 1)]
+    for title, table, form in (
+        ("Coverage: % of the column's designs that the row's weakly dominate", 100.0 * found.coverage, ".1f"),
+        ("Additive epsilon: by how much the row falls short of the column at worst, in ranges", found.epsilon, ".2e"),
+    ):
+        screen.print(f"\n{title}", soft_wrap=True)
+        cells = [
+            [numbers[a], *("" if a == b else format(table[a, b], form) for b in range(len(numbers)))]
+            for a in range(len(numbers))
+        ]
+        _print(screen, ["", *numbers], cells)
+    screen.print()
+    for sentence in _verdict(compared, found):
+        screen.print(sentence, soft_wrap=True)
+
+
+def _verdict(compared: Sequence[_Compared], found: Comparison) -> list[str]:
+    names = [item.name for item in compared]
+    sentences = []
+    open_pairs = 0
+    for a in range(len(names)):
+        for b in range(a + 1, len(names)):
+            first, second = (a, b) if found.dominates[a, b] else (b, a)
+            if found.dominates[first, second]:
+                sentences.append(f"{names[first]} dominates {names[second]}: it matches or beats all its designs.")
+            elif found.coverage[a, b] == found.coverage[b, a] == 1.0:
+                sentences.append(f"{names[a]} and {names[b]} have the same front, to the tolerance.")
+            else:
+                open_pairs += 1
+    if open_pairs:
+        which = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
+        sentences.append(f"Of {which} neither dominates: each has designs that the other does not reach.")
+    return sentences
+
+
+def _print(screen: Console, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
+    for place, head in enumerate(heads):
+        table.add_column(head, justify="left" if place == 0 else "right", vertical="bottom", no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
+    print_table(screen, table)

@@ -1,0 +1,162 @@
+"""Whether the service can do its work here: what is looked at, and what was found."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import platform
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from ...model.errors import SlidercrankError
+from ..workers.sizes import size_text
+
+if TYPE_CHECKING:
+    from ..store.database import Database
+
+Grade = Literal["ok", "note", "problem"]
+_LEAST_ROOM, _LITTLE_ROOM = 200e6, 2e9  # bytes
+_CLOCKS = 2.0  # s between clocks that is worth a note
+_SILENT = 120.0  # s; a worker with the default lease is heard of every 10 s
+_REMEDY = "; stop the service and restore a backup, see docs/service.md"
+_PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
+_OPTIONAL = ("psycopg", "distributed", "pyarrow")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """Something that was looked at. text: what was found, and what to do about it unless it is ok."""
+
+    name: str
+    grade: Grade
+    text: str
+
+
+def diagnose(address: str, runs: Path) -> list[Check]:
+    """Look at a store, given by its address, at the place of runs and at this machine; no job is changed."""
+    return [
+        *_store(address),
+        _writable("runs", runs),
+        *([] if "://" in address else [_room("disk of the store", Path(address).parent)]),
+        _room("disk of runs", runs),
+        _compiled(),
+        _versions(),
+    ]
+
+
+def _store(address: str) -> Iterator[Check]:
+    from ..store.database import Database
+
+    if "://" not in address and not Path(address).exists():
+        yield Check(name="store", grade="ok", text=f"there is none at {address} yet; the first job makes it")
+        yield _writable("place of the store", Path(address).parent)
+        return
+    try:
+        with contextlib.closing(Database(address)) as database:
+            yield from _database(address, database)
+    except SlidercrankError as error:
+        yield Check(name="store", grade="problem", text=str(error))
+
+
+def _database(address: str, database: Database) -> Iterator[Check]:
+    from ..store.inspection import clock_ahead, damages, server_version
+    from ..store.schema_version import versions
+
+    yield Check(name="store", grade="ok", text=f"{database.name} answers, {server_version(database)}")
+    version, latest, known = versions(database)
+    if not known:
+        text = f"they have version {version}, this software knows {latest}; install the release that made them"
+        yield Check(name="tables", grade="problem", text=text)
+        return
+    if version != latest:
+        text = f"they have version {version or 'none'}; {latest} is made of them when a command opens the store"
+        yield Check(name="tables", grade="note", text=text)
+        return
+    yield Check(name="tables", grade="ok", text=f"version {version}")
+    wrong = damages(database)
+    text = "; ".join(wrong) + _REMEDY if wrong else "nothing is damaged"
+    yield Check(name="integrity", grade="problem" if wrong else "ok", text=text)
+    ahead = clock_ahead(database)
+    text = f"the one of the store differs by {ahead:+.2f} s from the one of this machine"
+    far = abs(ahead) > _CLOCKS
+    yield Check(name="clock", grade="note" if far else "ok", text=f"{text}; set them by NTP" if far else text)
+    yield from _at_work(address, time.time() + ahead)
+
+
+def _at_work(address: str, now: float) -> Iterator[Check]:
+    """Look at jobs and workers. now: on the clock of the store."""
+    from ..store import Store
+
+    with Store(address) as store:
+        counts, workers = store.counts(), store.workers()
+        running = store.jobs(states=["running"], limit=10_000)
+    expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
+    heard = [worker for worker in workers if worker.silent <= _SILENT]
+    text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
+    yield Check(name="jobs", grade="ok", text=text)
+    text = f"{len(heard)} at work"
+    silent = len(workers) - len(heard)
+    if silent:
+        text += f"; {silent} not heard of for more than {_SILENT:g} s: stopped, or cut off"
+    waiting = counts.get("queued", 0) + len(expired)
+    if waiting and not heard:
+        text += f"; {waiting} jobs wait for one; start slidercrank serve or slidercrank worker"
+    yield Check(name="workers", grade="problem" if waiting and not heard else "note" if silent else "ok", text=text)
+    names = ", ".join(str(job.id) for job in expired[:5])
+    text = f"those of jobs {names} have ended; the next free worker goes on with them" if expired else "none has ended"
+    yield Check(name="leases", grade="note" if expired else "ok", text=text)
+
+
+def _writable(name: str, folder: Path) -> Check:
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        text = f"{folder} cannot be written: {error.strerror or error}; permit it, or choose another place"
+        return Check(name=name, grade="problem", text=text)
+    return Check(name=name, grade="ok", text=f"{folder} can be written")
+
+
+def _room(name: str, folder: Path) -> Check:
+    there = folder.absolute()
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    free = shutil.disk_usage(there).free
+    grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
+    remedy = "" if grade == "ok" else "; make room: a full disk stops all writing"
+    return Check(name=name, grade=grade, text=f"{size_text(free)} free{remedy}")
+
+
+def _compiled() -> Check:
+    """Look at where the compiled model is kept: without a place for it every worker would compile anew for minutes."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    from ... import model
+
+    beside = Path(model.__path__[0]) / "__pycache__"
+    folders = [Path(given)] if given else [beside, Path.home() / ".cache"]
+    found = [_writable("compiled model", folder) for folder in folders]
+    fine = next((check for check in found if check.grade == "ok"), None)
+    if fine is not None:
+        return fine
+    text = f"{found[0].text}; or name a folder in NUMBA_CACHE_DIR"
+    return Check(name="compiled model", grade="problem", text=text)
+
+
+def _versions() -> Check:
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = [f"Python {platform.python_version()}"]
+    for name in (*_PACKAGES, *_OPTIONAL):
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            found.append(f"{name} not installed")
+    return Check(name="versions", grade="ok", text=", ".join(found))

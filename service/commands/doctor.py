@@ -1,0 +1,62 @@
+"""`slidercrank doctor`: whether the service can do its work here, and a backup of its store."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ...model.errors import NotFound
+from ..runs.run_folder import runs_place
+from .optimise import Json, Runs
+from .screen import console, give, say
+from .stores import Address, has_store, store_address
+
+UNHEALTHY = 2
+
+
+def doctor(
+    store: Address = None,
+    runs: Runs = None,
+    backup: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Copy a store that is a file into a new file, while it is used."),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Look whether store, workers, disks and software are in order; exit code 2 if anything is not.
+
+    Looked at are: the database and its tables, whether anything in it is damaged, its clock, jobs that wait without a
+    worker, places to write, free disk, versions. No job is changed.
+    """
+    from ..runs.result import json_text
+    from .diagnosis import diagnose
+
+    address = store_address(store, runs)
+    if backup is not None:
+        _back_up(store, runs, backup)
+    checks = diagnose(address, runs_place(runs))
+    healthy = all(check.grade != "problem" for check in checks)
+    if json:
+        found = [{"name": check.name, "grade": check.grade, "text": check.text} for check in checks]
+        give(json_text({"healthy": healthy, "checks": found}))
+    else:
+        screen = console()
+        for check in checks:
+            style = {"problem": "bold", "note": "", "ok": "dim"}[check.grade]
+            screen.print(f"{check.grade:<9}{check.name:<18} {check.text}", style=style, soft_wrap=True)
+    if not healthy:
+        raise typer.Exit(UNHEALTHY)
+
+
+def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
+    from ..store.backup import back_up
+    from ..store.database import Database
+
+    if not has_store(store, runs):
+        raise NotFound(f"there is no store at {store_address(store, runs)}; name the one to copy with --store")
+    with contextlib.closing(Database(store_address(store, runs))) as database:
+        back_up(database, target)
+    say(f"{target}: a copy of {database.name}")

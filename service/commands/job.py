@@ -1,0 +1,47 @@
+"""`slidercrank check` and `slidercrank schema`: job files before anything runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..runs.result import json_text
+from .screen import console, give
+
+
+def check(
+    job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
+    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+) -> None:
+    """Check a job file and say what was understood of it."""
+    from ...optimise.job import load_job
+    from .summary import freedom_in_words, summarise
+
+    summary = summarise(load_job(job))
+    if json:
+        give(json_text(summary))
+        return
+    screen = console()
+    screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
+    parts: list[tuple[str, Any]] = [
+        ("given", summary["given"]),
+        ("tolerances", summary["tolerances"]),
+        ("costs", summary["costs"]),
+        ("variables", summary["variables"]),
+        ("rules", summary["rules"]),
+        ("objectives", summary["objectives"]),
+        ("freedom", [freedom_in_words(summary)]),
+        ("search", [summary["search"]]),
+    ]
+    for title, lines in parts:
+        for index, line in enumerate(lines):
+            screen.print(f"  {title if index == 0 else '':<12}{line}", soft_wrap=True)
+
+
+def schema() -> None:
+    """Print the JSON Schema of job files."""
+    from ...optimise.job import job_schema
+
+    give(json_text(job_schema()))

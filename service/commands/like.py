@@ -1,0 +1,191 @@
+"""`slidercrank like`: a design of a run, but with something else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import InputError
+from ..designs.columns import DIMENSIONS, find_column
+from ..designs.conditions import Condition, parse_condition
+from ..designs.picking_options import minimised_values
+from ..runs.finding_runs import find_run
+from ..runs.result import Result, Row, json_text, rows_of
+from ..runs.run_folder import runs_place
+from ..runs.stored_runs import problem_of, read_run
+from .optimise import NOTHING_FEASIBLE, Json, Runs
+from .runs import Run
+from .screen import console, give, say, waiting
+from .tables import print_table
+
+if TYPE_CHECKING:
+    from ...optimise.front import ParetoFront
+    from ...optimise.problem import Constraint
+
+_EXAMPLE = '--where "transmission_angle >= 45 deg"'
+Ends = tuple[float | None, float | None]
+
+
+def like(
+    run: Run,
+    number: Annotated[int, typer.Argument(metavar="NO", help="The design: its number in `slidercrank front RUN`.")],
+    where: Annotated[
+        list[str],
+        typer.Option(
+            metavar="CONDITION",
+            help='What it must also meet: a quantity or a dimension, >= <= or =, a value, such as "crank = 40 mm". '
+            "May be repeated.",
+        ),
+    ],
+    runs: Runs = None,
+    json: Json = False,
+) -> None:
+    """Find the design most like one of a run that also meets further conditions.
+
+    It is Pareto-optimal for the run's job with the conditions added, and of those designs the nearest, objectives by
+    their range over the run's front. Nothing is saved.
+    """
+    from ...optimise.like import distance
+    from ...optimise.like import like as nearest
+
+    folder = find_run(run, runs_place(runs))
+    result = read_run(folder)
+    if not 1 <= number <= len(result.designs):
+        raise InputError(f"the run has designs 1 to {len(result.designs)}; got {number}; see slidercrank front {run}")
+    problem = replace(problem_of(folder, result), name=result.name)
+    row = result.designs[number - 1]
+    constraints, ranges = _added(where, row)
+    with waiting("looking for it"):
+        values, span = _objectives(result)
+        given = values[number - 1]
+        found = nearest(problem, row, given, span, constraints, ranges)
+    if not len(found):
+        if json:
+            give(json_text({"run": str(folder), "number": number, "status": found.status, "message": found.message}))
+        say(f"slidercrank: {found.message}")
+        raise typer.Exit(NOTHING_FEASIBLE)
+    apart = float(distance(found.values, given, span)[0])
+    after = rows_of(found.designs.to_dict("list"))[0]
+    if json:
+        give(json_text(_record(str(folder), number, found, apart, row, after)))
+    else:
+        _show(result, number, where, found, apart, row, after)
+
+
+def _objectives(result: Result) -> tuple[Any, Any]:
+    """Return the objectives (n, m) of a run as minimised, SI, and their ranges (m,)."""
+    import numpy as np
+
+    from ...objectives.registry import quantity
+    from ...optimise.hypervolume import scaling
+
+    factors = np.array([quantity(wanted.quantity).unit.factor for wanted in result.objectives])
+    values = minimised_values(result) / factors
+    return values, scaling(values)[1]
+
+
+def _added(where: list[str], row: Row) -> tuple[list[Constraint], dict[str, Ends]]:
+    """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
+    from ...objectives.registry import QUANTITIES
+    from ...optimise.like import common
+    from ...optimise.problem import Constraint
+
+    names = {quantity.field: quantity.name for quantity in QUANTITIES.values()}
+    names |= {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
+    found: dict[str, Ends] = {}
+    for text in where:
+        condition = parse_condition(text, list(row), row)
+        name = names.get(condition.column.key)
+        if name is None or isinstance(condition.value, str):
+            raise InputError(
+                f"a design can be asked for by quantities and dimensions only; got {text!r}; write it like {_EXAMPLE}"
+            )
+        ends = common(found.get(name, (None, None)), _ends(condition, text))
+        if ends is None:
+            raise InputError(f"the conditions on {name} contradict each other; got {text!r} last; leave out one")
+        found[name] = ends
+    ranges = {name: ends for name, ends in found.items() if name in DIMENSIONS}
+    constraints = [
+        Constraint(quantity=name, lower=lower, upper=upper)
+        for name, (lower, upper) in found.items()
+        if name not in DIMENSIONS
+    ]
+    return constraints, ranges
+
+
+def _ends(condition: Condition, text: str) -> Ends:
+    assert not isinstance(condition.value, str)
+    value = condition.value / condition.column.factor
+    ends = {">=": (value, None), "<=": (None, value), "==": (value, value)}.get(condition.comparison)
+    if ends is None:
+        raise InputError(f"a design is asked for with >=, <= or =; got {text!r}; write it like {_EXAMPLE}")
+    return ends
+
+
+def _record(run: str, number: int, found: ParetoFront, apart: float, before: Row, after: Row) -> dict[str, Any]:
+    return {
+        "run": run,
+        "number": number,
+        "status": found.status,
+        "message": found.message,
+        "distance": apart,
+        "design": after,
+        "before": before,
+        "moved": {key: value for key in after if (value := _moved(before, after, key)) is not None},
+    }
+
+
+def _moved(before: Row, after: Row, key: str) -> float | None:
+    """Return by how much a number changed; None for what is no quantity or has no finite change."""
+    old, new = before.get(key), after[key]
+    if key == "residual" or not isinstance(old, float) or not isinstance(new, float):
+        return None
+    change = new - old
+    return change if math.isfinite(change) else None
+
+
+def _show(
+    result: Result, number: int, where: list[str], found: ParetoFront, apart: float, before: Row, after: Row
+) -> None:
+    from rich import box
+    from rich.table import Table
+
+    screen = console()
+    screen.print(
+        f"{result.name}: like design {number}, with {' and '.join(text.strip() for text in where)}",
+        style="bold",
+        soft_wrap=True,
+    )
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), show_edge=False)
+    for head in ("quantity", "unit", f"design {number}", "now", "change", "% of range"):
+        table.add_column(head, justify="left" if head in ("quantity", "unit") else "right", no_wrap=True)
+    columns = {wanted.column for wanted in result.objectives}
+    for key in after:
+        change = _moved(before, after, key)
+        if change is None or key.startswith("slack_"):
+            continue
+        column = find_column(key, after)
+        share = f"{100.0 * change / _range(result, key):+.2f}" if key in columns and _range(result, key) else ""
+        table.add_row(
+            column.title,
+            column.unit,
+            f"{before[key]:.6g}",
+            f"{after[key]:.6g}",
+            f"{change:+.3g}",
+            share,
+            style="bold" if key in columns else "",
+        )
+    screen.print()
+    print_table(screen, table)
+    screen.print(
+        f"\n{after['status']}: residual {after['residual']:.1e}; distance {apart:.4g} of the objectives' ranges",
+        soft_wrap=True,
+    )
+
+
+def _range(result: Result, key: str) -> float:
+    values = [value for row in result.designs if isinstance(value := row[key], float)]
+    return max(values) - min(values)

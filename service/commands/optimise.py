@@ -1,0 +1,219 @@
+"""`slidercrank optimise`: from a job file to a front on the screen and a run on the disk."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import InputError
+from ..runs.result import Result, json_text, result_of
+from ..runs.run_folder import RunFolder, disk, runs_place
+from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
+from .interruption import Interruption
+from .screen import console, give, progress_bar, say, waiting
+from .stores import Address, open_store
+from .tables import show_design, show_front
+
+if TYPE_CHECKING:
+    from ...optimise.engine.engine import Engine
+    from ...optimise.front import ParetoFront, Progress
+    from ...optimise.problem import Problem
+    from ..store import Claim, Store
+
+NOTHING_FEASIBLE, INTERRUPTED = 3, 130
+_NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
+EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED}
+
+Runs = Annotated[
+    Path | None,
+    typer.Option(help="Where runs are kept.  [default: SLIDERCRANK_RUNS, else ./runs]"),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")]
+
+
+def optimise(
+    job: Annotated[Path | None, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")] = None,
+    resume: Annotated[
+        str | None, typer.Option(metavar="RUN", help="Instead of a job: go on with an interrupted or cancelled run.")
+    ] = None,
+    runs: Runs = None,
+    store: Address = None,
+    designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of everything random.")] = None,
+    cores: Cores = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
+    json: Json = False,
+    figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
+) -> None:
+    """Find the Pareto front of a job.
+
+    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops within about a second
+    and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
+    The run is in the store too, where `jobs` and the service see it.
+    """
+    from ..runs.own_run import told
+    from ..workers.pulse import Pulse
+    from ..workers.worker import versions_file
+
+    if (job is None) == (resume is None):
+        raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
+    if resume is not None and (designs is not None or seed is not None):
+        raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+    options = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key)
+    with contextlib.ExitStack() as opened:
+        if job is not None:
+            problem, tables = _problem(job, designs, seed)
+            jobs = opened.enter_context(open_store(store, runs))
+            begin = _new(job, jobs, problem, tables, runs_place(runs))
+        else:
+            jobs = opened.enter_context(open_store(store, runs))
+            begin = _again(resume or "", jobs, runs_place(runs))
+        interruption = opened.enter_context(Interruption())
+        run, problem, claim = opened.enter_context(begin)
+        opened.enter_context(told(claim))
+        opened.enter_context(Pulse(claim))
+        run.log(f"command: {' '.join(sys.argv[1:])}")
+        run.log(f"job {claim.job.id} of the store {jobs.name}")
+        engine = opened.enter_context(engine_of(options))
+        front = _solve(problem, run, interruption, claim, engine)
+        result = result_of(front, str(run.path))
+        versions = _versions(front)
+        run.keep_result(result, versions)
+        claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
+        run.log(f"{result.status}: {result.message}")
+        if figures and result.status == "done":
+            _draw(front, run, interruption)
+    if json:
+        give(json_text(result.record()))
+        if result.status != "done":
+            say(f"slidercrank: {result.message}")
+    else:
+        show_result(result)
+    if result.status == "cancelled":
+        say(f"go on with: slidercrank optimise --resume {run.path.name}")
+    raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
+
+
+@contextlib.contextmanager
+def _new(
+    job: Path, store: Store, problem: Problem, tables: Mapping[str, Any], place: Path
+) -> Iterator[tuple[RunFolder, Problem, Claim]]:
+    """Enter the run of a new job."""
+    from ...optimise.job import files_beside
+    from ..runs.own_run import begin, files_of
+
+    with disk(job.parent):
+        files = files_of(job, files_beside(job))
+    with RunFolder(place, problem.name) as folder:
+        yield folder, problem, begin(store, folder, tables, problem.name, files)
+
+
+@contextlib.contextmanager
+def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Problem, Claim]]:
+    """Enter a run that was stopped."""
+    from ...optimise.job import parse_job
+    from ..runs.own_run import folder_of, stopped_job, take_up
+
+    job = stopped_job(store, text, place)
+    with folder_of(store, job, place) as folder:
+        problem = parse_job(store.tables(job.id), folder=folder.path)
+        yield folder, problem, take_up(store, job)
+
+
+def show_result(result: Result) -> None:
+    """Write what a run found: the front as a table, what the knee costs, where the files are."""
+    screen = console()
+    screen.print(f"{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
+    if len(result.designs) == 1:
+        show_design(screen, result.designs[0])
+    elif result.designs:
+        show_front(screen, result, range(len(result.designs)))
+    if result.trade_offs:
+        screen.print("\nAt the knee:")
+        for sentence in result.trade_offs:
+            screen.print(f"  {sentence}", soft_wrap=True)
+    screen.print(f"\nFiles: {result.run}", soft_wrap=True)
+    listed = ", ".join(_contents(Path(result.run)))
+    if listed:
+        screen.print(f"  {listed}", soft_wrap=True)
+
+
+def _contents(folder: Path) -> list[str]:
+    names = [
+        name
+        for name in (
+            "front.csv",
+            "front.json",
+            "certificate.csv",
+            "certificate.json",
+            "job.toml",
+            "job.json",
+            "log.txt",
+        )
+        if (folder / name).exists()
+    ]
+    pictures = len(list((folder / "figures").glob("*.png")))
+    return [*names, f"figures/ ({pictures} pictures)"] if pictures else names
+
+
+def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:
+    """Return what a job file states, and its tables, both with the options that were given."""
+    from ...optimise.job import load_job, read_job
+
+    problem, tables = load_job(job), read_job(job)
+    settings = problem.settings
+    if designs is not None:
+        settings = replace(settings, designs=designs)
+    if seed is not None:
+        settings = replace(settings, seed=seed)
+    given = {"designs": settings.designs, "seed": settings.seed}
+    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **given}}
+
+
+def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim, engine: Engine) -> ParetoFront:
+    from ...optimise.solve import solve
+
+    with progress_bar() as show:
+
+        def tell(at: Progress) -> None:
+            claim.tell(at)
+            run.log(
+                f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
+                f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
+            )
+            show(at)
+
+        return solve(
+            problem,
+            progress=tell,
+            cancelled=lambda: interruption.asked() or claim.cancel_asked,
+            resume=tuple(claim.records()),
+            keep=claim.keep,
+            engine=engine,
+        )
+
+
+def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption) -> None:
+    from ..figures import draw_front
+
+    with waiting("drawing the figures"), disk(run.figures):
+        for file in draw_front(front, run.figures):
+            run.log(f"figures/{file.name}")
+            if interruption.asked():
+                run.log("interrupted; the other figures are left out")
+                return
+
+
+def _versions(front: ParetoFront) -> dict[str, str]:
+    from importlib.metadata import version
+
+    return {**front.versions, "matplotlib": version("matplotlib")}

@@ -1,0 +1,49 @@
+"""Options of the command line that are quantities: a number with its unit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Problem
+
+
+def length_option(name: str, text: str | None, problem: Problem | None) -> float:
+    """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
+    from ...optimise.units import LENGTH
+
+    if text is not None:
+        return value_option(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
+    bounds = getattr(problem, name, None)
+    if bounds is not None and bounds.fixed:
+        return float(bounds.lower)
+    if name == "offset" and problem is None:
+        return 0.0
+    raise InputError(f'--{name} is needed; write it like --{name} "40 mm"')
+
+
+def speed_option(text: str) -> float:
+    """Return the crank speed, rad/s."""
+    from ...optimise.units import ANGULAR_SPEED
+
+    return value_option("--speed", text, ANGULAR_SPEED)
+
+
+def value_option(option: str, text: str, kind: Any, *, sign: Any = "any") -> float:
+    """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
+    from ...optimise.units import shown, to_si
+
+    try:
+        float(text)
+    except ValueError:
+        pass
+    else:
+        raise InputError(
+            f'{option} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"'
+        )
+    try:
+        return to_si(text, kind, sign=sign)
+    except InputError as error:
+        raise InputError(f"{option} {error}") from None

@@ -1,0 +1,129 @@
+"""`slidercrank jobs`, `cancel`, `resume` and `delete`: the jobs of a store."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Annotated, get_args
+
+import typer
+
+from ...model.errors import InputError
+from .job_names import Name, find_job, store_that_is_there
+from .optimise import Json
+from .screen import console, give, say
+from .stores import Address, has_store, store_address
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ..store import Job
+
+
+def jobs(
+    state: Annotated[
+        list[str] | None,
+        typer.Option(help="Only those that are queued, running, done, infeasible, cancelled or failed. Repeatable."),
+    ] = None,
+    name: Annotated[str, typer.Option(help="Only those whose name has this in it.")] = "",
+    limit: Annotated[int, typer.Option(min=1, max=10_000, help="The latest so many.")] = 20,
+    store: Address = None,
+    json: Json = False,
+) -> None:
+    """List the jobs of a store, the latest first, with what they found."""
+    from ..job_record import job_record
+    from ..runs.result import json_text
+    from ..store import State
+
+    known = get_args(State)
+    for one in state or []:
+        if one not in known:
+            raise InputError(f"a job is {', '.join(known[:-1])} or {known[-1]}; got --state {one[:80]!r}; choose one")
+    found: list[Job] = []
+    if has_store(store):
+        with store_that_is_there(store) as opened:
+            states: list[State] = state or []  # type: ignore[assignment] # looked at above
+            found = opened.jobs(states=states, name=name, limit=limit)
+    if json:
+        give(json_text([job_record(job) for job in found]))
+    elif found:
+        _show(console(), found)
+    else:
+        say(
+            f"slidercrank: no such job in {store_address(store)}"
+            if state or name
+            else f"slidercrank: no job in {store_address(store)} yet; put one in with: slidercrank submit JOB"
+        )
+
+
+def cancel(job: Name, store: Address = None, json: Json = False) -> None:
+    """Cancel a job. It keeps what it found and can go on with resume; its worker hears of it within 2 s."""
+    with store_that_is_there(store) as opened:
+        after = opened.cancel(find_job(opened, job).id)
+    _tell(after, json, "asked to stop" if after.cancel_asked and after.state == "running" else "")
+
+
+def resume(job: Name, store: Address = None, json: Json = False) -> None:
+    """Queue a cancelled or failed job again, to go on from the rounds that it has."""
+    with store_that_is_there(store) as opened:
+        _tell(opened.resume(find_job(opened, job).id), json)
+
+
+def delete(job: Name, store: Address = None, json: Json = False) -> None:
+    """Delete a job that has ended and everything of it, for good."""
+    from ..runs.result import json_text
+
+    with store_that_is_there(store) as opened:
+        found = find_job(opened, job)
+        opened.delete(found.id)
+    give(json_text({"deleted": found.id}) if json else f"job {found.id}: {found.name}, deleted\n")
+
+
+def _tell(job: Job, json: bool, what: str = "") -> None:
+    from ..job_record import job_record
+    from ..runs.result import json_text
+
+    text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)
+    give(json_text(job_record(job)) if json else f"job {job.id}: {job.name}, {text}\n")
+
+
+def _show(screen: Console, found: list[Job]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    from .tables import print_table
+
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    table.add_column("no.", justify="right", no_wrap=True)
+    for title in ("submitted", "job", "state", "where it stands"):
+        table.add_column(title, no_wrap=True)
+    for job in found:
+        submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
+        table.add_row(str(job.id), submitted, _short(job.name, 32), _state(job), _short(_standing(job), 90))
+    print_table(screen, table)
+
+
+def _state(job: Job) -> str:
+    return "stopping" if job.state == "running" and job.cancel_asked else job.state
+
+
+def _standing(job: Job) -> str:
+    """Return how far a job is, or what it found, in words."""
+    from ..designs.columns import split_unit
+
+    if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
+        best = []
+        for column, value in job.summary["best"].items():
+            name, unit, _ = split_unit(column)
+            best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
+        return f"{job.summary['designs']} designs; best {', '.join(best)}"
+    if job.state == "running" and job.progress is not None:
+        at = job.progress
+        return f"{at['stage']} {at['round']}/{at['rounds']}, {at['feasible']:,} feasible"
+    if job.state == "running":
+        return f"with {job.worker}"
+    return job.reason
+
+
+def _short(text: str, most: int) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= most else f"{text[: most - 3]}..."

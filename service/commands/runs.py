@@ -1,0 +1,141 @@
+"""`slidercrank front` and `slidercrank export`: runs that are on the disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ...model.errors import InputError
+from ..runs.finding_runs import find_run
+from ..runs.result import Result, csv_text, json_text
+from ..runs.run_folder import runs_place, write_file
+from ..runs.stored_runs import read_run
+from .optimise import NOTHING_FEASIBLE, Json, Runs, show_result
+from .screen import console, give, say
+from .tables import ROWS, show_design, show_front
+
+Run = Annotated[
+    str,
+    typer.Argument(
+        metavar="RUN",
+        help='The run: its folder, its name in the place of runs, the start of the name, or "latest".',
+    ),
+]
+
+
+def front(
+    run: Run,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CONDITION",
+            help='Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". '
+            "May be repeated.",
+        ),
+    ] = None,
+    sort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Sort by a quantity or column: best first for an objective, else smallest first.",
+        ),
+    ] = None,
+    reverse: Annotated[bool, typer.Option("--reverse", help="Turn the order round.")] = False,
+    columns: Annotated[
+        str | None,
+        typer.Option(metavar="NAMES", help="Quantities or columns to show, separated by commas."),
+    ] = None,
+    rows: Annotated[int, typer.Option(min=0, help="Show at most so many designs; 0 shows all.")] = ROWS,
+    knee: Annotated[
+        bool, typer.Option("--knee", help="Choose one design: the nearest to the ideal, objectives by their range.")
+    ] = False,
+    topsis: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WEIGHTS",
+            help='Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
+        ),
+    ] = None,
+    lexicographic: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RANKING",
+            help="Choose one design by ranked objectives, each with what it may give up for the next, such as "
+            '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
+        ),
+    ] = None,
+    runs: Runs = None,
+    json: Json = False,
+) -> None:
+    """Show the front of a run again, a part of it, or one design chosen from it.
+
+    --knee, --topsis and --lexicographic choose among the designs that meet --where.
+    """
+    from ..designs.choosing import chosen_rows, none_meets, part_of
+    from ..designs.columns import find_columns
+    from ..designs.picking_options import picked_row
+
+    result = read_run(find_run(run, runs_place(runs)))
+    if not result.designs:
+        if json:
+            give(json_text(result.record()))
+        say(f"slidercrank: {result.message}")
+        raise typer.Exit(NOTHING_FEASIBLE)
+    keys = list(result.designs[0])
+    shown = find_columns(columns, keys) if columns else None
+    chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
+    one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
+    if one is not None:
+        chosen = [one]
+    if json:
+        picked = part_of(result, chosen)
+        record = picked.record()
+        if shown is not None:
+            names = [column.key for column in shown]
+            record["designs"] = [{name: row[name] for name in names} for row in record["designs"]]
+        give(json_text(record if one is None else {**record, "number": one + 1}))
+    elif one is not None:
+        screen = console()
+        screen.print(f"{result.name}: design {one + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
+        show_design(screen, result.designs[one], only=[column.key for column in shown] if shown else None)
+    elif not (where or sort or reverse or columns or rows != ROWS):
+        show_result(result)
+    elif chosen:
+        screen = console()
+        screen.print(f"{result.name}: {_count(chosen, result)}", style="bold", soft_wrap=True)
+        show_front(screen, result, chosen, columns=shown, most=rows)
+    if not chosen:
+        say(f"slidercrank: {none_meets(result, where or [])}")
+        raise typer.Exit(NOTHING_FEASIBLE)
+
+
+def export(
+    run: Run,
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the designs as CSV; - is standard output.")
+    ] = None,
+    json: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is standard output.")
+    ] = None,
+    runs: Runs = None,
+) -> None:
+    """Write the designs of a run to a file."""
+    if csv is None and json is None:
+        raise InputError("say what to export: --csv FILE, --json FILE, or both")
+    if csv == json == "-":
+        raise InputError("only one of --csv and --json can go to standard output; name a file for the other")
+    result = read_run(find_run(run, runs_place(runs)))
+    for target, text in ((csv, csv_text(result.designs)), (json, json_text(result.record()))):
+        if target == "-":
+            give(text)
+        elif target is not None:
+            write_file(Path(target), text)
+            say(f"{target}: {len(result.designs)} designs")
+
+
+def _count(chosen: list[int], result: Result) -> str:
+    if len(chosen) == len(result.designs):
+        return f"{len(chosen)} designs"
+    return f"{len(chosen)} of {len(result.designs)} designs"

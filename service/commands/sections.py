@@ -1,0 +1,86 @@
+"""`slidercrank sections`: widths and depths of crank and rod of one design, for least mass."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..runs.result import json_text
+from .options import length_option
+from .screen import console, give, waiting
+
+if TYPE_CHECKING:
+    from ...optimise.convex.sections import Sections
+
+_ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
+
+
+def sections(
+    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with a table [sections].")],
+    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help='Crank, such as "40 mm".')] = None,
+    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod.")] = None,
+    offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset of the slider line.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+) -> None:
+    """Size crank and rod of one design as rectangular bars of least mass.
+
+    They keep the stress, fatigue, buckling and bearing limits of the job's [sections] under the forces that the machine
+    puts on them, their own mass included. What JOB says of the links' masses is not used. Dimensions that JOB fixes
+    need not be repeated.
+    """
+    from ...model.linkage import Linkage
+    from ...optimise.convex.sections import size_sections
+    from ...optimise.job import load_job, load_sections
+
+    problem = load_job(job)
+    material, limits = load_sections(job)
+    lengths = [
+        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
+    ]
+    linkage = Linkage(lengths[0], lengths[1], lengths[2], problem.mechanism.branch)
+    with waiting("sizing the sections"):
+        found = size_sections(problem.mechanism, linkage, material, limits)
+    if json:
+        give(json_text(_numbers(found, lengths)))
+    else:
+        _show(found)
+
+
+def _numbers(found: Sections, lengths: list[float]) -> dict[str, Any]:
+    """Return the result ready for JSON."""
+    return {
+        "crank_mm": 1e3 * lengths[0],
+        "rod_mm": 1e3 * lengths[1],
+        "offset_mm": 1e3 * lengths[2],
+        "crank_width_mm": 1e3 * found.crank.width,
+        "crank_depth_mm": 1e3 * found.crank.depth,
+        "rod_width_mm": 1e3 * found.rod.width,
+        "rod_depth_mm": 1e3 * found.rod.depth,
+        "crank_mass_kg": found.crank.mass(lengths[0]),
+        "rod_mass_kg": found.rod.mass(lengths[1]),
+        "mass_kg": found.mass,
+        "settled": found.settled,
+        "iterations": found.iterations,
+        "utilisation": found.utilisation,
+        "mass_percent_per_percent": found.sensitivity,
+    }
+
+
+def _show(found: Sections) -> None:
+    from rich.table import Table
+
+    screen = console()
+    for name, bar in (("crank", found.crank), ("rod", found.rod)):
+        screen.print(f"{name}: width {1e3 * bar.width:.4g} mm, depth {1e3 * bar.depth:.4g} mm", soft_wrap=True)
+    settled = "" if found.settled else "; sections and dynamics have not settled"
+    screen.print(f"mass of both: {found.mass:.5g} kg, after {found.iterations} iterations{settled}", soft_wrap=True)
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("limit")
+    table.add_column("used, %", justify="right")
+    table.add_column("1 % more of it saves", justify="right")
+    for name, used in found.utilisation.items():
+        rate = found.sensitivity[name]
+        table.add_row(name, f"{100.0 * used:.4g}", f"{rate:.3g} % of mass" if rate > _ACTIVE else "")
+    screen.print(table)

@@ -1,0 +1,139 @@
+"""`slidercrank serve`: the API and its workers, on this machine."""
+
+from __future__ import annotations
+
+import os
+from typing import Annotated
+
+import typer
+
+from ...model.errors import InputError
+from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
+from ..workers.sizes import size_of
+from .screen import give
+from .stores import Address, open_store, store_address
+from .worker_options import (
+    Grace,
+    Lease,
+    LogFormat,
+    Logs,
+    MostEvaluations,
+    MostMemory,
+    MostRunning,
+    MostSeconds,
+)
+
+TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
+_SHORTEST = 16
+
+
+def serve(
+    store: Address = None,
+    host: Annotated[str, typer.Option(help="Address of this machine to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="To listen on; 0 takes any that is free.")] = 8765,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=256, help="How many jobs are solved here at a time.  [default: one a processor, at most 4]"
+        ),
+    ] = None,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            help=f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
+            f"[default: {TOKEN_VARIABLE}, else a random one, printed once]"
+        ),
+    ] = None,
+    no_token: Annotated[bool, typer.Option("--no-token", help="Let in all users of this machine.")] = False,
+    allow_host: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="By which the service may be called, too. Repeatable.")
+    ] = None,
+    allow_quantity: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MODULE:FUNCTION", help="That jobs may name as a quantity of their own. Repeatable."),
+    ] = None,
+    submissions: Annotated[
+        int, typer.Option("--submissions-per-minute", min=0, help="Of all clients together; 0 is no limit.")
+    ] = 600,
+    most_queued: Annotated[int, typer.Option(min=1, help="How many jobs may wait.")] = 10_000,
+    most_running: MostRunning = None,
+    most_seconds: MostSeconds = None,
+    most_evaluations: MostEvaluations = None,
+    most_memory: MostMemory = None,
+    lease: Lease = 30.0,
+    grace: Grace = 10.0,
+    cores: Cores = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsAuthority = None,
+    tls_cert: TlsCertificate = None,
+    tls_key: TlsKey = None,
+    log_format: Logs = LogFormat.text,
+) -> None:
+    """Serve the API, and solve its jobs, until stopped.
+
+    Prints the address with the token once it listens. Ctrl-C and SIGTERM let every round end, or hand its job back when
+    that takes longer than --grace; a service that is started again goes on with it.
+    """
+    from ..api.app import create_app
+    from ..api.server import listen, names_of, run_server, url_of
+    from ..api.settings import Settings
+    from ..store import Limits
+    from ..workers.logs import set_up_logs
+    from ..workers.supervisor import Supervisor
+    from ..workers.worker import Terms
+    from ..workers.worker_process import WorkerSettings
+    from .termination import Termination
+
+    secret, made = _token(token, no_token, host)
+    allowed = tuple(sorted(set(allow_quantity or ())))
+    memory = None if most_memory is None else size_of(most_memory, "--most-memory")
+    limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
+    settings = Settings(
+        token=secret,
+        hosts=(*names_of(host), *(allow_host or ())),
+        submissions_per_minute=submissions,
+        allowed_quantities=frozenset(allowed),
+        limits=limits,
+    )
+    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
+    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(max(1, processes))
+    work = WorkerSettings(
+        address=store_address(store),
+        lease=lease,
+        most_running=most_running,
+        terms=Terms(limits=limits, grace=grace, engine=engine, allowed_quantities=allowed),
+        log_format=log_format.value,
+    )
+    with Termination(), listen(host, port) as socket, open_store(store) as opened:
+        opened.most_queued = most_queued
+        app = create_app(opened, settings)
+        give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
+        set_up_logs(log_format.value)
+        with Supervisor(work, processes):
+            run_server(app, socket)
+
+
+def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:
+    """Return the token, and whether it was made here. Raises `InputError` for one that protects nothing."""
+    import secrets
+
+    from ..api.server import is_loopback
+
+    if none:
+        if given is not None:
+            raise InputError("a service has a token or none; got --token and --no-token; leave one out")
+        if not is_loopback(host):
+            raise InputError(
+                f"without a token only this machine may be let in; got --no-token and --host {host}; leave --no-token "
+                "out, or listen on 127.0.0.1"
+            )
+        return None, False
+    given = given if given is not None else os.environ.get(TOKEN_VARIABLE)
+    if given is None:
+        return secrets.token_urlsafe(32), True
+    if len(given) < _SHORTEST or not (given.isascii() and given.isprintable()) or " " in given:
+        raise InputError(
+            f"a token has at least {_SHORTEST} printable ASCII characters and no spaces; got {len(given)} characters; "
+            "leave it out for a random one"
+        )
+    return given, False

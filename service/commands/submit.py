@@ -1,0 +1,193 @@
+"""`slidercrank submit` and `slidercrank watch`: a job for the workers, and what happens to it until it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import StoreError
+from ..workers.sizes import size_of
+from .job_names import Name, find_job, store_that_is_there
+from .optimise import EXIT_CODES, Json
+from .screen import console, give, progress_bar, say
+from .stores import Address, open_store
+
+if TYPE_CHECKING:
+    from ..store import Artefact, Event, Job, Store
+
+FAILED = 2
+_LOOK = 0.25  # s between two looks for new events
+_AWAY = 1.0  # s between two tries while the database is away
+_MEDIA = {".toml": "application/toml", ".json": "application/json"}
+
+
+def submit(
+    job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
+    store: Address = None,
+    priority: Annotated[int, typer.Option(help="From -1000 to 1000; jobs of higher ones are solved first.")] = 0,
+    key: Annotated[
+        str | None, typer.Option(help="Of this submission: repeating it with the same key gives the same job.")
+    ] = None,
+    attempts: Annotated[int, typer.Option(help="How often it is tried, without going forward, before it fails.")] = 3,
+    seconds: Annotated[float | None, typer.Option(help="End its search after so long, with what it found.")] = None,
+    evaluations: Annotated[
+        int | None, typer.Option(help="End its search after so many designs, with what it found.")
+    ] = None,
+    memory: Annotated[
+        str | None, typer.Option(metavar="SIZE", help='Let it fail if its worker takes more, such as "2 GB".')
+    ] = None,
+    watch: Annotated[bool, typer.Option("--watch", help="Show what happens to it until it ends.")] = False,
+    json: Json = False,
+) -> None:
+    """Queue a job for the workers of a store, see `serve` and `worker`.
+
+    It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
+    """
+    from ...optimise.job import load_job, read_job
+    from ..job_record import job_record
+    from ..runs.result import json_text
+    from ..store import Limits
+    from ..submission import submit as put_in
+
+    load_job(job, allow_user_code=False)  # for its messages, which name the file
+    most = None if memory is None else size_of(memory, "--memory")
+    limits = Limits(seconds=seconds, evaluations=evaluations, memory=most)
+    with open_store(store) as opened:
+        queued = put_in(
+            opened,
+            read_job(job),
+            priority=priority,
+            key=key,
+            most_attempts=attempts,
+            limits=limits,
+            source=_source(job),
+        )
+        if not (watch and json):
+            give(json_text(job_record(queued)) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
+        if watch:
+            raise typer.Exit(_follow(opened, queued, json=json))
+
+
+def watch(job: Name, store: Address = None, json: Json = False) -> None:
+    """Show what happened and happens to a job until it ends; --json gives one event a line.
+
+    The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C leaves the job alone.
+    """
+    with store_that_is_there(store) as opened:
+        raise typer.Exit(_follow(opened, find_job(opened, job), json=json))
+
+
+def _source(job: Path) -> Artefact | None:
+    """Return the job file as it is; None if it needs files beside it, which the tables of the job have in them."""
+    from ...optimise.job import files_beside
+    from ..store import Artefact
+
+    suffix = job.suffix.lower()
+    if files_beside(job):
+        return None
+    return Artefact(name=f"job{suffix}", media_type=_MEDIA[suffix], content=job.read_bytes())
+
+
+def _follow(store: Store, job: Job, *, json: bool) -> int:
+    """Write the events of a job until it ends, and return its exit code."""
+    try:
+        with _shown(json) as show:
+            for event in events_until_end(store, job.id):
+                show(event)
+        ended = store.job(job.id)
+        if not json:
+            _close(store, ended)
+    except KeyboardInterrupt:
+        say(f"job {job.id} is left as it is; stop it with: slidercrank cancel {job.id}")
+        raise
+    return EXIT_CODES.get(ended.state, FAILED)
+
+
+def events_until_end(store: Store, number: int) -> Iterator[Event]:
+    """Yield what happened to a job and what happens, until it has ended; while the database is away, wait for it.
+
+    Raises `NotFound` if the job is deleted meanwhile.
+    """
+    from ..store.database import Unavailable
+    from ..store.records import ENDED
+
+    last, away = 0, False
+    while True:
+        try:
+            ended = store.job(number).state in ENDED  # asked first: an ended job has all its events
+            found = store.events(number, after=last)
+        except Unavailable as error:
+            if not away:
+                say(f"slidercrank: {error}; trying again")
+            away = True
+            time.sleep(_AWAY)
+            continue
+        away = False
+        for event in found:
+            last = event.number
+            yield event
+        if ended and not found:
+            return
+        if not found:
+            time.sleep(_LOOK)
+
+
+@contextlib.contextmanager
+def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
+    """Yield what writes an event: as JSON, or in words, with a bar for the progress where there is a terminal."""
+    from .screen import error_console
+
+    if json:
+        yield lambda event: give(f"{_line(event)}\n")
+        return
+    from ...optimise.front import Progress
+
+    live = error_console().is_terminal
+    with progress_bar() as bar:
+
+        def show(event: Event) -> None:
+            if live and event.kind == "progress":
+                bar(Progress(**event.data))
+            else:
+                give(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
+
+        yield show
+
+
+def _line(event: Event) -> str:
+    """Return an event as the API has it, on one line."""
+    from ..store.packing import text_of
+
+    return text_of({"number": event.number, "at": event.at, "kind": event.kind, "data": event.data})
+
+
+def in_words(event: Event) -> str:
+    """Return what happened, on one line."""
+    data: dict[str, Any] = event.data
+    if event.kind == "progress":
+        return (
+            f"{data['stage']} {data['round']}/{data['rounds']}: {data['evaluations']:,} evaluated, "
+            f"{data['feasible']:,} feasible, hypervolume {data['hypervolume'] or 0.0:.4f}"
+        )
+    text = data.get("text") or ": ".join(part for part in (data.get("state"), data.get("reason")) if part)
+    return " ".join(str(text).split())
+
+
+def _close(store: Store, job: Job) -> None:
+    """Write the front of a job that has ended, if there is one."""
+    from .tables import show_front
+
+    if job.summary is None or not job.summary["designs"]:
+        return
+    try:
+        result = store.result(job.id)
+    except StoreError:
+        return
+    screen = console()
+    screen.print(f"\n{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
+    show_front(screen, result, range(len(result.designs)))

@@ -1,0 +1,221 @@
+"""What was understood of a job, in words and as data."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ...model.friction import Friction
+from ...model.links import Bar, Link
+from ...model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from ...model.mechanism import Mechanism, Tolerance
+from ...model.varying import Varying
+from ...objectives.motion_deviation import MotionDeviation
+from ...objectives.own.quantity import OwnQuantity
+from ...optimise.convex.costs import Cost
+from ...optimise.elimination import UNKNOWNS, sheets
+from ...optimise.evaluation import constraints_of
+from ...optimise.problem import Constraint, Objective, Problem, Range
+
+
+def summarise(problem: Problem) -> dict[str, Any]:
+    """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, search."""
+    sheet = sheets(problem)[0]
+    free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
+    settings = problem.settings
+    samples = f", {settings.samples} samples a round" if settings.samples else ""
+    return {
+        "name": problem.name,
+        "given": [*_given(problem.mechanism), *_own(problem)],
+        "tolerances": _tolerances(problem.mechanism),
+        "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
+        "variables": [
+            *(f"{name} {_lengths(problem, name)}" for name in UNKNOWNS),
+            *(_varying(item) for item in problem.mechanism.varying),
+            *_choices(problem),
+        ],
+        "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
+        "objectives": [_objective(objective, problem) for objective in problem.objectives],
+        "unknowns": 3 + len(problem.mechanism.varying),
+        "degrees_of_freedom": free,
+        "eliminated": list(sheet.eliminated),
+        "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
+    }
+
+
+def freedom_in_words(summary: dict[str, Any]) -> str:
+    """Return the degrees of freedom left as a sentence."""
+    left, eliminated, unknowns = summary["degrees_of_freedom"], summary["eliminated"], summary["unknowns"]
+    what = "dimensions" if unknowns == 3 else "dimensions and other numbers"
+    text = f"{left} of {unknowns} {what} left to choose"
+    if left < 0:
+        text = f"more equalities than dimensions, by {-left}: no design can be expected"
+    elif left == 0:
+        text = f"0 of {unknowns} {what} left to choose: the equalities leave single designs"
+    if eliminated:
+        text += f"; {', '.join(name.replace('_', ' ') for name in eliminated)} met exactly by elimination"
+    return text
+
+
+def _given(mechanism: Mechanism) -> list[str]:
+    turning = "clockwise" if mechanism.speed < 0.0 else "counter-clockwise"
+    speed = mechanism.speed * 30.0 / math.pi
+    lines = [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
+    if mechanism.acceleration:
+        lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
+    lines += [f"{name}: {_link(getattr(mechanism, name))}" for name in ("crank", "rod")]
+    if mechanism.counterweight.mass:
+        weight = mechanism.counterweight
+        lines.append(
+            f"counterweight: {weight.mass:.6g} kg, {1e3 * weight.radius:.6g} mm from the pivot "
+            f"at {math.degrees(weight.angle):.6g} deg from the crank"
+        )
+    lines.append(f"slider: {mechanism.slider_mass:.6g} kg")
+    if any(mechanism.gravity):
+        x, y = mechanism.gravity
+        lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")
+    lines += [f"load: {_load(load)}" for load in mechanism.loads]
+    lines += _friction(mechanism.friction)
+    if mechanism.branch == "crossed":
+        lines.append("crossed branch")
+    return lines
+
+
+def _own(problem: Problem) -> list[str]:
+    lines = [f"{own.name}: {own.title}, by {own.function}" for own in problem.own if isinstance(own, OwnQuantity)]
+    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation)}
+    return [
+        *(f"target motion: {len(t.positions)} points, phase {t.phase}, shift {t.shift}" for t in targets),
+        *lines,
+    ]
+
+
+def _link(link: Link) -> str:
+    if isinstance(link, Bar):
+        return f"bar {1e3 * link.width:.6g} x {1e3 * link.depth:.6g} mm (width x depth), {link.density:.6g} kg/m^3"
+    if not link.mass:
+        return "no mass"
+    centre = "half-way" if link.centre is None else f"{1e3 * link.centre:.6g} mm along"
+    inertia = "of a slender rod" if link.inertia is None else f"{link.inertia:.6g} kg m^2"
+    across = f" and {1e3 * link.centre_across:.6g} mm across" if link.centre_across else ""
+    return f"{link.mass:.6g} kg, mass centre {centre}{across}, inertia {inertia}"
+
+
+def _load(load: Load) -> str:
+    if isinstance(load, StrokeForce):
+        if load.outward == load.inward:
+            return f"{load.outward:.6g} N, positive outward"
+        return f"{load.outward:.6g} N in the outward and {load.inward:.6g} N in the inward stroke, positive outward"
+    if isinstance(load, Spring):
+        return f"spring {load.stiffness:.6g} N/m, free at {1e3 * load.free_position:.6g} mm from the {load.datum}"
+    if isinstance(load, Viscous):
+        return f"viscous, {load.coefficient:.6g} N s/m"
+    if isinstance(load, PositionTable):
+        return f"table of {len(load.positions)} positions from the {load.datum}, {load.during}"
+    assert isinstance(load, AngleTable)
+    return f"table of {len(load.angles)} crank angles, {load.during}"
+
+
+def _friction(friction: Friction) -> list[str]:
+    lines = [f"friction in the guide: coefficient {friction.guide:.6g}"] if friction.guide else []
+    for name in ("crank_pivot", "crank_pin", "slider_pin"):
+        pin = getattr(friction, name)
+        if pin.circle:
+            lines.append(
+                f"friction in the {name.replace('_', ' ')}: radius {1e3 * pin.radius:.6g} mm, "
+                f"coefficient {pin.coefficient:.6g}"
+            )
+    return lines
+
+
+def _tolerances(mechanism: Mechanism) -> list[str]:
+    tolerances = mechanism.tolerances
+    lines = []
+    for name in UNKNOWNS:
+        text = _tolerance(getattr(tolerances, name))
+        if text:
+            lines.append(f"{name} {text}")
+    if tolerances.crank_angle.absolute:
+        lines.append(f"crank angle {math.degrees(tolerances.crank_angle.absolute):.6g} deg")
+    for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
+        clearance = getattr(tolerances.clearances, name)
+        if clearance:
+            lines.append(f"radial clearance of the {name.replace('_', ' ')} {1e3 * clearance:.6g} mm")
+    window = tolerances.window
+    if lines and (window.during != "cycle" or window.start > 0.0 or window.end < 1.0):
+        lines.append(f"counted in the {window.during}, {window.start:.6g} to {window.end:.6g} of the stroke")
+    return lines
+
+
+def _tolerance(tolerance: Tolerance) -> str:
+    parts = []
+    if tolerance.absolute:
+        parts.append(f"{1e3 * tolerance.absolute:.6g} mm")
+    if tolerance.fraction:
+        parts.append(f"{100.0 * tolerance.fraction:.6g} %")
+    return " + ".join(parts)
+
+
+def _cost(name: str, cost: Cost) -> str:
+    factor, unit = (math.degrees(1.0), "deg") if name == "crank_angle" else (1e3, "mm")
+    power = "" if cost.exponent == 1.0 else f"^{cost.exponent:.6g}"
+    fixed = f"{cost.fixed:.6g} + " if cost.fixed else ""
+    ends = [f"at least {factor * cost.least:.6g} {unit}"] if cost.least else []
+    ends += [f"at most {factor * cost.greatest:.6g} {unit}"] if math.isfinite(cost.greatest) else []
+    text = f"{name.replace('_', ' ')} {fixed}{cost.cost:.6g} ({factor * cost.at:.6g} {unit} / tolerance){power}"
+    return ", ".join([text, *ends])
+
+
+def _lengths(problem: Problem, name: str) -> str:
+    """Return where a dimension may lie; of choices all that there are."""
+    found = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
+    if len(found) < 2:
+        return _range(getattr(problem, name))
+    return f"{', '.join(f'{1e3 * lower:.6g}' for lower, _ in found)} mm, one of these"
+
+
+def _varying(item: Varying) -> str:
+    from ...objectives.varying_column import varying_column
+
+    unit = varying_column(item)[1]
+    ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()
+    return f"{item.name} {ends}"
+
+
+def _choices(problem: Problem) -> list[str]:
+    """Return what there is to choose from, and how many combinations that makes."""
+    lines = []
+    for place, name in enumerate(problem.choices):
+        labels = dict.fromkeys(variant.labels[place] for variant in problem.variants)
+        lines.append(f"{name}: {', '.join(labels)}")
+    return [*lines, f"{len(problem.variants)} combinations of choices, all tried"] if problem.variants else []
+
+
+def _range(bounds: Range) -> str:
+    if bounds.fixed:
+        return f"{1e3 * bounds.lower:.6g} mm, fixed"
+    return f"{1e3 * bounds.lower:.6g} to {1e3 * bounds.upper:.6g} mm"
+
+
+def _rule(constraint: Constraint, problem: Problem) -> str:
+    of = problem.quantity(constraint.quantity)
+    own = constraint in problem.constraints
+
+    def shown(value: float) -> str:
+        return f"{value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
+
+    if constraint.equality:
+        return f"{of.title} = {shown(constraint.lower or 0.0)}"
+    parts = [of.title]
+    if constraint.lower is not None:
+        parts = [*parts, f"at least {shown(constraint.lower)}"]
+    if constraint.upper is not None:
+        parts = [*parts, *(["and"] if constraint.lower is not None else []), f"at most {shown(constraint.upper)}"]
+    return " ".join(parts) + ("" if own else " (not in the job: a floor that is always kept)")
+
+
+def _objective(objective: Objective, problem: Problem) -> str:
+    of = problem.quantity(objective.quantity)
+    if objective.target is None:
+        return f"{objective.sense} {of.title}"
+    return f"bring {of.title} to {objective.target * of.unit.factor:.6g} {of.unit.symbol}".rstrip()

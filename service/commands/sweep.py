@@ -1,0 +1,127 @@
+"""`slidercrank sweep`: quantities over one or two of crank, rod, offset and speed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ...model.errors import InputError
+from ..runs.result import json_text, rows_of
+from ..runs.run_folder import disk
+from .options import length_option, value_option
+from .screen import console, give, say
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from ...objectives.sweep import Axis
+
+_FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
+_LIST = re.compile(r"\s*(\w+)\s*=\s*([^.:]*(?:\.\d[^.:]*)*)", re.ASCII | re.DOTALL)
+_EXAMPLE = '--over "offset=0 mm..20 mm:5" or --over "offset=0 mm, 10 mm, 20 mm"'
+MOST_VALUES = 10_000
+
+
+def sweep(
+    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file, .toml or .json.")],
+    over: Annotated[
+        list[str],
+        typer.Option(metavar="RANGE", help='What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.'),
+    ],
+    of: Annotated[
+        list[str], typer.Option(metavar="QUANTITY", help="What to compute, such as peak_torque. Repeatable.")
+    ],
+    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help="Crank, unless fixed by JOB or swept.")] = None,
+    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod, likewise.")] = None,
+    offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset, likewise.")] = None,
+    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the sweep into sweep.png there.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+) -> None:
+    """Sweep quantities over one or two of crank, rod, offset and speed.
+
+    Where the linkage does not turn there is no value; the reason is given instead.
+    """
+    import numpy as np
+
+    from ...objectives.sweep import sweep as all_rows
+    from ...optimise.job import load_job
+
+    problem = load_job(job)
+    axes = [parse_axis(text) for text in over]
+    if len(axes) > 2:
+        raise InputError(f"a sweep is over one or two parameters; got {len(axes)} --over; leave out some")
+    swept = {axis.parameter for axis in axes}
+    given = {"crank": crank, "rod": rod, "offset": offset}
+    for name, text in given.items():
+        if name in swept and text is not None:
+            raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
+    lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in given.items()]
+    names = [name.strip() for text in of for name in text.split(",") if name.strip()]
+    table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names)
+    if json:
+        give(json_text(rows_of(table.to_dict("list"))))
+    else:
+        _show(table, axes, names)
+    if figures is not None:
+        from ..figures.sweep import draw_sweep
+
+        with disk(figures):
+            file = draw_sweep(table, axes, names, figures, title=problem.name)
+        say(f"figure: {file}")
+
+
+def parse_axis(text: str) -> Axis:
+    """Return what is swept from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
+    import numpy as np
+
+    from ...objectives.sweep import Axis
+    from ...optimise.units import ANGULAR_SPEED, LENGTH
+
+    match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
+    if match is None and (several is None or not several[2].strip()):
+        raise InputError(
+            f"a sweep is a name, its ends with units and the number of values; got {text!r}; write it like {_EXAMPLE}"
+        )
+    name = (match or several)[1]  # type: ignore[index]
+    kind = ANGULAR_SPEED if name == "speed" else LENGTH
+    sign = "positive" if name in ("crank", "rod") else "any"
+    option = f"--over {name}"
+    if match is None:
+        assert several is not None
+        values = [value_option(option, part, kind, sign=sign) for part in several[2].split(",")]
+        return Axis(name, tuple(values))  # type: ignore[arg-type]
+    first, last = (value_option(option, part, kind, sign=sign) for part in match.group(2, 3))
+    count = int(match[4])
+    if not 2 <= count <= MOST_VALUES or first == last:
+        raise InputError(
+            f"a range has two different ends and 2 to {MOST_VALUES:,} values; got {text!r}; write it like {_EXAMPLE}"
+        )
+    return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]
+
+
+def _show(table: pd.DataFrame, axes: Sequence[Axis], names: Sequence[str]) -> None:
+    from rich.table import Table
+
+    from ...objectives.registry import quantity
+    from .tables import print_table
+
+    screen, quantities = console(), [quantity(name) for name in names]
+    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for axis in axes:
+        shown.add_column(f"{axis.parameter}, {'rpm' if axis.parameter == 'speed' else 'mm'}", justify="right")
+    for item in quantities:
+        shown.add_column(f"{item.title}, {item.unit.symbol}".rstrip(", "), justify="right")
+    stuck = 0
+    for row in rows_of(table.to_dict("list")):
+        at = [row["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"] for axis in axes]
+        values = [row[item.field] for item in quantities]
+        stuck += bool(row["reason"])
+        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
+    print_table(screen, shown)
+    if stuck:
+        first = next(reason for reason in table["reason"] if reason)
+        say(f"{stuck} of {len(table)} without a value; the first: {first}")

@@ -1,0 +1,163 @@
+"""Results as tables for people: a front, one design."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..designs.columns import DIMENSIONS, Column, find_column
+from ..runs.result import Cell, Result, Row
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+ROWS = 15
+"""Designs shown of a front unless asked otherwise."""
+_DIGITS = 4
+
+
+def show_front(
+    screen: Console,
+    result: Result,
+    rows: Sequence[int],
+    *,
+    columns: Sequence[Column] | None = None,
+    most: int = ROWS,
+) -> None:
+    """Write designs of a front, given by their positions, as a table; spread over them if they are more than `most`.
+
+    columns: dimensions, stroke and objectives if None; what is the same in all designs is then said once above.
+    """
+    chosen = _spread(result, rows, most)
+    if columns is None:
+        columns, constant = _usual_columns(result)
+        if constant:
+            screen.print(f"In every design: {', '.join(constant)}.", soft_wrap=True)
+    screen.print()
+    print_table(screen, _front_table(result, chosen, columns))
+    notes = []
+    if len(chosen) < len(rows):
+        notes.append(f"{len(chosen)} of {len(rows)} designs shown")
+    if any(result.extremes[wanted.quantity] in chosen for wanted in result.objectives):
+        notes.append("* best in an objective")
+    if result.knee in chosen and len(result.objectives) > 1:
+        notes.append("knee: nearest to the ideal")
+    if notes:
+        screen.print(f" {';  '.join(notes)}", style="dim")
+
+
+def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None) -> None:
+    """Write all quantities of one design, one a line; those without a value are left out."""
+    from rich.table import Table
+
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("quantity")
+    table.add_column("value", justify="right")
+    table.add_column("unit")
+    for key in only or row:
+        value = row[key]
+        if value is None or (isinstance(value, float) and math.isnan(value)):
+            continue
+        column = find_column(key, row)
+        text = value if isinstance(value, str) else f"{value:.6g}"
+        table.add_row(column.title, text, column.unit)
+    print_table(screen, table)
+
+
+def print_table(screen: Console, table: Table) -> None:
+    """Write a table at its own width: a narrow terminal breaks its lines, but no number is cut."""
+    natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
+    before = screen.width
+    try:
+        screen.width = max(before, natural)
+        screen.print(table)
+    finally:
+        screen.width = before
+
+
+def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
+    """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
+    keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
+    keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
+    columns, constant = [], []
+    for key in keys:
+        column = find_column(key, result.designs[0])
+        values = [row[key] for row in result.designs]
+        numbers = [value for value in values if isinstance(value, float)]
+        same = len(numbers) > 1 and max(numbers) - min(numbers) <= 1e-9 * abs(max(numbers, key=abs))
+        if same and key not in {wanted.column for wanted in result.objectives}:
+            constant.append(f"{column.title} {numbers[0]:.6g} {column.unit}".rstrip())
+        else:
+            columns.append(column)
+    return columns, constant
+
+
+def _chosen(keys: list[str]) -> list[str]:
+    """Return the columns of what was chosen beside the dimensions: those between the offset and the stroke."""
+    if not {"offset_mm", "stroke_mm"} <= set(keys):
+        return []
+    return keys[keys.index("offset_mm") + 1 : keys.index("stroke_mm")]
+
+
+def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+    table.add_column("no.", justify="right", vertical="bottom")
+    for column in columns:
+        title = "\n".join(f"{line} " for line in (*_narrow(column.title), column.unit))
+        table.add_column(title, justify="right", vertical="bottom", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    best = {
+        (result.extremes[wanted.quantity], wanted.column)
+        for wanted in result.objectives
+        if wanted.quantity in result.extremes
+    }
+    texts = [_aligned([result.designs[row][column.key] for row in rows]) for column in columns]
+    for index, row in enumerate(rows):
+        knee = row == result.knee and len(result.objectives) > 1
+        cells = []
+        for column, text in zip(columns, texts, strict=True):
+            top = (row, column.key) in best
+            cells.append(Text(text[index] + ("*" if top else " "), style="bold" if top else ""))
+        table.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
+    return table
+
+
+def _narrow(title: str) -> list[str]:
+    """Return a title in short lines."""
+    return textwrap.wrap(title.removesuffix(", worst case"), 8, break_long_words=False)
+
+
+def _aligned(values: Sequence[Cell]) -> list[str]:
+    """Return numbers with the same decimals: four significant digits of the greatest."""
+    sizes = [abs(value) for value in values if isinstance(value, float) and math.isfinite(value)]
+    top = max(sizes, default=0.0)
+    decimals = max(0, min(9, _DIGITS - 1 - math.floor(math.log10(top)))) if top > 0.0 else 0
+    form = f".{decimals}f" if top == 0.0 or top >= 1e-3 else ".1e"
+    texts = []
+    for value in values:
+        if isinstance(value, str):
+            texts.append(value)
+        elif value is None or math.isnan(value):
+            texts.append("-")
+        else:
+            texts.append(format(value, form))
+    return texts
+
+
+def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
+    """Return up to `most` of the positions, in their order: the marked ones and others spread evenly."""
+    if most <= 0 or len(rows) <= most:
+        return list(rows)
+    marked = {*result.extremes.values(), result.knee} & set(rows)
+    rest = [row for row in rows if row not in marked]
+    free = max(0, most - len(marked))
+    steps = [round(index * (len(rest) - 1) / max(1, free - 1)) for index in range(free)]
+    chosen = marked | {rest[step] for step in steps}
+    return [row for row in rows if row in chosen]

@@ -1,0 +1,86 @@
+"""Columns of the table of designs by the names that people use, with their units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+
+# How a column's name ends, and its unit. The factors are what one SI unit is in it.
+_SUFFIXES = (
+    ("_m_s3", "m/s^3", 1.0),
+    ("_m_s2", "m/s^2", 1.0),
+    ("_m_s", "m/s", 1.0),
+    ("_kg_m2", "kg m^2", 1.0),
+    ("_kg_m3", "kg/m^3", 1.0),
+    ("_kg", "kg", 1.0),
+    ("_rad_s2", "rad/s^2", 1.0),
+    ("_rpm", "rpm", 9.549296585513721),
+    ("_Ns_per_m", "N s/m", 1.0),
+    ("_N_per_m", "N/m", 1.0),
+    ("_m2", "m^2", 1.0),
+    ("_Nm", "N m", 1.0),
+    ("_mm", "mm", 1e3),
+    ("_deg", "deg", 57.29577951308232),
+    ("_N", "N", 1.0),
+    ("_W", "W", 1.0),
+    ("_MPa", "MPa", 1e-6),
+)
+DIMENSIONS = ("crank", "rod", "offset")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column. key: as in JSON and CSV. title: for people. factor: what one SI unit is in its unit.
+
+    own_unit: whether it was called by the key that carries the unit, so that a plain number is in that unit.
+    """
+
+    key: str
+    title: str
+    unit: str
+    factor: float
+    own_unit: bool
+
+
+def find_column(name: str, keys: Collection[str]) -> Column:
+    """Return the column that a name means: a key of the table, or a quantity as in job files ("peak_torque").
+
+    Raises `InputError` with the nearest names.
+    """
+    from ...objectives.registry import QUANTITIES
+
+    name = name.strip()
+    aliases = {dimension: f"{dimension}_mm" for dimension in DIMENSIONS}
+    aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
+    aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
+    aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
+    key = name if name in keys else aliases.get(name, "")
+    if key not in keys:
+        from ...optimise.units import closest
+
+        near = closest(name, [*keys, *aliases]) if name else None
+        hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"
+        raise InputError(f"no quantity or column is called {name!r}; {hint}")
+    titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
+    plain, unit, factor = split_unit(key)
+    slack = key.startswith("slack_")
+    title = titles.get(
+        key.removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
+    )
+    return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
+
+
+def split_unit(key: str) -> tuple[str, str, float]:
+    """Return the name, the unit and the factor from SI of a key such as "peak_torque_Nm"."""
+    for suffix, unit, factor in _SUFFIXES:
+        if key.endswith(suffix):
+            return key.removesuffix(suffix), unit, factor
+    return key, "", 1.0
+
+
+def find_columns(text: str, keys: Collection[str]) -> list[Column]:
+    """Return the columns of a list of names, separated by commas."""
+    return [find_column(name, keys) for name in re.split(r"[,\s]+", text.strip(" ,"))]

@@ -1,0 +1,123 @@
+"""Options that choose one design of a stored run: `--knee`, `--topsis`, `--lexicographic`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+from ..runs.result import Result, Wanted
+
+if TYPE_CHECKING:
+    from ...optimise.stationarity import Array
+
+_TOPSIS = '--topsis "peak_torque=2, transmission_angle=1"'
+_LEXICOGRAPHIC = '--lexicographic "peak_torque: 5 %, transmission_angle"'
+
+
+def picked_row(
+    result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
+) -> int | None:
+    """Return which of the rows the options choose, None without such an option. Raises `InputError` for two."""
+    from ...optimise import picking
+
+    asked = [
+        name
+        for name, given in (("--knee", knee), ("--topsis", topsis), ("--lexicographic", lexicographic))
+        if given not in (None, False)
+    ]
+    if len(asked) > 1:
+        raise InputError(f"a design is chosen in one way; got {' and '.join(asked)}; keep one of them")
+    if not asked:
+        return None
+    weights = None if topsis is None else _weights(topsis, result.objectives)
+    order = None if lexicographic is None else _order(lexicographic, result.objectives)
+    if not rows:
+        return None
+    values = minimised_values(result)[list(rows)]
+    if weights is not None:
+        return rows[picking.topsis(values, weights)]
+    if order is not None:
+        return rows[picking.lexicographic(values, order)]
+    return rows[picking.knee(values)]
+
+
+def minimised_values(result: Result) -> Array:
+    """Return the objectives (n, m) of a stored run as they are minimised, in shown units."""
+    import numpy as np
+
+    values = [[wanted.rank(row) for wanted in result.objectives] for row in result.designs]
+    return np.array(values, dtype=np.float64).reshape(len(result.designs), len(result.objectives))
+
+
+def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
+    """Return a weight for each objective, zero for those not named."""
+    weights = dict.fromkeys(range(len(objectives)), 0.0)
+    named: set[int] = set()
+    for part in _parts(text, _TOPSIS):
+        name, equals, value = part.partition("=")
+        column = _column(name, objectives)
+        try:
+            weight = float(value)
+        except ValueError:
+            weight = math.nan
+        if not equals or not math.isfinite(weight) or weight < 0.0 or column in named:
+            raise InputError(
+                f"a weight is an objective, =, and a number of zero or more, each objective once; got {part!r}; "
+                f"write it like {_TOPSIS}"
+            )
+        named.add(column)
+        weights[column] = weight
+    return list(weights.values())
+
+
+def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, float]]:
+    """Return objectives in order as column, absolute tolerance (shown unit) and tolerance as share of the range."""
+    order = []
+    for part in _parts(text, _LEXICOGRAPHIC):
+        name, colon, value = part.partition(":")
+        column = _column(name, objectives)
+        absolute, share = _tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
+        order.append((column, absolute, share))
+    return order
+
+
+def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
+    from ...objectives.registry import quantity
+    from ...optimise.units import RATIO, kind_of, to_si
+
+    try:
+        if value.endswith("%"):
+            return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
+        kind = kind_of(wanted.unit)
+        if kind.unit and _plain(value):
+            raise InputError(f"must be {kind.name} with its unit, or a share of the range; got {value}")
+        return to_si(value, kind, sign="zero or more") * quantity(wanted.quantity).unit.factor, 0.0
+    except InputError as error:
+        raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
+
+
+def _plain(value: str) -> bool:
+    try:
+        float(value)
+    except ValueError:
+        return False
+    return True
+
+
+def _parts(text: str, example: str) -> list[str]:
+    parts = [part.strip() for part in text.split(",")]
+    if not all(parts):
+        raise InputError(f"objectives are separated by single commas; got {text!r}; write it like {example}")
+    return parts
+
+
+def _column(name: str, objectives: Sequence[Wanted]) -> int:
+    """Return the position of an objective called by its name, or by its column."""
+    name = name.strip()
+    for column, wanted in enumerate(objectives):
+        if name in (wanted.quantity, wanted.column):
+            return column
+    names = ", ".join(wanted.quantity for wanted in objectives)
+    raise InputError(f"a design is chosen by the objectives of its run: {names}; got {name!r}; name one of them")

@@ -1,0 +1,126 @@
+"""Designs of a stored front as the machines and linkages that they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ...model.errors import RunError
+from ...model.linkage import Linkage
+from ...model.mechanism import Mechanism
+from ...model.varying import Varying
+from ...objectives.varying_column import varying_column
+from ...optimise.problem import Problem, Range, Variant, choice_field
+from ..runs.result import Cell, Result, Row
+
+if TYPE_CHECKING:
+    from ...optimise.front import ParetoFront
+
+_MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
+
+
+@dataclass(frozen=True)
+class StoredDesign:
+    """A design of a stored front. values: crank, rod, offset, m, and of each varying number, SI.
+
+    part: the problem that it answers, with the choices that it made in place. mechanism: with its varying numbers.
+    """
+
+    part: Problem
+    values: tuple[float, ...]
+    mechanism: Mechanism
+    linkage: Linkage
+
+
+def design_of(problem: Problem, row: Row) -> StoredDesign:
+    """Return a design from its row in the table of the front of a problem; its shown dimensions come out the same.
+
+    Raises `RunError` for a row that does not belong to the problem.
+    """
+    values = _values(row, _factors(problem.mechanism))
+    part = problem.part(_variant(problem, row, values))
+    mechanism = part.mechanism.at(values[3:])
+    crank, rod, offset = values[:3]
+    return StoredDesign(part, values, mechanism, Linkage(crank, rod, offset, mechanism.branch))
+
+
+def front_of(problem: Problem, result: Result) -> ParetoFront:
+    """Return a stored front with its problem, for figures: of the slopes at the designs nothing is known."""
+    import numpy as np
+    import pandas as pd
+
+    from ...optimise.front import ParetoFront
+    from .picking_options import minimised_values
+
+    sizes = _factors(problem.mechanism)
+    dimensions = [_values(row, sizes) for row in result.designs]
+    variants = [_variant(problem, *of) for of in zip(result.designs, dimensions, strict=True)]
+    factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
+    return ParetoFront(
+        problem=problem,
+        status="done",
+        message=result.message,
+        designs=pd.DataFrame(result.designs),
+        dimensions=np.array(dimensions).reshape(len(dimensions), -1),
+        values=minimised_values(result) / factors,
+        goals=(),
+        active=(),
+        hypervolume=result.hypervolume,
+        history=(),
+        evaluations=result.evaluations,
+        seconds=result.seconds,
+        seed=result.seed,
+        variants=tuple(variants) if problem.variants else (),
+    )
+
+
+def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
+    """Return which variant a design is of: that of its labels, and of those the one whose ranges it is in."""
+    if not problem.variants:
+        return 0
+    labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
+    own = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
+    if not own:
+        raise _foreign(f"nothing of its job is called {' with '.join(map(str, labels))}")
+    return min(own, key=lambda index: _outside(problem.variants[index], values))
+
+
+def _outside(variant: Variant, values: Sequence[float]) -> float:
+    """Return how far values are out of the ranges of a variant, as a share of each."""
+    ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
+    return max(
+        max(of.lower - value, value - of.upper, 0.0) / max(abs(of.lower), abs(of.upper), 1e-300)
+        for of, value in zip(ranges, values, strict=True)
+    )
+
+
+def _factors(mechanism: Mechanism) -> dict[str, float]:
+    """Return what the free numbers of a design are called in its row, and what one SI unit is there."""
+    varying = (varying_column(item) for item in mechanism.varying)
+    return {**_MILLIMETRES, **{key: unit.factor for key, unit in varying}}
+
+
+def _values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
+    return tuple(_si(row, key, factor) for key, factor in factors.items())
+
+
+def _si(row: Row, key: str, factor: float) -> float:
+    """Return the number that, times the factor, is exactly what the table shows."""
+    shown = _cell(row, key)
+    if not isinstance(shown, float) or not math.isfinite(shown):
+        raise _foreign(f"its {key} is {shown}")
+    value = shown / factor
+    near = (value, math.nextafter(value, -math.inf), math.nextafter(value, math.inf))
+    return next((item for item in near if factor * item == shown), value)
+
+
+def _cell(row: Mapping[str, Cell], key: str) -> Cell:
+    if key not in row:
+        raise _foreign(f"it has no column {key}")
+    return row[key]
+
+
+def _foreign(why: str) -> RunError:
+    return RunError(f"a stored design must be one of its job; {why}; run the job again")

@@ -1,0 +1,202 @@
+"""What a run found, in the form that tables, CSV and JSON share."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ...optimise.front import ParetoFront
+
+Cell = float | str | None
+Row = dict[str, Cell]
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # how a cell begins that spreadsheets compute (OWASP, CSV injection)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """An objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
+
+    quantity: str
+    sense: str
+    column: str
+    title: str
+    unit: str
+    target: float | None = None
+
+    def rank(self, row: Row) -> float:
+        """Return a number that is the smaller the better a design is in it."""
+        value = row[self.column]
+        if not isinstance(value, float | int) or math.isnan(value):
+            return math.inf
+        if self.target is not None:
+            return abs(value - self.target)
+        return -value if self.sense == "maximise" else value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What a run found.
+
+    run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
+    extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
+    trade_offs: at the knee, in words.
+    """
+
+    run: str
+    name: str
+    status: str
+    message: str
+    objectives: tuple[Wanted, ...]
+    designs: list[Row]
+    hypervolume: float
+    evaluations: int
+    seconds: float
+    seed: int
+    extremes: dict[str, int]
+    knee: int | None
+    trade_offs: list[str]
+
+    def record(self) -> dict[str, Any]:
+        """Return what JSON has: finite numbers only, null for what is not defined."""
+        return {
+            "run": self.run,
+            "name": self.name,
+            "status": self.status,
+            "message": self.message,
+            "objectives": [wanted_record(wanted) for wanted in self.objectives],
+            "designs": [finite(row) for row in self.designs],
+            "hypervolume": finite(self.hypervolume),
+            "evaluations": self.evaluations,
+            "seconds": finite(self.seconds),
+            "seed": self.seed,
+            "extremes": self.extremes,
+            "knee": self.knee,
+            "trade_offs": self.trade_offs,
+        }
+
+
+def wanted_of(front: ParetoFront) -> list[Wanted]:
+    """Return the objectives of a front as they are shown."""
+    wanted = []
+    for objective in front.objectives:
+        of = front.problem.quantity(objective.quantity)
+        target = None if objective.target is None else objective.target * of.unit.factor
+        wanted.append(
+            Wanted(
+                quantity=of.name,
+                sense=objective.sense,
+                column=of.field,
+                title=of.title,
+                unit=of.unit.symbol,
+                target=target,
+            )
+        )
+    return wanted
+
+
+def result_of(front: ParetoFront, run: str) -> Result:
+    """Return what a run found from its front."""
+    found = len(front) > 0
+    several = found and len(front.objectives) > 1
+    return Result(
+        run=run,
+        name=front.problem.name,
+        status=front.status,
+        message=front.message,
+        objectives=tuple(wanted_of(front)),
+        designs=rows_of(front.designs.to_dict("list")),
+        hypervolume=float(front.hypervolume),
+        evaluations=int(front.evaluations),
+        seconds=float(front.seconds),
+        seed=int(front.seed),
+        extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
+        knee=int(front.knee()) if found else None,
+        trade_offs=front.trade_offs(front.knee()) if several else [],
+    )
+
+
+def rows_of(columns: Mapping[Any, Sequence[Any]]) -> list[Row]:
+    """Return the rows of a table given by columns, with Python's own numbers and strings in them."""
+    keys = [str(key) for key in columns]
+    cells = zip(*columns.values(), strict=True)
+    return [dict(zip(keys, map(_cell, row), strict=True)) for row in cells]
+
+
+def _cell(value: Any) -> Cell:
+    if value is None or isinstance(value, str):
+        return None if value is None else str(value)
+    return float(value)
+
+
+def wanted_record(wanted: Wanted) -> dict[str, Any]:
+    """Return an objective as JSON has it."""
+    record = {
+        "quantity": wanted.quantity,
+        "sense": wanted.sense,
+        "column": wanted.column,
+        "title": wanted.title,
+        "unit": wanted.unit,
+    }
+    return record if wanted.target is None else {**record, "target": wanted.target}
+
+
+def finite(value: Any) -> Any:
+    """Return a value with None for every number in it that is infinite or not a number."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item) for item in value]
+    return value
+
+
+def json_text(value: Any) -> str:
+    """Return strict JSON, every number as precise as it is; in ASCII, so that no terminal garbles it."""
+    return json.dumps(finite(value), indent=2, allow_nan=False) + "\n"
+
+
+def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
+    """Return the rows as CSV (RFC 4180 with plain line ends): JSON keys as header, numbers at full precision.
+
+    Infinity is written inf; what is not defined stays empty. spreadsheet: put an apostrophe before text that a
+    spreadsheet would take for a formula; such a cell does not read back as it was.
+    """
+    rows = list(rows)
+    out = io.StringIO()
+    if rows:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow([_inert(key) for key in rows[0]] if spreadsheet else rows[0])
+        for row in rows:
+            # The writer writes every number as repr does, None as nothing, and only NaN differs from itself.
+            cells = ["" if cell != cell else cell for cell in row.values()]
+            if spreadsheet:
+                cells = [_inert(cell) if isinstance(cell, str) else cell for cell in cells]
+            writer.writerow(cells)
+    return out.getvalue()
+
+
+def _inert(text: str) -> str:
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def rows_from_csv(text: str) -> list[Row]:
+    """Return the rows that `csv_text` wrote. Raises ValueError if lines differ in length."""
+    lines = list(csv.reader(io.StringIO(text), strict=True))
+    if not lines:
+        return []
+    header, *body = lines
+    return [{key: _read_cell(cell) for key, cell in zip(header, line, strict=True)} for line in body]
+
+
+def _read_cell(text: str) -> Cell:
+    try:
+        return float(text) if text else math.nan
+    except ValueError:
+        return text

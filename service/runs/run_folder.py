@@ -1,0 +1,251 @@
+"""Writing a run: a folder that is whole, or marked unfinished, whenever the machine stops.
+
+    runs/20260131-142501-feeder/
+        job.toml        the job, byte for byte (job.json if it was JSON), and the files beside it that it names
+        front.csv       every design with all its quantities, full precision
+        front.json      the same with how it was found: what `slidercrank optimise --json` prints
+        figures/        PNG files
+        versions.json   of this software and of what computed the numbers
+        log.txt         what happened when
+        UNFINISHED      only until everything else is on the disk
+
+The folder appears under its name with UNFINISHED already in it, and losing that file is the last thing that happens.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import secrets
+import shutil
+import time
+import traceback
+import unicodedata
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+
+from ...model.errors import InputError, RunError
+from .result import Result, csv_text, json_text
+
+MARK = "UNFINISHED"
+DEFAULT_PLACE = "runs"
+PLACE_VARIABLE = "SLIDERCRANK_RUNS"
+
+
+def runs_place(option: Path | None) -> Path:
+    """Return where runs are kept: the option, else SLIDERCRANK_RUNS, else ./runs."""
+    return option or Path(os.environ.get(PLACE_VARIABLE) or DEFAULT_PLACE)
+
+
+def slug(name: str) -> str:
+    """Return a name as lower-case letters, digits and hyphens, for a folder."""
+    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:40].rstrip("-") or "run"
+
+
+def run_name(name: str) -> str:
+    """Return the name of a folder for a run that begins now: the time, then the name of its job."""
+    return f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}"
+
+
+class RunFolder:
+    """A run being written. Every method raises `RunError` when the disk refuses.
+
+    As a context manager it says what became of the run. Leaving without an error finishes it. An `InputError` before
+    there is a result removes the folder: nothing was done. Any other error leaves the run unfinished, with the reason
+    in log.txt, and adds the log's place to the error as a note.
+    """
+
+    def __init__(self, place: Path, name: str) -> None:
+        """Create the folder in `place`, named by time and job name; unique even among runs of the same second."""
+        self.started = time.strftime("%Y-%m-%d %H:%M:%S")
+        with disk(place):
+            place.mkdir(parents=True, exist_ok=True)
+            # Prepared out of sight, then renamed: nobody sees the folder without its mark.
+            hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
+            hidden.mkdir()
+            try:
+                _write(hidden / MARK, f"Started {self.started}. The run still goes on, or was interrupted.\n")
+                self.path = _rename(hidden, place / run_name(name))
+            except BaseException:
+                shutil.rmtree(hidden, ignore_errors=True)
+                raise
+        self._has_result = self._was_whole = False
+        self._lock = _lock(self.path)
+        self.log(f"run {self.path.name} started")
+
+    @classmethod
+    def again(cls, path: Path) -> RunFolder:
+        """Open the folder of a run that was interrupted or cancelled, to go on in it.
+
+        It is marked unfinished until then. Wrong input leaves it as it was. Raises `InputError` while another process
+        is at work in it.
+        """
+        run = cls.__new__(cls)
+        run.started = time.strftime("%Y-%m-%d %H:%M:%S")
+        run.path = path
+        with disk(path):
+            run._lock = _lock(path)
+            run._was_whole, run._has_result = not (path / MARK).exists(), True
+            _write(path / MARK, f"Taken up {run.started}. The run still goes on, or was interrupted.\n")
+        run.log(f"run {path.name} goes on")
+        return run
+
+    @property
+    def figures(self) -> Path:
+        """Where figures go."""
+        return self.path / "figures"
+
+    def log(self, line: str) -> None:
+        """Add a line to log.txt."""
+        with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
+            file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {line}\n")
+
+    def rename(self, name: str) -> None:
+        """Give the folder another name. Raises `RunError` where that is taken."""
+        if name != self.path.name:
+            with disk(self.path.parent):
+                self.path = self.path.rename(self.path.with_name(name))
+
+    def keep_files(self, files: Mapping[str, bytes]) -> None:
+        """Write files under their names, which may lead into folders but not out of this one."""
+        for name, content in files.items():
+            kept = self.path / name
+            if not kept.resolve().is_relative_to(self.path.resolve()):
+                raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
+            with disk(self.path):
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                _write(kept, content)
+
+    def keep_result(self, result: Result, versions: dict[str, str]) -> None:
+        """Write front.csv, front.json and versions.json."""
+        self._has_result = True
+        with disk(self.path):
+            _write(self.path / "versions.json", json_text(versions))
+            _write(self.path / "front.csv", csv_text(result.designs))
+            _write(self.path / "front.json", json_text(result.record()))
+
+    def finish(self) -> None:
+        """Make sure that everything is on the disk, then take away the mark."""
+        self.log("run finished")
+        with disk(self.path):
+            for folder in (self.figures, self.path):
+                for file in sorted(folder.glob("*")):
+                    _sync(file)
+            (self.path / MARK).unlink(missing_ok=True)
+            _sync(self.path)
+        self._release()
+
+    def _release(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    def __enter__(self) -> RunFolder:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if error is None:
+            self.finish()
+        elif isinstance(error, InputError) and not self._has_result:
+            shutil.rmtree(self.path, ignore_errors=True)
+        elif isinstance(error, InputError) and self._was_whole:
+            self.finish()
+        else:
+            with contextlib.suppress(RunError, OSError):  # the error that is under way matters more
+                self.log("".join(traceback.format_exception(error)).rstrip())
+                reason = str(error) or "interrupted"
+                error.add_note(f"log: {self.path / 'log.txt'}")
+                _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
+        self._release()
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write a text file as a whole or not at all. Raises `RunError` when the disk refuses."""
+    with disk(path.parent):
+        _write(path, text)
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file as a whole or not at all. Raises `RunError` when the disk refuses."""
+    with disk(path.parent):
+        _write(path, content)
+
+
+def _lock(folder: Path) -> int | None:
+    """Return a handle that keeps other processes from the folder while it is open; None where there are no locks.
+
+    The lock ends with the process, however that ends. Raises `InputError` if another one holds it.
+    """
+    if os.name == "nt":
+        return None
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise InputError(f"another process is at work on the run {folder}; wait for it, or stop it") from None
+    except OSError:  # some network disks have no locks
+        os.close(handle)
+        return None
+    return handle
+
+
+def _rename(hidden: Path, wanted: Path) -> Path:
+    for number in range(1, 10_000):
+        path = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
+        try:
+            if not path.exists():  # the check is for Windows' sake; the rename itself refuses a folder with files
+                hidden.rename(path)
+                return path
+        except OSError:
+            if not path.exists():
+                raise
+    raise RunError(f"no name is left for a run in {wanted.parent}; move old runs away")
+
+
+def _write(path: Path, content: str | bytes) -> None:
+    """Write a file under another name, make sure that it is on the disk, then rename it."""
+    data = content.encode() if isinstance(content, str) else content
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with draft.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def _sync(path: Path) -> None:
+    """Make sure that a file, or a folder's list of files, is on the disk."""
+    if os.name == "nt":  # a read-only handle cannot be flushed there, and a folder not be opened
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextlib.contextmanager
+def disk(place: Path) -> Iterator[None]:
+    """Turn an error of the disk into a `RunError` that names the place."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RunError(
+            f"{place} must be a folder that can be written; got: {reason}; free or permit it, or choose another place"
+        ) from error

@@ -1,0 +1,83 @@
+"""Reading runs that are on the disk."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import JobError, RunError
+from .result import Result, Row, Wanted, finite, rows_from_csv
+from .run_folder import MARK
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Problem
+
+
+def read_run(folder: Path) -> Result:
+    """Return what a run found. Raises `RunError` for one that is unfinished, damaged, or no run."""
+    try:
+        if (folder / MARK).exists():
+            text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
+            raise RunError(
+                f"the run {folder} is unfinished: {text}; go on with `slidercrank optimise --resume {folder.name}`"
+            )
+        if not (folder / "front.json").is_file():
+            raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
+        record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
+        rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
+        if finite(rows) != record["designs"]:
+            raise ValueError("front.csv and front.json differ")
+        result = result_from(record, rows, str(folder))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise RunError(f"the run {folder} is damaged: {type(error).__name__}: {reason}; run its job again") from error
+    return result
+
+
+def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
+    """Return the result of a record as front.json has it, designs apart, with the rows of its designs.
+
+    Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
+    """
+    wanted = tuple(Wanted(**item) for item in record["objectives"])
+    result = Result(
+        run=run,
+        name=str(record["name"]),
+        status=str(record["status"]),
+        message=str(record["message"]),
+        objectives=wanted,
+        designs=rows,
+        hypervolume=float(record["hypervolume"]),
+        evaluations=int(record["evaluations"]),
+        seconds=float(record["seconds"]),
+        seed=int(record["seed"]),
+        extremes={str(name): int(row) for name, row in record["extremes"].items()},
+        knee=None if record["knee"] is None else int(record["knee"]),
+        trade_offs=[str(sentence) for sentence in record["trade_offs"]],
+    )
+    marked = [*result.extremes.values(), *([] if result.knee is None else [result.knee])]
+    if any(not 0 <= row < len(rows) for row in marked):
+        raise ValueError("a marked design is not among the designs")
+    missing = {item.column for item in wanted} - set(rows[0] if rows else {}) if rows else set()
+    if missing:
+        raise ValueError(f"the designs have no column {missing.pop()}")
+    return result
+
+
+def problem_of(folder: Path, result: Result) -> Problem:
+    """Return the problem that a run solved: its job, with the seed of the run.
+
+    Raises `RunError` for a run without a job, or with one that is not valid any more.
+    """
+    from ...optimise.job import load_job
+
+    for name in ("job.toml", "job.json"):
+        if (folder / name).is_file():
+            try:
+                problem = load_job(folder / name)
+            except JobError as error:
+                raise RunError(f"the job of the run {folder} cannot be read: {error}; run it again") from error
+            return replace(problem, settings=replace(problem.settings, seed=result.seed))
+    raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")

@@ -1,0 +1,107 @@
+"""Where heavy evaluation is done: options of the command line, and the engine that they ask for."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...optimise.engine.engine import Engine
+
+Cores = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        max=1024,
+        metavar="N",
+        help="Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Evaluate what is heavy on a Dask cluster, such as tcp://host:8786."),
+]
+TlsAuthority = Annotated[
+    Path | None, typer.Option("--tls-ca", metavar="FILE", help="Certificate of the authority, for tls://.")
+]
+TlsCertificate = Annotated[
+    Path | None, typer.Option("--tls-cert", metavar="FILE", help="Certificate of this side, for tls://.")
+]
+TlsKey = Annotated[Path | None, typer.Option("--tls-key", metavar="FILE", help="Key of that certificate, for tls://.")]
+
+
+@dataclass(frozen=True)
+class EngineOptions:
+    """Where heavy evaluation is done. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
+
+    cores: int | None = None
+    scheduler: str | None = None
+    tls_ca: Path | None = None
+    tls_cert: Path | None = None
+    tls_key: Path | None = None
+
+    def shared_by(self, workers: int) -> EngineOptions:
+        """Return the options of each of several workers on this machine: they share the processors."""
+        cores = self.cores or max(1, (os.cpu_count() or 1) // workers)
+        return EngineOptions(cores, self.scheduler, self.tls_ca, self.tls_cert, self.tls_key)
+
+
+def engine_options(
+    cores: int | None = None,
+    scheduler: str | None = None,
+    tls_ca: Path | None = None,
+    tls_cert: Path | None = None,
+    tls_key: Path | None = None,
+) -> EngineOptions:
+    """Return the options as they are given. Raises `InputError` for those that do not go together."""
+    files = (tls_ca, tls_cert, tls_key)
+    if scheduler is None and any(files):
+        raise InputError(
+            "--tls-ca, --tls-cert and --tls-key are for --scheduler tls://...; give that or leave them out"
+        )
+    if scheduler is not None and cores is not None:
+        raise InputError("heavy evaluation is done either here or on a cluster; got --cores and --scheduler; keep one")
+    if any(files) and not all(files):
+        raise InputError("an encrypted connection needs --tls-ca, --tls-cert and --tls-key; give all three")
+    for file in files:
+        if file is not None and not file.is_file():
+            raise InputError(f"the files of an encrypted connection must be there; got {file}; correct the path")
+    options = EngineOptions(cores, scheduler, *files)
+    if scheduler is not None:
+        _made(options)  # refuses an address that cannot be one
+    return options
+
+
+@contextlib.contextmanager
+def engine_of(options: EngineOptions) -> Iterator[Engine]:
+    """Enter the engine that is asked for; it ends with the block. Nothing is started before it is needed."""
+    made = _made(options)
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+def _made(options: EngineOptions) -> Engine:
+    if options.scheduler is not None:
+        from ...optimise.engine.cluster import Cluster, Tls
+
+        tls = None
+        if options.tls_ca is not None and options.tls_cert is not None and options.tls_key is not None:
+            tls = Tls(options.tls_ca, options.tls_cert, options.tls_key)
+        return Cluster(options.scheduler, tls=tls)
+    if (options.cores or os.cpu_count() or 1) == 1:
+        from ...optimise.engine.serial import Serial
+
+        return Serial()
+    from ...optimise.engine.processes import Processes
+
+    return Processes(options.cores)

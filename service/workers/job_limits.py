@@ -1,0 +1,47 @@
+"""Limits of a job while it is solved: the stricter of its own and those of its worker, and how much of them is left."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import astuple, replace
+
+from ..runs.result import Result
+from ..store import Limits
+
+
+def within(asked: Limits, ceiling: Limits) -> Limits:
+    """Return the stricter of each pair of limits."""
+    pairs = zip(astuple(asked), astuple(ceiling), strict=True)
+    seconds, evaluations, memory = (min((limit for limit in pair if limit is not None), default=None) for pair in pairs)
+    return Limits(seconds=seconds, evaluations=evaluations, memory=memory)
+
+
+class Budget:
+    """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either."""
+
+    def __init__(self, limits: Limits) -> None:
+        """Begin with limits; the one of memory is not looked at here."""
+        self._limits = limits
+        self._began = time.monotonic()
+        self._evaluations = 0
+
+    def count(self, evaluations: int) -> None:
+        """Take note of how many designs have been evaluated so far."""
+        self._evaluations = evaluations
+
+    def spent(self) -> bool:
+        """Whether the search is to end with what it has."""
+        return bool(self._reason())
+
+    def explained(self, result: Result) -> Result:
+        """Return a result with the limit that ended its search in its message, if one did."""
+        reason = self._reason() if result.status == "cancelled" else ""
+        return replace(result, message=f"{result.message}; {reason}") if reason else result
+
+    def _reason(self) -> str:
+        seconds, evaluations = self._limits.seconds, self._limits.evaluations
+        if seconds is not None and time.monotonic() - self._began >= seconds:
+            return f"its search took longer than its limit of {seconds:g} s"
+        if evaluations is not None and self._evaluations >= evaluations:
+            return f"its search reached its limit of {evaluations} evaluations"
+        return ""

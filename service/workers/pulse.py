@@ -1,0 +1,121 @@
+"""The pulse of a claimed job: a thread beside its search that keeps the lease and sees what the search cannot."""
+
+from __future__ import annotations
+
+import contextlib
+import contextvars
+import logging
+import os
+import threading
+import time
+from collections.abc import Callable
+
+from ...model.errors import LeaseLost, StoreError
+from ..store import Claim
+from .sizes import size_text
+
+_log = logging.getLogger(__name__)
+PULSE = 0.25
+"""Time between two beats, s: a cancelled job has to end within 2 s, of which its search takes up to one to hear."""
+EXHAUSTED = 75
+"""Exit code of a process whose job took more memory than it may; another process is to take its place."""
+Stop = Callable[[], bool]
+
+
+class Pulse:
+    """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
+
+    lost: whether the lease is another worker's by now.
+    """
+
+    def __init__(
+        self, claim: Claim, *, memory: int | None = None, stop: Stop | None = None, grace: float | None = None
+    ) -> None:
+        """Care for a claim.
+
+        memory: what this process and its children may take, in bytes. Beyond it the job is set aside as failed and the
+        process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
+        grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
+        ends with 0. For as long as it takes, if None.
+        """
+        self.claim = claim
+        self.lost = False
+        self._memory = memory
+        self._stop = stop or (lambda: False)
+        self._grace = grace
+        self._asked: float | None = None
+        self._end = threading.Event()
+        beat = contextvars.copy_context().run  # so that its logs are about the same job
+        self._thread = threading.Thread(
+            target=beat, args=(self._beat,), name=f"pulse of job {claim.job.id}", daemon=True
+        )
+
+    def __enter__(self) -> Pulse:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end.set()
+        self._thread.join()
+
+    def _beat(self) -> None:
+        lease = self.claim.lease
+        while not self._end.wait(min(PULSE, lease / 10.0)):
+            self._look_at_memory()
+            self._look_at_stop()
+            try:
+                if self.claim.age > lease / 3.0:
+                    self.claim.renew()
+                else:
+                    self.claim.look()
+            except LeaseLost:
+                self.lost = not self._end.is_set()  # at the end of a job it is given up as it should be
+                return
+            except StoreError:
+                continue  # the writes of the search find out whether it stays so
+
+    def _look_at_memory(self) -> None:
+        taken = memory_taken() if self._memory is not None else 0
+        if self._memory is None or taken <= self._memory or self._end.is_set():
+            return
+        reason = (
+            f"it may take {size_text(self._memory)} of memory; its worker took {size_text(taken)}; "
+            "give it a higher limit, or ask for less"
+        )
+        _log.error("set aside: %s", reason)
+        with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends, and it counts as an attempt
+            self.claim.fail(reason, again=False)
+        leave(EXHAUSTED)
+
+    def _look_at_stop(self) -> None:
+        if self._grace is None or not self._stop():
+            return
+        self._asked = time.monotonic() if self._asked is None else self._asked
+        if time.monotonic() - self._asked < self._grace or self._end.is_set():
+            return
+        _log.warning("handed back: its round did not end within %g s", self._grace)
+        with contextlib.suppress(LeaseLost, StoreError):
+            self.claim.hand_back("its worker stopped in the middle of a round; another one goes on")
+        leave(0)
+
+
+def memory_taken() -> int:
+    """Return the memory of this process and its children, in bytes, as far as it is in main memory."""
+    import psutil
+
+    own = psutil.Process()
+    taken = int(own.memory_info().rss)
+    for child in own.children(recursive=True):
+        with contextlib.suppress(psutil.Error):  # it has just ended
+            taken += int(child.memory_info().rss)
+    return taken
+
+
+def leave(code: int) -> None:
+    """End this process at once, whatever its other threads do, and its children before it."""
+    import psutil
+
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error):
+            child.kill()
+    os._exit(code)

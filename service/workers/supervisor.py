@@ -1,0 +1,153 @@
+"""Keeps worker processes running: starts them, starts them again when they end, and stops them together."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from .pulse import EXHAUSTED
+from .worker_process import MARGIN, REFUSED, WorkerSettings
+
+_log = logging.getLogger(__name__)
+WORKER = (sys.executable, "-m", "slidercrank.service.workers.worker_process")
+_LOOK = 0.1  # s between two looks at the processes
+_FIRST, _LONGEST = 0.5, 30.0  # s before a process that ended soon is started again: doubled from one to the other
+_SOON = 60.0  # s; one that ran for longer is started again as if it had never ended
+
+
+@dataclass
+class _Place:
+    """Of one worker: its process, since when, how often it ended soon, when to start the next one."""
+
+    number: int
+    process: subprocess.Popen[bytes] | None = None
+    started: float = 0.0
+    ended_soon: int = 0
+    due: float = field(default_factory=time.monotonic)
+    done: bool = False
+
+
+class Supervisor:
+    """While entered, keeps a number of worker processes running, watched by a thread.
+
+    A worker that ends is replaced: at once, if it had run for a minute or its job took too much memory, else after half
+    a second, doubled each time up to 30 s. On leaving, all are asked to stop, which they do within their grace; those
+    that do not are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
+    """
+
+    def __init__(self, settings: WorkerSettings, processes: int, *, program: Sequence[str] = WORKER) -> None:
+        """Prepare; nothing is started yet. program: of a worker; it reads the settings from standard input."""
+        self.settings = settings
+        self._program = program
+        self._places = [_Place(number) for number in range(1, processes + 1)]
+        self._leaving = threading.Event()
+        self._thread = threading.Thread(target=self._watch, name="supervisor", daemon=True)
+
+    def __enter__(self) -> Supervisor:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._leaving.set()
+        self._thread.join()
+
+    def processes(self) -> list[int]:
+        """Return the process numbers of the workers that run now."""
+        running = [place.process for place in self._places]
+        return [process.pid for process in running if process is not None and process.poll() is None]
+
+    def finished(self) -> bool:
+        """Whether all workers have drained the queue and ended."""
+        return all(place.done for place in self._places)
+
+    def _watch(self) -> None:
+        try:
+            while not self._leaving.wait(_LOOK):
+                for place in self._places:
+                    try:
+                        self._look_after(place)
+                    except Exception:  # noqa: BLE001 - whatever it is, the other workers are looked after
+                        _log.exception("worker %d could not be looked after; trying again", place.number)
+        finally:
+            self._stop()
+
+    def _look_after(self, place: _Place) -> None:
+        if place.process is None:
+            if not place.done and time.monotonic() >= place.due:
+                self._start(place)
+            return
+        code = place.process.poll()
+        if code is not None:
+            _release(place.process)
+            place.process = None
+            self._plan_next(place, code)
+
+    def _start(self, place: _Place) -> None:
+        place.started = time.monotonic()
+        try:
+            # In a group of its own: Ctrl-C reaches the supervisor only, which then asks its workers to stop.
+            process = subprocess.Popen(self._program, stdin=subprocess.PIPE, process_group=0)
+        except OSError as error:
+            self._plan(place, f"could not be started: {error.strerror or error}", soon=True)
+            return
+        place.process = process
+        _log.info("worker %d of %d started as process %d", place.number, len(self._places), process.pid)
+        assert process.stdin is not None
+        with contextlib.suppress(OSError):  # it has ended already, which the next look finds out
+            process.stdin.write(self.settings.line())
+            process.stdin.flush()
+
+    def _plan_next(self, place: _Place, code: int) -> None:
+        if code == 0 and self.settings.drain:
+            place.done = True
+            _log.info("worker %d ended: no job waits", place.number)
+            return
+        soon = code != EXHAUSTED and time.monotonic() - place.started < _SOON
+        self._plan(place, f"ended: {reason_of(code)}", soon=soon)
+
+    def _plan(self, place: _Place, what: str, *, soon: bool) -> None:
+        place.ended_soon = place.ended_soon + 1 if soon else 0
+        pause = min(_LONGEST, _FIRST * 2.0 ** (place.ended_soon - 1)) if soon else 0.0
+        place.due = time.monotonic() + pause
+        _log.warning("worker %d %s; another one starts in %g s", place.number, what, pause)
+
+    def _stop(self) -> None:
+        running = [place.process for place in self._places if place.process is not None]
+        for process in running:
+            _release(process)
+        end = time.monotonic() + (self.settings.terms.grace or 0.0) + MARGIN
+        for process in running:
+            try:
+                process.wait(max(0.0, end - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                _log.warning("worker process %d did not stop within its time and is killed", process.pid)
+                process.kill()
+                process.wait()
+
+
+def _release(process: subprocess.Popen[bytes]) -> None:
+    """Close the standard input of a worker, by which it knows that it is to stop."""
+    if process.stdin is not None:
+        with contextlib.suppress(OSError):  # what could not be written to one that has ended
+            process.stdin.close()
+
+
+def reason_of(code: int) -> str:
+    """Return why a process ended, from its exit code."""
+    if code == EXHAUSTED:
+        return "its job took more memory than it may"
+    if code == REFUSED:
+        return "it could do nothing as it was started, see above"
+    if code < 0:
+        try:
+            return f"killed by {signal.Signals(-code).name}"
+        except ValueError:
+            return f"killed by signal {-code}"
+    return "it left" if code == 0 else f"exit code {code}"

@@ -1,0 +1,201 @@
+"""A worker: claims jobs of a store, solves them, and writes what it finds."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import secrets
+import socket
+import time
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
+from ..allowed_quantities import require_allowed
+from ..runs.result import json_text, result_of
+from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
+from .engines import EngineOptions, engine_of
+from .job_limits import Budget, within
+from .logs import about
+from .pulse import PULSE, Pulse, Stop
+
+if TYPE_CHECKING:
+    from ...optimise.engine.engine import Engine
+    from ...optimise.front import ParetoFront, Progress
+    from ...optimise.ledger import Record
+
+_log = logging.getLogger(__name__)
+_AWAY = 1.0  # s between two tries while the database cannot be reached
+_DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Terms:
+    """What a worker lets jobs use and do.
+
+    limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
+    in s that a round has to end once the worker is to stop, too; see `Pulse`. allowed_quantities: functions,
+    "module:function", that jobs may name as quantities. engine: where heavy work is done.
+    """
+
+    limits: Limits = NO_LIMITS
+    grace: float | None = None
+    allowed_quantities: tuple[str, ...] = ()
+    engine: EngineOptions = EngineOptions(cores=1)
+
+
+DEFAULT = Terms()
+
+
+class Stopped(Exception):
+    """The worker is to stop, so its job goes back."""
+
+
+def worker_name() -> str:
+    """Return a name for a worker that no other one has: machine, process, and some letters."""
+    return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
+
+
+def work(
+    store: Store,
+    *,
+    name: str | None = None,
+    lease: float = LEASE,
+    stop: Stop | None = None,
+    drain: bool = False,
+    most_running: int | None = None,
+    terms: Terms = DEFAULT,
+) -> int:
+    """Solve jobs of a store one after the other, and return how many were taken on.
+
+    lease: for how long, in s, a job stays this worker's without a word of it; a third of it is how often it renews one.
+    stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
+    the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
+
+    While the database cannot be reached, it is tried again every second.
+    """
+    name = name or worker_name()
+    stop = stop or (lambda: False)
+    taken, greeted, away = 0, -lease, False
+    with about(worker=name), engine_of(terms.engine) as engine:
+        while not stop():
+            try:
+                if time.monotonic() - greeted > lease / 3.0:
+                    store.greet(name)
+                    greeted = time.monotonic()
+                claim = store.claim(name, lease=lease, most_running=most_running)
+            except StoreError as error:
+                if drain:
+                    raise
+                if not away:
+                    _log.warning("%s; trying again until it is there", error)
+                away = True
+                time.sleep(_AWAY)
+                continue
+            if away:
+                _log.info("the store is there again")
+                away = False
+            if claim is not None:
+                solve_claimed(store, claim, stop, terms, engine)
+                taken += 1
+            elif drain:
+                break
+            else:
+                time.sleep(PULSE)
+        with contextlib.suppress(StoreError):  # where it cannot be reached, the worker is silent from now on
+            store.part(name)
+    return taken
+
+
+def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT, engine: Engine | None = None) -> None:
+    """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
+
+    What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
+    reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
+    """
+    limits = within(claim.job.limits, terms.limits)
+    with about(job=claim.job.id):
+        _log.info("claimed")
+        try:
+            with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace) as pulse:
+                _end(claim, lambda: _solve(store, claim, Budget(limits), terms, engine, pulse, stop))
+        except (LeaseLost, StoreError) as error:
+            _log.warning("left as it is: %s", error)
+
+
+def _end(claim: Claim, solve: Callable[[], None]) -> None:
+    """Solve a job, and give it back with the reason when that does not succeed."""
+    try:
+        solve()
+    except Stopped:
+        claim.hand_back("its worker stopped; another one goes on")
+        _log.info("handed back")
+    except InputError as error:
+        claim.fail(str(error), again=False)
+        _log.warning("failed: %s", error)
+    except (LeaseLost, StoreError):
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
+        claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
+        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
+        _log.warning("stopped by an error", exc_info=error)
+    except BaseException:
+        with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
+            claim.hand_back("its worker was interrupted; another one goes on")
+        raise
+
+
+def _solve(
+    store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, pulse: Pulse, stop: Stop
+) -> None:
+    from ...optimise.job import parse_job
+    from ...optimise.solve import solve
+
+    tables = store.tables(claim.job.id)
+    require_allowed(tables, terms.allowed_quantities)
+    problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
+
+    def tell(at: Progress) -> None:
+        claim.tell(at)
+        budget.count(at.evaluations)
+
+    def over() -> bool:
+        return _ends(claim, pulse, stop) or budget.spent()
+
+    def search(past: Sequence[Record]) -> ParetoFront:
+        return solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+
+    try:
+        front = search(claim.records())
+    except ForeignRecords as error:  # of an earlier release, or another kind of machine
+        claim.start_over(f"begins anew: {error}")
+        front = search([])
+    result = result_of(front, claim.job.run)
+    if not claim.cancel_asked:
+        result = budget.explained(result)
+    claim.finish(result, [versions_file(front.versions)])
+    _log.info("%s: %s", result.status, result.message)
+
+
+def versions_file(versions: Mapping[str, str]) -> Artefact:
+    """Return the file of what computed a result."""
+    return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
+
+
+def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:
+    """Whether the search is to end with what it has; raises what ends it without."""
+    if pulse.lost:
+        raise LeaseLost(f"the lease of job {claim.job.id} has ended; another worker goes on from what was committed")
+    if claim.cancel_asked:
+        return True
+    if stop():
+        raise Stopped
+    return False
+
+
+def _trace(error: Exception) -> bytes:
+    return "".join(traceback.format_exception(error)).encode(errors="replace")

@@ -1,0 +1,131 @@
+"""A worker in a process of its own: `python -m slidercrank.service.workers.worker_process`, started by a supervisor.
+
+It reads its settings from standard input, one line of JSON, so that no password stands in the list of processes. It
+stops in an orderly way on SIGTERM, or when standard input ends: then its supervisor has asked for it, or is gone.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import sys
+import threading
+import time
+from dataclasses import dataclass
+
+from pydantic import TypeAdapter
+
+from ...model.errors import SlidercrankError
+from ..store import LEASE, Store
+from ..store.database import Unavailable
+from .logs import Format, set_up_logs
+from .pulse import leave
+from .worker import Terms, work
+
+GRACE = 10.0
+"""Time that a worker has to stop, s; then its job is handed back wherever its search is."""
+MARGIN = 5.0
+"""Time beyond its grace after which a worker that has not stopped is ended, s."""
+REFUSED = 2
+"""Exit code of a worker that can do nothing as it was started."""
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkerSettings:
+    """How a worker process works. address: of the store. Times in s; the rest as `worker.work` has it."""
+
+    address: str
+    lease: float = LEASE
+    drain: bool = False
+    most_running: int | None = None
+    terms: Terms = Terms(grace=GRACE)
+    log_format: Format = "text"
+
+    def line(self) -> bytes:
+        """Return the settings as the process reads them."""
+        return TypeAdapter(WorkerSettings).dump_json(self) + b"\n"
+
+    @classmethod
+    def read(cls, line: bytes) -> WorkerSettings:
+        """Return the settings of a line."""
+        return TypeAdapter(WorkerSettings).validate_json(line)
+
+
+def main() -> int:
+    """Work until told to stop; return the exit code."""
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.set())
+    line = _line()
+    if not line:
+        return 0
+    settings = WorkerSettings.read(line)
+    set_up_logs(settings.log_format)
+    threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
+    try:
+        with _opened(settings, stop) as store:
+            work(
+                store,
+                lease=settings.lease,
+                stop=stop.is_set,
+                drain=settings.drain,
+                most_running=settings.most_running,
+                terms=settings.terms,
+            )
+    except _Ended:
+        return 0
+    except SlidercrankError as error:
+        _log.error("%s", error)
+        return REFUSED
+    return 0
+
+
+class _Ended(Exception):
+    """Told to stop before the store could be reached."""
+
+
+def _opened(settings: WorkerSettings, stop: threading.Event) -> Store:
+    """Return the store, as soon as it can be reached."""
+    away = False
+    while not stop.is_set():
+        try:
+            return Store(settings.address)
+        except Unavailable as error:
+            if settings.drain:
+                raise
+            if not away:
+                _log.warning("%s; trying again until it is there", error)
+            away = True
+            stop.wait(1.0)
+    raise _Ended
+
+
+def _line() -> bytes:
+    """Return the first line of standard input, or nothing. Unbuffered: nothing may hold a lock of it at the end."""
+    line = b""
+    while not line.endswith(b"\n"):
+        part = os.read(0, 1)
+        if not part:
+            return b""
+        line += part
+    return line
+
+
+def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
+    """Stop when standard input ends, and leave when more than the time for that has passed: no supervisor may be left.
+
+    That is the end of what even its pulse cannot stop, such as a database that does not answer.
+    """
+    while os.read(0, 64):
+        pass
+    stop.set()
+    time.sleep((grace or 0.0) + MARGIN)
+    leave(1)
+
+
+if __name__ == "__main__":
+    code = main()
+    logging.shutdown()
+    sys.exit(code)
