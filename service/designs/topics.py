@@ -69,7 +69,7 @@ class Topic:
         self.name = name
         self._design = (mechanism, linkage)
         self._options = options
-        self._module = import_module(f".analyses.{name}", __package__)
+        self._module = import_module(f"..analyses.{name}", __package__)
 
     def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
         """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
@@ -86,7 +86,7 @@ class Topic:
 
     def draw(self, folder: Path) -> Path:
         """Write the topic's figure into a folder; return the file."""
-        module = import_module(f".figures.{self.name}", __package__)
+        module = import_module(f"..figures.{self.name}", __package__)
         options = {name: value for name, value in self._options.items() if name != "limit"}
         file: Path = getattr(module, f"draw_{self.name}")(*self._design, folder / f"{self.name}.png", **options)
         return file

@@ -27,6 +27,8 @@ GRACE = 10.0
 """Time that a worker has to stop, s; then its job is handed back wherever its search is."""
 MARGIN = 5.0
 """Time beyond its grace after which a worker that has not stopped is ended, s."""
+NICENESS = 10
+"""How much a worker yields to others of this machine: the API answers while all workers are busy."""
 REFUSED = 2
 """Exit code of a worker that can do nothing as it was started."""
 _log = logging.getLogger(__name__)
@@ -63,6 +65,8 @@ def main() -> int:
         return 0
     settings = WorkerSettings.read(line)
     set_up_logs(settings.log_format)
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
     threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
     try:
         with _opened(settings, stop) as store:

@@ -206,7 +206,7 @@ def test_a_cancelled_job_of_a_worker_goes_on_at_the_command_line(
 def test_a_command_that_was_killed_can_be_resumed_at_once(job: Path, runs: Path, whole: str, command: Command) -> None:
     script = (
         "import os, sys\n"
-        "from slidercrank.service import own_run, cli\n"
+        "from slidercrank.service import cli\n"
         "from slidercrank.service.store import Claim\n"
         "tell, told = Claim.tell, []\n"
         "def die(self, at):\n"
