@@ -90,16 +90,15 @@ def _show(screen: Console, found: list[Job]) -> None:
     from rich import box
     from rich.table import Table
 
-    from .tables import print_table
-
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
     table.add_column("no.", justify="right", no_wrap=True)
-    for title in ("submitted", "job", "state", "where it stands"):
+    for title in ("submitted", "job", "state"):
         table.add_column(title, no_wrap=True)
+    table.add_column("where it stands")
     for job in found:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
-        table.add_row(str(job.id), submitted, _short(job.name, 32), _state(job), _short(_standing(job), 90))
-    print_table(screen, table)
+        table.add_row(str(job.id), submitted, _short(job.name, 32), _state(job), _short(_standing(job), 120))
+    screen.print(table)
 
 
 def _state(job: Job) -> str:
