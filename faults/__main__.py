@@ -27,6 +27,31 @@ Count = Annotated[int, typer.Option(help="How many faults.")]
 Seed = Annotated[int, typer.Option(help="Of everything random.")]
 
 
+@app.callback(invoke_without_command=True)
+def _all(context: typer.Context) -> None:
+    """Without a command: all of them, on both databases."""
+    if context.invoked_subcommand is not None:
+        return
+    everything: list[Callable[[], None]] = [
+        lambda: _kills("sqlite"),
+        lambda: _kills("postgresql"),
+        lambda: _pauses("sqlite"),
+        lambda: _pauses("postgresql"),
+        lambda: _restarts(300.0),
+        _full,
+        lambda: _commits("sqlite"),
+        lambda: _commits("postgresql"),
+        _dask,
+    ]
+    failed = False
+    for run in everything:
+        try:
+            run()
+        except typer.Exit:
+            failed = True
+    raise typer.Exit(int(failed))
+
+
 @app.command("kills")
 def _kills(where: Where = "sqlite", count: Count = 200, seed: Seed = 1) -> None:
     """Kill workers by SIGKILL at random moments."""
@@ -40,7 +65,7 @@ def _pauses(where: Where = "sqlite", count: Count = 50, seed: Seed = 1) -> None:
 
 
 @app.command("restarts")
-def _restarts(seconds: Annotated[float, typer.Option(help="For how long.")] = 300.0, seed: Seed = 1) -> None:
+def _restarts(seconds: Annotated[float, typer.Option(help="For how long, s.")] = 300.0, seed: Seed = 1) -> None:
     """Crash and start PostgreSQL at random moments."""
     _counted("{} crashes of PostgreSQL", lambda: restarts(seconds, seed))
 
