@@ -185,9 +185,14 @@ def test_draining_workers_are_not_replaced(store: Store) -> None:
 def test_a_worker_refuses_a_store_that_is_none(tmp_path: Path) -> None:
     (tmp_path / "no.db").write_text("no database")
     line = WorkerSettings(address=str(tmp_path / "no.db")).line()
-    done = subprocess.run(WORKER, input=line, capture_output=True, check=False)
-    assert done.returncode == REFUSED
-    assert b"file is not a database" in done.stderr
+    # Its standard input stays open: the end of it asks a worker to stop, perhaps before it looks at the store.
+    with subprocess.Popen(WORKER, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stderr is not None
+        process.stdin.write(line)
+        process.stdin.flush()
+        assert b"file is not a database" in process.stderr.read()
+        assert process.wait(60.0) == REFUSED
 
 
 def test_a_worker_waits_for_a_store_that_is_away_until_it_is_told_to_stop(tmp_path: Path) -> None:
