@@ -24,6 +24,7 @@ from slidercrank.optimise.front import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.app import create_app
+from slidercrank.service.api.server import spare_imports
 from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.packing import cells_of, summary_of, text_of
@@ -54,6 +55,7 @@ def measure(address: str, *, runs: int = RUNS, large: int = LARGE, repeats: int 
         filled = Row(f"filling with {runs} runs of {len(found.designs)} designs, s", [time.perf_counter() - begin])
         with store._database.reading() as connection:
             done = list(connection.execute(select(jobs.c.id).where(jobs.c.state == "done", jobs.c.id < runs)).scalars())
+        spare_imports()  # as the service does
         with asyncio.Runner() as loop:
             questions = [*_questions(store, tables, done, runs), *_requests(store, loop, done, runs)]
             return [filled, *(_timed(what, ask, repeats) for what, ask in questions)]
