@@ -38,10 +38,11 @@ def export_job(store: Store, job: Job, place: Path) -> Path:
         return path
     result = store.result(job.id)
     files = {name: store.artefact(job.id, name).content for name in store.artefacts(job.id)}
+    versions = json.loads(files.pop("versions.json", b"{}"))
     with RunFolder(place, job.name) as folder:
         folder.rename(job.run)
         folder.keep_files(files)
-        folder.keep_result(replace(result, run=str(path)), json.loads(files.get("versions.json", b"{}")))
+        folder.keep_result(replace(result, run=str(path)), versions)
     return path
 
 

@@ -133,9 +133,9 @@ class RunFolder:
         with disk(self.path):
             for folder in (self.figures, self.path):
                 for file in sorted(folder.glob("*")):
-                    _sync(file)
+                    sync(file)
             (self.path / MARK).unlink(missing_ok=True)
-            _sync(self.path)
+            sync(self.path)
         self._release()
 
     def _release(self) -> None:
@@ -228,7 +228,7 @@ def _write(path: Path, content: str | bytes) -> None:
         raise
 
 
-def _sync(path: Path) -> None:
+def sync(path: Path) -> None:
     """Make sure that a file, or a folder's list of files, is on the disk."""
     if os.name == "nt":  # a read-only handle cannot be flushed there, and a folder not be opened
         return

@@ -8,6 +8,7 @@ import sqlite3
 from pathlib import Path
 
 from ...model.errors import InputError, StoreError
+from ..runs.run_folder import sync
 from .database import Database
 
 _PATIENCE = 30.0  # s to wait for other writers
@@ -38,9 +39,9 @@ def back_up(database: Database, target: Path) -> None:
             found = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if found != "ok":
             raise StoreError(f"a backup must be whole; that of {database.name} gave: {found}; run slidercrank doctor")
-        _sync(draft)
+        sync(draft)
         draft.rename(target)
-        _sync(target.parent)
+        sync(target.parent)
     except (sqlite3.Error, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise StoreError(
@@ -50,13 +51,3 @@ def back_up(database: Database, target: Path) -> None:
     finally:
         with contextlib.suppress(OSError):
             draft.unlink(missing_ok=True)
-
-
-def _sync(path: Path) -> None:
-    if os.name == "nt":  # a read-only handle cannot be flushed there
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
