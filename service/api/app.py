@@ -7,6 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 
+from ..page import router as page
 from ..store import Store
 from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema
 from .event_feed import Feed
@@ -47,12 +48,8 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     answer_problems(app)
     for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
+    app.include_router(page.router)
     describe(app)
-
-    @app.get("/", include_in_schema=False)
-    async def show_way() -> dict[str, str]:
-        return {"name": app.title, "version": app.version, "description": f"{PREFIX}/openapi.json"}
-
     return app
 
 

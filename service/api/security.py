@@ -13,6 +13,7 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from ..page.locked import locked_page
 from .problems import FAULT, problem
 from .settings import Settings
 
@@ -96,6 +97,8 @@ class Guard:
         if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
             return self._let_in(scope)
         if not self._knows(connection):
+            if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
+                return locked_page()
             return problem(
                 HTTPStatus.UNAUTHORIZED,
                 "a request carries the token of the service; got none or a wrong "

@@ -1,0 +1,65 @@
+"""The page and its files: HTML, style, modules."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import FileResponse
+
+from ...model.errors import NotFound
+
+router = APIRouter(include_in_schema=False)
+
+POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self'",
+        "img-src 'self' data: blob:",
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+"""What the page may do: run and fetch what comes from the service itself, and nothing written into the document."""
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+
+
+@router.get("/")
+def show_page(request: Request) -> Response:
+    """Return the document; its modules ask the API for everything else."""
+    return _answer(request, "index.html")
+
+
+@router.get("/page/{name:path}")
+def fetch_page_file(request: Request, name: str) -> Response:
+    """Return a file that the document uses."""
+    return _answer(request, name)
+
+
+def _answer(request: Request, name: str) -> Response:
+    file = _files().get(name)
+    if file is None:
+        raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
+    # Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once.
+    headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"}
+    response = FileResponse(file, media_type=_TYPES[file.suffix], headers=headers)
+    response.set_stat_headers(file.stat())
+    if request.headers.get("if-none-match") == response.headers["etag"]:
+        return Response(status_code=304, headers={**headers, "ETag": response.headers["etag"]})
+    return response
+
+
+@cache
+def _files() -> dict[str, Path]:
+    """Return the files by name: those of the folder, looked up once, so that no name from a client is ever a path."""
+    folder = Path(__file__).parent / "static"
+    return {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.suffix in _TYPES}

@@ -1,0 +1,78 @@
+/** The shell: header, preferences, and the view that the address names. */
+
+import { read } from "./lib/address.js";
+import { fill, h } from "./lib/dom.js";
+import { chooseSystem, system } from "./lib/numbers.js";
+
+/**
+ * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
+ * and ends what it began once `signal` is aborted. Problems that it throws are shown in its place.
+ */
+const VIEWS = [
+  { match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
+  { match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },
+  { match: (parts) => parts[0] === "jobs" && parts.length === 2, load: () => import("./views/run.js") },
+  { match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, load: () => import("./views/design.js") },
+  { match: (parts) => parts[0] === "help" && parts.length <= 2, load: () => import("./views/help.js") },
+];
+const NAVIGATION = [["Runs", "#/"], ["New run", "#/new"], ["Help", "#/help"]];
+
+let leaving = new AbortController();
+
+async function showView() {
+  leaving.abort();
+  leaving = new AbortController();
+  const { signal } = leaving;
+  const { parts, query } = read();
+  const main = document.getElementById("main");
+  markNavigation();
+  const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
+  const changed = main.childElementCount > 0;
+  fill(main, place);
+  try {
+    const view = VIEWS.find(({ match }) => match(parts));
+    if (!view) throw new Error("There is no such page.");
+    const module = await view.load();
+    if (signal.aborted) return;
+    document.title = `${module.title} · slidercrank`;
+    await module.show(place, { parts, query, signal });
+    if (changed && !signal.aborted) main.focus({ preventScroll: true });
+  } catch (error) {
+    if (signal.aborted || error.name === "AbortError") return;
+    document.title = "slidercrank";
+    fill(place, h("h1", {}, "This cannot be shown"), h("p", {}, error.message), h("p", {}, h("a", { href: "#/" }, "All runs")));
+  }
+}
+
+function markNavigation() {
+  const here = `#/${read().parts[0] ?? ""}`;
+  fill(
+    document.getElementById("nav"),
+    NAVIGATION.map(([title, href]) => h("a", { href, "aria-current": href === here || (href === "#/" && here === "#/jobs") ? "page" : null }, title)),
+  );
+}
+
+function showPreferences() {
+  const scheme = localStorage.getItem("scheme") ?? "auto";
+  document.documentElement.dataset.scheme = scheme;
+  const choice = (label, options, value, choose) =>
+    h("label", {}, h("span", { class: "hidden" }, label), h("select", { onchange: (event) => choose(event.target.value) },
+      options.map(([key, title]) => h("option", { value: key, selected: key === value }, title))));
+  fill(
+    document.getElementById("preferences"),
+    choice("Units", [["si", "mm, N"], ["inch", "inch, lbf"]], system(), chooseSystem),
+    choice("Colours", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], scheme, (name) => {
+      localStorage.setItem("scheme", name);
+      document.documentElement.dataset.scheme = name;
+      window.dispatchEvent(new Event("scheme"));
+    }),
+  );
+}
+
+document.querySelector(".skip").addEventListener("click", (event) => {
+  event.preventDefault(); // the address belongs to the views
+  document.getElementById("main").focus();
+});
+window.addEventListener("hashchange", showView);
+showPreferences();
+showView();

@@ -1,0 +1,24 @@
+/** The address after the #: which view, and what is chosen in it, so that a link shows the same to somebody else. */
+
+/** Return {parts, query} of the address: "#/jobs/7?x=crank_mm" is {parts: ["jobs", "7"], query: URLSearchParams}. */
+export function read() {
+  const [path, query = ""] = location.hash.replace(/^#\/?/, "").split("?");
+  return { parts: path.split("/").filter(Boolean).map(decodeURIComponent), query: new URLSearchParams(query) };
+}
+
+/** Return a link to a view: link(["jobs", 7], {x: "crank_mm"}). Values that are null or empty are left out. */
+export function link(parts, query = {}) {
+  const parameters = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== null && value !== ""));
+  const text = parameters.toString();
+  return `#/${parts.map(encodeURIComponent).join("/")}${text ? `?${text}` : ""}`;
+}
+
+/** Keep what is chosen in the address of this view, without a step in the history and without drawing anew. */
+export function keep(query) {
+  history.replaceState(null, "", link(read().parts, query));
+}
+
+/** Go to a view. */
+export function go(parts, query = {}) {
+  location.hash = link(parts, query);
+}

@@ -1,0 +1,39 @@
+/** What happens to a job, as it happens. */
+
+import { address } from "./api.js";
+
+const AGAIN = 2000; // ms until the next try after the connection was refused
+
+/**
+ * Follow a job from its event `after` until it has ended or `signal` is aborted.
+ * told(event) is called with {number, at, kind, data}, once for each, in order; connected(yes) as the connection comes and goes.
+ */
+export function follow(job, { after = 0, signal, told, connected = () => {} }) {
+  let last = after;
+  let source = null;
+  let timer = null;
+  const stop = () => {
+    source?.close();
+    clearTimeout(timer);
+  };
+  const open = () => {
+    source = new EventSource(address(`jobs/${job}/events`, { after: last }));
+    source.onopen = () => connected(true);
+    const take = (message) => {
+      const event = JSON.parse(message.data);
+      if (event.number <= last) return;
+      last = event.number;
+      told(event);
+      if (event.kind === "state" && ["done", "cancelled", "failed"].includes(event.data.state)) stop();
+    };
+    for (const kind of ["state", "progress", "message"]) source.addEventListener(kind, take);
+    source.onerror = () => {
+      connected(false);
+      // A browser comes back by itself unless the answer was no stream, as from a service that is just starting.
+      if (source.readyState === EventSource.CLOSED && !signal?.aborted) timer = setTimeout(open, AGAIN);
+    };
+  };
+  signal?.addEventListener("abort", stop, { once: true });
+  open();
+  return stop;
+}

@@ -1,0 +1,68 @@
+/** Numbers for people. The API speaks mm, deg, N, N m, rpm; what a reader prefers is converted here, for show only. */
+
+const INCH = 25.4;
+const POUND = 4.4482216152605; // N in a pound-force
+const SYSTEMS = {
+  si: {},
+  inch: {
+    mm: ["in", 1 / INCH],
+    "m/s": ["in/s", 1000 / INCH],
+    "m/s^2": ["in/s²", 1000 / INCH],
+    "mm/rad": ["in/rad", 1 / INCH],
+    N: ["lbf", 1 / POUND],
+    "N m": ["lbf in", 1000 / INCH / POUND],
+    kg: ["lb", 1 / 0.45359237],
+  },
+};
+const PRETTY = { deg: "°", "m/s^2": "m/s²", "m^2": "m²", "kg m^2": "kg m²", "N m": "N m" };
+
+/** The system of units that the reader chose: "si" or "inch". */
+export function system() {
+  return localStorage.getItem("units") === "inch" ? "inch" : "si";
+}
+
+/** Choose a system; everything that shows numbers is drawn again (event "units" of the window). */
+export function chooseSystem(name) {
+  localStorage.setItem("units", name);
+  window.dispatchEvent(new Event("units"));
+}
+
+/** Return the unit that is shown for one of the API, such as "in" for "mm". */
+export function unitOf(unit) {
+  return SYSTEMS[system()][unit]?.[0] ?? PRETTY[unit] ?? unit;
+}
+
+/** Return a value of the API in the unit that is shown for it. */
+export function inShown(value, unit) {
+  return value * (SYSTEMS[system()][unit]?.[1] ?? 1);
+}
+
+/** Return a shown value in the unit of the API. */
+export function fromShown(value, unit) {
+  return value / (SYSTEMS[system()][unit]?.[1] ?? 1);
+}
+
+/** Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash. */
+export function text(value, unit = "", digits = 5) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value !== "number") return String(value);
+  const shown = inShown(value, unit);
+  if (shown === 0) return "0";
+  const size = Math.abs(shown);
+  if (size >= 1e6 || size < 1e-4) return shown.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("-", "−");
+  const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
+}
+
+/** Return a number with its unit: "41.2 mm", "38°". */
+export function withUnit(value, unit = "", digits = 5) {
+  if (value === null || value === undefined || typeof value !== "number") return text(value);
+  const shown = unitOf(unit);
+  return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
+}
+
+/** Return a heading with its unit: "crank (mm)". */
+export function heading(column) {
+  const unit = unitOf(column.unit);
+  return unit ? `${column.title} (${unit})` : column.title;
+}

@@ -1,0 +1,92 @@
+"""The page in a browser: headless Chromium, on a service behind a real server."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from slidercrank.service.api.settings import Settings
+from slidercrank.service.store import Store
+from tests.service.api.fixed_front import Solved, served, solved_in
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+SPEED = ("--no-sandbox", "--disable-dev-shm-usage", "--force-prefers-reduced-motion=0")
+Open = Callable[..., Page]
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Return a browser that the tests share."""
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        pytest.skip(f"no browser: the page is not tested; install one of {', '.join(BROWSERS)}")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=found, args=list(SPEED))
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    """Return an empty store."""
+    with Store(tmp_path / "store.db") as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
+    """Return a small job that was solved, which the tests leave as it is."""
+    with solved_in(tmp_path_factory.mktemp("solved")) as found:
+        yield found
+
+
+@pytest.fixture
+def open_page(browser: Browser) -> Iterator[Open]:
+    """Return what opens a view of a store's service in a browser of its own, such as `open_page(store, "#/jobs/1")`.
+
+    At the end nothing may have gone wrong on any page: no exception, no error in the console, no request to elsewhere.
+    A page that has to meet a refusal says so: `open_page(store, view, expected=("404",))`, parts of what is said.
+    """
+    with contextlib.ExitStack() as stack:
+        wrong: list[str] = []
+
+        def opened(
+            store: Store,
+            view: str = "",
+            *,
+            expected: tuple[str, ...] = (),
+            settings: Settings | None = None,
+            **context: Any,
+        ) -> Page:
+            address = stack.enter_context(served(store, settings or Settings()))
+            page = stack.enter_context(contextlib.closing(browser.new_context(**context))).new_page()
+            watch(page, address, wrong, expected)
+            page.goto(f"{address}/{view}")
+            return page
+
+        yield opened
+    assert wrong == []
+
+
+def watch(page: Page, address: str, wrong: list[str], expected: tuple[str, ...] = ()) -> None:
+    """Write down what goes wrong on a page."""
+    origin = urlsplit(address).netloc
+
+    def said(text: str) -> None:
+        if not any(part in text for part in expected):
+            wrong.append(text)
+
+    def asked(url: str) -> None:
+        if urlsplit(url).scheme in ("http", "https", "ws", "wss") and urlsplit(url).netloc != origin:
+            wrong.append(f"a request left the origin: {url}")
+
+    page.on("pageerror", lambda error: said(f"{error.name}: {error.message}"))
+    page.on("console", lambda message: said(message.text) if message.type in ("error", "warning") else None)
+    page.on("request", lambda request: asked(request.url))
