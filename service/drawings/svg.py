@@ -37,13 +37,14 @@ def svg_text(drawing: Drawing) -> str:
         f'<rect x="{_number(left)}" y="{_number(-top)}" width="{width}" height="{height}" fill="#ffffff"/>',
     ]
     for layer in drawing.layers:
-        lines.append(_group(layer, drawing.size))
-        lines += [f"  {line}" for shape in drawing.on(layer.name) for line in _drawn(shape)]
+        lines.append(group(layer, drawing.size))
+        lines += [f"  {line}" for shape in drawing.on(layer.name) for line in elements(shape)]
         lines.append("</g>")
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _group(layer: Layer, size: float) -> str:
+def group(layer: Layer, size: float) -> str:
+    """Return the start of the group of a layer. size: of the drawing."""
     attributes = {
         "id": layer.name,
         "inkscape:groupmode": "layer",
@@ -58,7 +59,8 @@ def _group(layer: Layer, size: float) -> str:
     return f"<g {' '.join(f'{name}={quoteattr(value)}' for name, value in attributes.items())}>"
 
 
-def _drawn(shape: Shape) -> list[str]:
+def elements(shape: Shape) -> list[str]:
+    """Return the elements that show a shape."""
     if isinstance(shape, Line):
         return [f'<path d="M{_point(shape.start)}L{_point(shape.end)}"/>']
     if isinstance(shape, Circle):
@@ -72,7 +74,7 @@ def _drawn(shape: Shape) -> list[str]:
     if isinstance(shape, Label):
         return [_label(shape)]
     if isinstance(shape, Dimension):
-        inner = [f"  {line}" for part in shape.parts for line in _drawn(part)]
+        inner = [f"  {line}" for part in shape.parts for line in elements(part)]
         return [f'<g id="{shape.name}">', *inner, "</g>"]
     raise AssertionError(shape)
 
