@@ -33,8 +33,31 @@ export function layers(count, label) {
   };
 }
 
-/** Return [r, g, b] of a colour of the style, "#0b5c8a". */
+/**
+ * Draw squares of 3 pixels at places, in colours[of[i]], those that `mask` has; all of them without one. They take the place of
+ * everything on the layer, whose pixels are those of the page.
+ */
+export function squares(context, across, up, mask, of, colours) {
+  const { width, height } = context.canvas;
+  const image = new ImageData(width, height);
+  const pixels = new Uint32Array(image.data.buffer);
+  const inks = Uint32Array.from(colours, (colour) => {
+    const [red, green, blue] = rgb(colour);
+    return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+  });
+  for (let row = 0; row < across.length; row += 1) {
+    if (mask && !mask[row]) continue;
+    const [x, y] = [Math.round(across[row]) - 1, Math.round(up[row]) - 1];
+    if (!(x >= 0 && y >= 0 && x < width - 2 && y < height - 2)) continue;
+    const ink = inks[of[row]];
+    for (let place = y * width + x, line = 0; line < 3; line += 1, place += width) pixels[place] = pixels[place + 1] = pixels[place + 2] = ink;
+  }
+  context.putImageData(image, 0, 0);
+}
+
+/** Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp. */
 export function rgb(colour) {
+  if (colour.startsWith("rgb")) return colour.match(/\d+/g).map(Number);
   const digits = parseInt(colour.slice(1), 16);
   return [digits >> 16, (digits >> 8) & 255, digits & 255];
 }

@@ -26,6 +26,11 @@ export class FrontData {
     const wanted = [...new Set(keys)].filter((key) => this.known.has(key) && !this.kept.has(key));
     if (!wanted.length || !this.count) return;
     const { values } = await get(`jobs/${this.job}/columns`, { columns: wanted.join(",") }, this.signal);
+    this.take(values);
+  }
+
+  /** Take in columns as the service gives them: {key: cells}. */
+  take(values) {
     for (const [key, cells] of Object.entries(values)) this.kept.set(key, stored(cells));
   }
 

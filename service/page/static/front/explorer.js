@@ -19,9 +19,10 @@ import { designTable } from "./table.js";
 const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
 const ORDER = ["marks", "table", "chosen", "all"];
 
-/** Fill a place with the explorer of a front; the promise is kept when it is drawn. */
-export async function explore(place, { job, front, query, signal }) {
+/** Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. */
+export async function explore(place, { job, front, values, query, signal }) {
   const explorer = new Explorer(job, front, query, signal);
+  explorer.data.take(values);
   await explorer.data.need(explorer.wanted());
   if (!signal.aborted) explorer.build(place);
   return explorer;

@@ -2,7 +2,7 @@
 
 import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
-import { text } from "../lib/numbers.js";
+import { inShown, text } from "../lib/numbers.js";
 import { headed, helpName } from "./columns.js";
 
 const PAGE = 20;
@@ -75,7 +75,7 @@ export function designTable(explorer) {
         (names.get(row) ?? []).map((name) => h("span", { class: "mark-name" }, name))),
       columns.map((key) => {
         const value = data.cell(key, row);
-        return h("td", { class: data.words(key) ? null : "number" }, text(value, data.column(key).unit, 5));
+        return h("td", { class: data.words(key) ? null : "number" }, aligned(value, data.column(key).unit, data.range(key)));
       }));
   }
 
@@ -106,4 +106,13 @@ export function designTable(explorer) {
   }
 
   return { place, draw, mark };
+}
+
+/** Return a value with as many places as all of its column have, so that the points are in line; others as they are. */
+function aligned(value, unit, { low, high }) {
+  const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));
+  if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6)) return text(value, unit, 5);
+  const places = Math.max(0, 4 - Math.floor(Math.log10(greatest)));
+  const shown = inShown(value, unit).toFixed(places);
+  return Number(shown) === 0 && value !== 0 ? text(value, unit, 3) : shown.replace("-", "−");
 }

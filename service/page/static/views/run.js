@@ -1,7 +1,5 @@
-import { explore } from "../front/explorer.js";
 import { actions } from "../jobs/actions.js";
 import { downloads } from "../jobs/downloads.js";
-import { watch } from "../jobs/live.js";
 import { outcome } from "../jobs/outcome.js";
 import { badge, ENDED } from "../jobs/states.js";
 import { ago, duration } from "../jobs/times.js";
@@ -11,6 +9,8 @@ import { fill, h } from "../lib/dom.js";
 
 export const title = "Run";
 
+const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
+
 /** A run: while it goes on its progress, afterwards the explorer of its front. */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
@@ -18,6 +18,7 @@ export async function show(place, { parts, signal }) {
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
   let inner = null; // ends what the body shows
+  const explorer = import("../front/explorer.js"); // comes while the job is asked for
 
   /** Show a job as it stands; null: somebody deleted it. */
   async function stand(job) {
@@ -37,8 +38,10 @@ export async function show(place, { parts, signal }) {
     const own = new AbortController();
     inner = Object.assign(own, { live });
     signal.addEventListener("abort", () => own.abort(), { signal: own.signal });
-    if (live) watch(body, job, { signal: own.signal, changed: stand });
-    else await ended(job, own.signal);
+    if (live) {
+      const { watch } = await import("../jobs/live.js");
+      if (!own.signal.aborted) watch(body, job, { signal: own.signal, changed: stand });
+    } else await ended(job, own.signal);
   }
 
   function drawHead(job) {
@@ -57,15 +60,20 @@ export async function show(place, { parts, signal }) {
     const said = outcome(job);
     const place = h("div", { class: "explorer" });
     fill(body, said, place);
-    let front = null;
+    if (!job.summary?.designs) {
+      place.remove();
+      return;
+    }
+    const standard = [...SIZES, ...Object.keys(job.summary.best)].join(","); // what the explorer shows unless told otherwise
+    const asked = [get(`jobs/${job.id}/front`, {}, own), get(`jobs/${job.id}/columns`, { columns: standard }, own), explorer];
     try {
-      front = await get(`jobs/${job.id}/front`, {}, own);
+      const [front, { values }, { explore }] = await Promise.all(asked);
+      await explore(place, { job, front, values, query: read().query, signal: own });
     } catch (problem) {
       if (problem.name === "AbortError") return;
-      if (problem.status !== 409) throw problem; // it has no result
+      if (problem.status === 404) await stand(null);
+      else throw problem;
     }
-    if (front?.count) await explore(place, { job, front, query: read().query, signal: own });
-    else place.remove();
   }
 
   const job = await get(`jobs/${number}`, {}, signal);
