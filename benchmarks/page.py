@@ -1,7 +1,7 @@
 """How quick the page is with a front of 10,000 designs, and how heavy: `python -m benchmarks.page`.
 
-First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that has
-read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows
+First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that
+has read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows
 it in lines, scatter and table.
 """
 
@@ -29,12 +29,13 @@ REPEATS = 5
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 _STATIC = Path(__file__).parents[1] / "service" / "page" / "static"
 
-# Moves the pointer along an axis and back, a tenth of it at a time; each step ends after the frame that it caused was painted.
+# Moves the pointer along an axis and back, a tenth of it at a time; a step ends after the frame that it caused.
 _BRUSH = """async (steps) => {
   const canvas = [...document.querySelectorAll(".lines canvas")].at(-1);
   const box = canvas.getBoundingClientRect();
   const x = box.left + box.width * 1.5 / 7;
-  const send = (kind, y) => canvas.dispatchEvent(new PointerEvent(kind, {clientX: x, clientY: y, button: 0, pointerId: 1, bubbles: true}));
+  const send = (kind, clientY) =>
+    canvas.dispatchEvent(new PointerEvent(kind, {clientX: x, clientY, button: 0, pointerId: 1, bubbles: true}));
   canvas.setPointerCapture = () => {};
   const painted = () => new Promise((done) => requestAnimationFrame(() => {
     const channel = new MessageChannel();

@@ -1,4 +1,4 @@
-"""A front of many designs, all of them real linkages with all their quantities; only that they are a front is made up."""
+"""A front of many designs, real linkages with all their quantities; only that they are a front is made up."""
 
 from __future__ import annotations
 

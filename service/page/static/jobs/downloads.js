@@ -11,9 +11,9 @@ export function downloads(job, { designs, signal }) {
   const files = h("ul");
   const figures = h("ul");
   const list = h("div", { class: "chooser-list panel" },
-    designs && [h("h3", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => file(path, name)))],
-    h("h3", {}, "Files of the job"), files,
-    designs && [h("h3", {}, "Figures"), figures]);
+    designs && [h("h2", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => file(path, name)))],
+    h("h2", {}, "Files of the job"), files,
+    designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;
   const node = h("details", { class: "chooser", ontoggle: async () => {
     if (!node.open || asked) return;
