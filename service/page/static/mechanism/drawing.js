@@ -14,13 +14,15 @@ import { bar, placed, scenery } from "./scenery.js";
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves).
  * - turn(angle): set the crank to an angle in deg. - fade(yes): show that it is not what was asked for.
- * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: the SVG. - close().
+ * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: the SVG; handle: what
+ *   lies over the crank circle, to be taken hold of. - close().
  */
 export function drawing(place, { label }) {
   const node = svg("svg", { class: "mechanism", role: "img", "aria-label": label });
   const still = svg("g");
   const parts = movingParts();
-  node.append(still, ...parts.nodes);
+  const handle = svg("circle", { class: "handle" });
+  node.append(still, ...parts.nodes, handle);
   place.append(node);
   let shown = null; // {linkage, motion, options}
   let view = null;
@@ -36,6 +38,7 @@ export function drawing(place, { label }) {
     node.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1 }));
+    for (const [name, number] of Object.entries({ cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link })) handle.setAttribute(name, number);
     parts.size({ linkage, view, block: own.block, link });
     parts.forces.size(motion, view, options.largest_force);
     turn(angle);
@@ -57,6 +60,7 @@ export function drawing(place, { label }) {
   watcher.observe(place);
   return {
     node,
+    handle,
     show(linkage, motion, options = {}) {
       shown = { linkage, motion, options };
       arrange();
