@@ -26,7 +26,7 @@ export function frontMap(place, { objectives, front }) {
     const rows = shown.filter(Boolean);
     const wide = range([...points.map(([one]) => one), ...rows.map((row) => value(row, across))], 0.06);
     const tall = range([...points.map(([, one]) => one), ...rows.map((row) => value(row, up))], 0.08);
-    x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 4);
+    x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
     y = scale(tall.low, tall.high, HEIGHT - ROOM.bottom, ROOM.top, 4);
     fill(picture,
       svg("g", { class: "axes" },

@@ -14,7 +14,7 @@ const MET = 1e-8; // of a bound: designs meet their constraints to this
 export function showNumbers(place, { designs, columns, requirements, names }) {
   const groups = groupsOf(columns).map(({ title, columns: own }) =>
     h("section", { class: "panel group" }, h("h3", {}, title), table(title, designs, own, names)));
-  fill(place, h("h2", {}, "All numbers"), h("div", { class: "groups" }, groups, limits(designs, requirements, names), quality(designs, columns)));
+  fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, names), quality(designs, columns)));
 }
 
 /** Return a link to the help of a column. */

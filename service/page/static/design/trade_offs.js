@@ -5,7 +5,7 @@ import { fill, h } from "../lib/dom.js";
 
 /** Put the trade-off rates into `place`. */
 export async function tradeOffs(place, { job, number, signal }) {
-  const body = h("div", { class: "panel" }, h("p", { class: "quiet" }, "Computing …"));
+  const body = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
   fill(place, h("h2", {}, "What it would cost"), body);
   try {
     const { trade_offs: sentences, note } = await get(`jobs/${job}/designs/${number}/trade-offs`, {}, signal);

@@ -153,7 +153,7 @@ function comparison(objectives, before, after) {
     const word = same ? "same" : gain > 0 ? "better" : "worse";
     return h("tr", {}, h("th", { scope: "row" }, objective.title), h("td", { class: "number quiet" }, text(from, objective.unit)),
       h("td", { class: "number", "data-key": objective.column, "data-value": String(to) }, withUnit(to, objective.unit)),
-      h("td", { class: same ? "quiet" : gain > 0 ? "good" : "bad" }, `${same ? "=" : gain > 0 ? "▲" : "▼"} ${word}`, same ? null : h("span", { class: "quiet" }, ` ${difference(to, from)}`)));
+      h("td", { class: same ? "quiet" : gain > 0 ? "good" : "bad" }, same ? "= same" : `${gain > 0 ? "▲" : "▼"} ${word}`, same ? null : h("span", { class: "quiet by" }, difference(to, from))));
   });
   return h("table", { class: "before-after" }, h("caption", { class: "hidden" }, "Objectives before and after the change"),
     h("thead", {}, h("tr", {}, ["Objective", "before", "after", "change"].map((title, n) => h("th", { scope: "col", class: n === 1 || n === 2 ? "number" : null }, title)))),

@@ -42,8 +42,8 @@ export async function show(place, { parts, query, signal }) {
   };
   const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
   fill(place, top(shared), takeAway(job, number), places.objectives,
-    h("div", { class: "design-columns" }, places.stage, places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places["trade-offs"], places.topics);
-  for (const name of ["stage", "what-if"]) places[name].classList.add("panel");
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places.topics);
+  for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
   const machines = stage(places.stage, angle);
   const charts = curveCharts(places.curves, hold);
   angle.listen(charts.turn);
