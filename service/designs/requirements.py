@@ -55,6 +55,13 @@ def ranges_of(part: Problem) -> dict[str, tuple[float, float]]:
     return {f"{name}_mm": (1e3 * of.lower, 1e3 * of.upper) for name, of in _dimensions(part).items()}
 
 
+def names_of(part: Problem) -> dict[str, str]:
+    """Return the names of all quantities of a problem, its own ones included, by column."""
+    from ...objectives.registry import QUANTITIES
+
+    return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
+
+
 def outside(part: Problem, row: Row) -> list[str]:
     """Return the columns of crank, rod and offset that are out of their ranges."""
     found = []

@@ -6,7 +6,7 @@ import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { panelsOf } from "../design/panels.js";
 import { stage } from "../design/stage.js";
-import { loadFront, loadNames } from "../design/surroundings.js";
+import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
 import { topics } from "../design/topics.js";
 import { top } from "../design/top.js";
@@ -27,8 +27,9 @@ export async function show(place, { parts, query, signal }) {
   const number = Number(given);
   if (!Number.isInteger(number) || number < 1) throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
   const path = `jobs/${job}/designs/${number}`;
-  const [front, main, requirements, names] = await Promise.all([
-    get(`jobs/${job}/front`, {}, signal), loadDesign(job, number, 1, signal), get(`${path}/requirements`, {}, signal), loadNames(signal)]);
+  const [front, main, requirements] = await Promise.all([
+    get(`jobs/${job}/front`, {}, signal), loadDesign(job, number, 1, signal), get(`${path}/requirements`, {}, signal)]);
+  const { names } = requirements;
   const [rows, ...others] = await Promise.all([
     loadFront(job, front, signal), ...besideOf(query, number).map((other, n) => loadDesign(job, other, n + 2, signal))]);
   if (signal.aborted) return;
