@@ -10,6 +10,7 @@ from ..runs.result import Row
 if TYPE_CHECKING:
     from ...model.mechanism import Mechanism
     from ...optimise.problem import Problem, Range
+    from .stored_designs import StoredDesign
 
 _RPM = 9.549296585513721  # in one rad/s
 _MET = 1e-8  # of a bound: designs meet their constraints to this
@@ -60,6 +61,15 @@ def names_of(part: Problem) -> dict[str, str]:
     from ...objectives.registry import QUANTITIES
 
     return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
+
+
+def has_tolerances(design: StoredDesign) -> bool:
+    """Return whether anything of a design has a tolerance or a clearance."""
+    import numpy as np
+
+    from ...model.tolerance.sources import limits
+
+    return bool(np.any(limits(design.mechanism, design.linkage)))
 
 
 def outside(part: Problem, row: Row) -> list[str]:

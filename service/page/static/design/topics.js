@@ -12,10 +12,14 @@ const TOPICS = [
 const NEAR = "300px"; // before it is in sight
 
 /** Put the topics into `place`; each shows once it comes near, and says so where the design has none. */
-export function topics(place, { job, number, objectives, signal }) {
+export function topics(place, { job, number, objectives, requirements, signal }) {
   const sections = TOPICS.map(({ name, title, show }) => {
     const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     const section = h("section", { class: name }, h("h2", {}, title), body);
+    if (name === "tolerances" && !requirements.tolerances) {
+      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; add some to it, such as crank = 0.05 mm."));
+      return section;
+    }
     const watcher = new IntersectionObserver(async (seen) => {
       if (!seen.some((one) => one.isIntersecting)) return;
       watcher.disconnect();
