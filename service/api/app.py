@@ -9,7 +9,7 @@ from starlette.middleware import Middleware
 
 from ..page import router as page
 from ..store import Store
-from . import analysis, columns, design_files, designs, events, exports, figures, fronts, health, jobs, schema
+from . import analysis, columns, design_files, designs, events, exports, figures, fronts, health, jobs, schema, what_if
 from .event_feed import Feed
 from .metrics import Metrics, Timed
 from .openapi import describe
@@ -46,7 +46,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (jobs, events, fronts, designs, columns, analysis, design_files, figures, exports, schema, health):
+    for part in (jobs, events, fronts, designs, columns, analysis, what_if, design_files, figures, exports, schema, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
     describe(app)
