@@ -9,7 +9,7 @@ from starlette.middleware import Middleware
 
 from ..page import router as page
 from ..store import Store
-from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema
+from . import analysis, designs, events, exports, figures, fronts, health, job_files, jobs, preview, quantities, schema
 from .event_feed import Feed
 from .metrics import Metrics, Timed
 from .openapi import describe
@@ -46,7 +46,20 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (jobs, events, fronts, designs, analysis, figures, exports, schema, health):
+    for part in (
+        jobs,
+        events,
+        fronts,
+        designs,
+        analysis,
+        figures,
+        exports,
+        schema,
+        job_files,
+        preview,
+        quantities,
+        health,
+    ):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
     describe(app)

@@ -1,0 +1,80 @@
+"""A look at a job while it is being written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from .places import Wrong, places
+from .possible import Possible, possible
+from .stated import geometry, left_out
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Problem
+
+
+@dataclass(frozen=True)
+class Look:
+    """wrong: what is wrong with the job, nothing if it can be solved. problem: of the whole job, if it is valid.
+
+    stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
+    requirements that were not looked at.
+    """
+
+    wrong: list[Wrong]
+    problem: Problem | None
+    stated: Problem | None
+    possible: Possible | None
+    unchecked: list[str]
+
+
+def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+    """Return what can be said of a job. read: gives its problem, or raises what is wrong with it."""
+    wrong: list[Wrong] = []
+    whole = None
+    try:
+        stated = geometry(tables, None)
+    except InputError:
+        stated = None
+    beyond = None if stated is None else _beyond(stated)
+    try:
+        # The parser would search for the nearest way out for a long moment; the rest of the job is checked without it.
+        whole = read(tables if beyond is None else _without_time_ratio(tables))
+        if beyond is None and stated is not None:
+            stated = geometry(tables, whole)
+    except InputError as error:
+        wrong = places(error)
+    if beyond is not None:
+        wrong, whole = [beyond, *wrong], None
+    if stated is None:
+        return Look(wrong, whole, None, None, [])
+    return Look(wrong, whole, stated, possible(stated), left_out(tables, stated))
+
+
+def _beyond(stated: Problem) -> Wrong | None:
+    """Return what is wrong if no linkage at all has the time ratio with the transmission angle that are asked."""
+    from ...optimise.job.box import greatest_time_ratio
+    from ...optimise.problem import Range
+
+    asked = {constraint.quantity: constraint for constraint in stated.constraints}
+    ratio, angle = asked.get("time_ratio"), asked.get("transmission_angle")
+    if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
+        return None
+    if not 0.0 < angle.lower < 0.5 * math.pi:
+        return None
+    cap = greatest_time_ratio(math.cos(angle.lower), Range(lower=0.0, upper=1.0))
+    if ratio.lower <= cap * (1.0 + 1e-9):
+        return None
+    return Wrong(
+        "constraints.time_ratio",
+        f"with a least transmission angle of {math.degrees(angle.lower):.5g} deg it stays below {cap:.4g} whatever the "
+        f"dimensions; got at least {ratio.lower:.5g}; lower it, or lower the transmission angle",
+    )
+
+
+def _without_time_ratio(tables: Mapping[str, Any]) -> dict[str, Any]:
+    constraints = {name: item for name, item in tables["constraints"].items() if name != "time_ratio"}
+    return {**tables, "constraints": constraints}
