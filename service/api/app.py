@@ -46,20 +46,9 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (
-        jobs,
-        events,
-        fronts,
-        designs,
-        analysis,
-        figures,
-        exports,
-        schema,
-        job_files,
-        preview,
-        quantities,
-        health,
-    ):
+    for part in (jobs, job_files, preview, events, fronts, designs, analysis, figures, exports):
+        app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
+    for part in (schema, quantities, health):
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
     describe(app)

@@ -1,4 +1,4 @@
-"""Job files for forms: the shipped ones, reading one, writing one. Nothing is queued, and no file of the service read."""
+"""Job files for forms: the shipped ones, reading one, writing one. Nothing is queued, no file of the service read."""
 
 from __future__ import annotations
 

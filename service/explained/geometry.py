@@ -67,7 +67,7 @@ GEOMETRY = (
     ),
     Text(
         name="rod_to_offset",
-        sentence="The length of the rod divided by the size of the offset: a rule of proportion, as in rod = 3.2 offset.",
+        sentence="The length of the rod divided by the size of the offset: a rule such as rod = 3.2 offset.",
         advice="Held at one value it leaves one choice fewer, and the search meets it exactly.",
         formula="l / |e|, infinite without offset",
         section=_CLOSED,
@@ -131,7 +131,7 @@ GEOMETRY = (
     Text(
         name="motion_deviation",
         sentence="The greatest distance between the slider and the points of the wanted motion.",
-        formula="max over the points of |x(theta_i + psi) + s - t_i|; phase psi and shift s zero, or the best where free",
+        formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
         section="12. Position error",
         source="derived there",
         picture="wanted motion",

@@ -1,4 +1,4 @@
-"""What the ranges of a job allow, from samples: full rotation, stroke, time ratio, transmission angle, the feasible share.
+"""What the ranges of a job allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
 
 A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
 samples lie where the search looks. Extremes are those of the samples: within a few per mille of the true ones.
