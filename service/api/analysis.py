@@ -57,15 +57,13 @@ class StoredAnalysisModel(AnalysisModel):
     number: int = Field(examples=[3])
 
 
-class CurvesModel(BaseModel):
-    """Curves of a design over a turn of the crank.
+class CycleModel(BaseModel):
+    """Curves over a turn of the crank.
 
     columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
     undetermined. slow_stroke: outward, inward or equal.
     """
 
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
     inner_dead_centre_deg: float
     outer_dead_centre_deg: float
     slow_stroke: str = Field(examples=["inward"])
@@ -73,6 +71,13 @@ class CurvesModel(BaseModel):
     curves: dict[str, list[float | None]] = Field(
         examples=[{"crank_angle_deg": [0.0, 90.0, 180.0, 270.0], "slider_position_mm": [100.8, 60.8, 20.8, 22.4]}]
     )
+
+
+class CurvesModel(CycleModel):
+    """Curves of a design of a front over a turn of the crank."""
+
+    job: int = Field(examples=[7])
+    number: int = Field(examples=[3])
 
 
 class WhatIf(BaseModel):
@@ -110,17 +115,8 @@ def show_curves(
 ) -> CurvesModel:
     """Give slider motion, torque, transmission angle and joint forces over a turn of the crank, from 0 deg."""
     stored = found.design(design)
-    inner, outer = (math.degrees(float(angle)) for angle in stored.linkage.dead_centre_angles)
-    table = cycle_table(stored.mechanism, stored.linkage, angles=angles)
-    return CurvesModel(
-        job=found.job.id,
-        number=design,
-        inner_dead_centre_deg=inner,
-        outer_dead_centre_deg=outer,
-        slow_stroke=str(stored.linkage.slow_stroke(direction=stored.mechanism.speed or 1.0)),
-        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in table],
-        curves={column.key: finite(column.values) for column in table},
-    )
+    cycle = cycle_model(stored.mechanism, stored.linkage, angles)
+    return CurvesModel(job=found.job.id, number=design, **dict(cycle))
 
 
 @router.post("/analyse")
@@ -139,6 +135,19 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     record, notes = _with_topics(row, mechanism, linkage, topics, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
+
+
+def cycle_model(mechanism: Mechanism, linkage: Linkage, angles: int) -> CycleModel:
+    """Return the curves of a fully turning linkage as JSON has them."""
+    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
+    table = cycle_table(mechanism, linkage, angles=angles)
+    return CycleModel(
+        inner_dead_centre_deg=inner,
+        outer_dead_centre_deg=outer,
+        slow_stroke=str(linkage.slow_stroke(direction=mechanism.speed or 1.0)),
+        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in table],
+        curves={column.key: finite(column.values) for column in table},
+    )
 
 
 def _with_topics(

@@ -59,6 +59,7 @@ class AllowedModel(BaseModel):
     hardest: str | None = Field(examples=["transmission_angle"])
     hardest_share: float | None = Field(examples=[0.6])
     unchecked: list[str] = Field(examples=[["position_error"]])
+    said: list[str] = Field(description="what is asked and cannot be had, in words", examples=[[]])
 
 
 class MotionModel(BaseModel):
@@ -122,6 +123,7 @@ def _allowed(look: Look) -> AllowedModel | None:
         hardest=found.hardest[0] if found.hardest else None,
         hardest_share=found.hardest[1] if found.hardest else None,
         unchecked=look.unchecked,
+        said=look.said,
     )
 
 

@@ -22,6 +22,7 @@ from .models import JobNumber
 if TYPE_CHECKING:
     from ...optimise.front import ParetoFront
     from ...optimise.problem import Problem
+    from ...optimise.stationarity import Array
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
@@ -58,6 +59,13 @@ class StoredFront:
     def front(self) -> ParetoFront:
         """The front as figures take it."""
         return front_of(self.problem, self.result)
+
+    @cached_property
+    def minimised(self) -> Array:
+        """The objectives of the designs (n, m), as they are minimised, in the units that are shown."""
+        from ..designs.picking_options import minimised_values
+
+        return minimised_values(self.result)
 
     def image(self, name: str, kind: str) -> bytes | None:
         """Return a figure that was drawn lately."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import InputError
 from .places import Wrong, places
 from .possible import Possible, possible
+from .sentences import said
 from .stated import geometry, left_out
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ class Look:
     """wrong: what is wrong with the job, nothing if it can be solved. problem: of the whole job, if it is valid.
 
     stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
-    requirements that were not looked at.
+    requirements that were not looked at. said: sentences on what cannot be had.
     """
 
     wrong: list[Wrong]
@@ -29,6 +30,7 @@ class Look:
     stated: Problem | None
     possible: Possible | None
     unchecked: list[str]
+    said: list[str]
 
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
@@ -50,8 +52,9 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     if beyond is not None:
         wrong, whole = [beyond, *wrong], None
     if stated is None:
-        return Look(wrong, whole, None, None, [])
-    return Look(wrong, whole, stated, possible(stated), left_out(tables, stated))
+        return Look(wrong, whole, None, None, [], [])
+    found = possible(stated)
+    return Look(wrong, whole, stated, found, left_out(tables, stated), said(stated, found))
 
 
 def _beyond(stated: Problem) -> Wrong | None:

@@ -1,0 +1,152 @@
+"""What surrounds a design: what its job asks, what it trades, and what becomes of it with other lengths."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
+
+from ...model.errors import InputError
+from ..designs.columns import find_column
+from ..designs.cycle_table import LEAST, MOST
+from ..designs.requirements import ranges_of, requirements_of, speed_rpm
+from ..designs.trade_offs import trade_offs_of
+from ..designs.variation import variation_of, with_lengths
+from ..runs.result import finite
+from .analysis import CycleModel, cycle_model
+from .fronts import Cells, ColumnModel, column_model
+from .problems import problem_responses
+from .stored_fronts import DesignNumber, FrontDep
+from .turns import SIMULATING
+
+router = APIRouter(tags=["designs"], responses=problem_responses(409))
+
+_MOST_NUMBERS = 20
+_LONGEST = 1e7  # mm
+_SHORTEST = 1e-4  # mm
+
+Length = Annotated[float, Field(ge=_SHORTEST, le=_LONGEST)]
+
+
+class RequirementModel(BaseModel):
+    """A quantity that must lie between two values, in its unit; null leaves a side open.
+
+    column: its key in the designs. slack: the key of the distance to the nearer bound, less than 0 where it is broken.
+    """
+
+    quantity: str = Field(examples=["transmission_angle"])
+    column: str = Field(examples=["least_transmission_angle_deg"])
+    title: str = Field(examples=["least transmission angle"])
+    unit: str = Field(examples=["deg"])
+    lower: float | None = Field(examples=[40.0])
+    upper: float | None = Field(examples=[None])
+    slack: str = Field(examples=["slack_least_transmission_angle_deg"])
+
+
+class RequirementsModel(BaseModel):
+    """What the job asks of a design, with the choices that it made.
+
+    ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
+    """
+
+    job: int = Field(examples=[7])
+    number: int = Field(examples=[3])
+    ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
+    requirements: list[RequirementModel]
+    speed_rpm: float = Field(examples=[300.0])
+
+
+class TradeOffsModel(BaseModel):
+    """What one objective costs in the others at a design, in words. note: why there is nothing, or empty."""
+
+    job: int = Field(examples=[7])
+    number: int = Field(examples=[3])
+    trade_offs: list[str] = Field(examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]])
+    note: str = Field(examples=[""])
+
+
+class OtherLengths(BaseModel):
+    """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    crank_mm: Length = Field(examples=[40.0])
+    rod_mm: Length = Field(examples=[64.0])
+    offset_mm: float = Field(ge=-_LONGEST, le=_LONGEST, examples=[20.0])
+    angles: int = Field(180, ge=0, le=MOST)
+
+
+class WhatIfModel(BaseModel):
+    """A design with other lengths, beside its front.
+
+    design: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: columns
+    of lengths that leave their range. dominated_by: numbers of designs of the front that are as good in every objective
+    and better in one; dominates: of those that it beats so; the greatest difference first, at most 20. cycle: null if
+    no curves were asked for.
+    """
+
+    job: int = Field(examples=[7])
+    number: int = Field(examples=[3])
+    columns: list[ColumnModel]
+    design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
+    broken: list[str] = Field(examples=[["stroke_mm"]])
+    outside: list[str] = Field(examples=[[]])
+    dominated_by: list[int] = Field(examples=[[12, 4]])
+    dominated_by_count: int = Field(examples=[2])
+    dominates: list[int] = Field(examples=[[]])
+    dominates_count: int = Field(examples=[0])
+    cycle: CycleModel | None
+
+
+@router.get("/jobs/{number}/designs/{design}/requirements")
+def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsModel:
+    """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
+    stored = found.design(design)
+    asked = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
+    return RequirementsModel(
+        job=found.job.id,
+        number=design,
+        ranges=ranges_of(stored.part),
+        requirements=asked,
+        speed_rpm=speed_rpm(stored.mechanism),
+    )
+
+
+@router.get("/jobs/{number}/designs/{design}/trade-offs")
+def show_trade_offs(found: FrontDep, design: DesignNumber) -> TradeOffsModel:
+    """Give what one objective costs in the others at a design, to first order, its active constraints held."""
+    stored = found.design(design)
+    try:
+        with SIMULATING.turn():
+            sentences, note = trade_offs_of(found.front, design - 1, stored), ""
+    except InputError as error:
+        sentences, note = [], str(error)
+    return TradeOffsModel(job=found.job.id, number=design, trade_offs=sentences, note=note)
+
+
+@router.post("/jobs/{number}/designs/{design}/what-if")
+def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -> WhatIfModel:
+    """Analyse a design with other lengths, its choices and varying numbers kept; what if?"""
+    if 0 < asked.angles < LEAST:
+        raise InputError(
+            f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
+        )
+    lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
+    stored = with_lengths(found.design(design), lengths)
+    changed = variation_of(stored, found.result, found.minimised)
+    cycle = cycle_model(stored.mechanism, stored.linkage, asked.angles) if asked.angles else None
+    keys = list(changed.row)
+    return WhatIfModel(
+        job=found.job.id,
+        number=design,
+        columns=[column_model(find_column(key, keys)) for key in keys],
+        design=finite(changed.row),
+        broken=changed.broken,
+        outside=changed.outside,
+        dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
+        dominated_by_count=len(changed.dominated_by),
+        dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],
+        dominates_count=len(changed.dominates),
+        cycle=cycle,
+    )

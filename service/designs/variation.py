@@ -1,0 +1,86 @@
+"""A design of a stored front with other lengths: its numbers, what it breaks, and where it is beside the front."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ...model.linkage import Linkage
+from ..runs.result import Result, Row, rows_of
+from .picking_options import minimised_values
+from .requirements import outside, requirements_of
+from .stored_designs import StoredDesign
+
+if TYPE_CHECKING:
+    from ...optimise.stationarity import Array
+
+_SAME = 1e-9  # of an objective's range over the front: a difference below is rounding
+
+
+@dataclass(frozen=True)
+class Variation:
+    """row: every quantity and the slacks. broken: columns of constraints that are not met. outside: of ranges left.
+
+    dominated_by, dominates: positions in the front of designs that are as good in every objective and better in one,
+    and of those that this one beats so, those of the greatest difference first.
+    """
+
+    row: Row
+    linkage: Linkage
+    broken: list[str]
+    outside: list[str]
+    dominated_by: list[int]
+    dominates: list[int]
+
+
+def with_lengths(design: StoredDesign, lengths: tuple[float, float, float]) -> StoredDesign:
+    """Return a design with other lengths, m: choices and varying numbers stay. Raises `InputError` for lengths."""
+    linkage = Linkage(*lengths, design.mechanism.branch)
+    linkage.require_full_rotation()
+    return replace(design, values=(*lengths, *design.values[3:]), linkage=linkage)
+
+
+def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Variation:
+    """Return all about a design that need not be in the front.
+
+    minimised: of `minimised_values(result)`, so that it is made once for many.
+    """
+    row = _row(design)
+    wanted = requirements_of(design.part)
+    return Variation(
+        row=row,
+        linkage=design.linkage,
+        broken=[item.column for item in wanted if not item.met(row)],
+        outside=outside(design.part, row),
+        **_beside(result, row, minimised),
+    )
+
+
+def _row(design: StoredDesign) -> Row:
+    import numpy as np
+
+    from ...optimise.assemble import table_of
+
+    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]), lambda: None)
+    return rows_of(table.to_dict("list"))[0]
+
+
+def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
+    """Return the positions of designs that dominate a row, and of those that it dominates."""
+    import numpy as np
+
+    own = minimised_values(replace(result, designs=[row]))[0]
+    if not len(minimised) or not np.isfinite(own).all():
+        return {"dominated_by": [], "dominates": []}
+    finite = np.where(np.isfinite(minimised), minimised, math.inf)
+    bounded = np.isfinite(finite).all(axis=1)
+    if not bounded.any():
+        return {"dominated_by": [], "dominates": []}
+    span = np.ptp(finite[bounded], axis=0)
+    gain = (own - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
+    found = {}
+    for name, way in (("dominated_by", gain), ("dominates", -gain)):
+        rows = np.flatnonzero(bounded & (way >= -_SAME).all(axis=1) & (way > _SAME).any(axis=1))
+        found[name] = rows[np.argsort(-way[rows].sum(axis=1), kind="stable")].tolist()
+    return found

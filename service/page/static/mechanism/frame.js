@@ -1,0 +1,49 @@
+/** What of a mechanism has to be seen, and where that is on the screen. */
+
+import { extremes } from "../charts/cycle.js";
+
+const MARGIN = 26; // pixels, for what stands beside the mechanism
+const HEIGHTS = [170, 430];
+
+/** Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider. */
+export function frameOf({ crank_mm: r, offset_mm: e }, { slider_position_mm: positions }) {
+  const { low, high } = extremes(positions);
+  const far = Math.max(Math.abs(low.value), Math.abs(high.value));
+  const block = Math.max(0.16 * (r + Math.max(r, Math.abs(e))), 0.05 * (far + r));
+  return {
+    left: Math.min(-r, low.value - 1.3 * block) - 0.3 * block,
+    right: Math.max(r, high.value + 1.3 * block),
+    low: Math.min(-r, e - 0.9 * block),
+    high: Math.max(r, e + 0.9 * block),
+    block,
+  };
+}
+
+/** Return the frame that holds all of these; mechanisms drawn in one frame have one scale. */
+export function around(frames) {
+  const all = (name) => frames.map((frame) => frame[name]);
+  return {
+    left: Math.min(...all("left")),
+    right: Math.max(...all("right")),
+    low: Math.min(...all("low")),
+    high: Math.max(...all("high")),
+    block: Math.max(...all("block")),
+  };
+}
+
+/** Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre. */
+export function fitted(frame, width) {
+  const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
+  const across = (width - 2 * MARGIN) / wide;
+  const height = Math.round(Math.min(Math.max(across * tall + 2 * MARGIN, HEIGHTS[0]), HEIGHTS[1]));
+  const unit = Math.min(across, (height - 2 * MARGIN) / tall);
+  const left = (width - unit * wide) / 2;
+  const top = (height - unit * tall) / 2;
+  return {
+    width,
+    height,
+    unit,
+    x: (millimetres) => left + unit * (millimetres - frame.left),
+    y: (millimetres) => top + unit * (frame.high - millimetres),
+  };
+}

@@ -1,0 +1,99 @@
+/** What of a mechanism stands still: bearing, guide, centre lines, paths of the pins, dead centres, offset. */
+
+import { svg } from "../lib/dom.js";
+import { withUnit } from "../lib/numbers.js";
+
+const PITCH = 9; // pixels between the strokes of a hatching
+
+/**
+ * Return the parts that stand still, as SVG elements.
+ * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels.
+ */
+export function scenery({ linkage, centres, view, block, link, direction }) {
+  const { crank_mm: r, offset_mm: e } = linkage;
+  const [x, y] = [view.x, view.y];
+  const ends = centres.map((centre) => centre.position);
+  const line = (kind, from, to) => svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
+  const [start, end] = [x(Math.min(...ends) - 1.2 * block), x(Math.max(...ends) + 1.2 * block)];
+  const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
+  return [
+    line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
+    e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
+    svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
+    line("path", [x(ends[0]), y(e)], [x(ends[1]), y(e)]),
+    ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
+    ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
+    rotation(view, r, direction),
+    offset(view, e, reach[0] + 14),
+    bearing(x(0), y(0), link),
+  ];
+}
+
+function guide(start, end, y, side) {
+  const strokes = [];
+  for (let foot = start + PITCH; foot <= end; foot += PITCH) strokes.push(`M${foot} ${y}l${-PITCH * 0.8} ${-side * PITCH * 0.8}`);
+  return svg("path", { class: "guide", d: `M${start} ${y}H${end}${strokes.join("")}` });
+}
+
+function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, link) {
+  const turn = (angle * Math.PI) / 180;
+  const pin = [view.x(r * Math.cos(turn)), view.y(r * Math.sin(turn))];
+  const slider = [view.x(position), view.y(e)];
+  const size = block * view.unit;
+  return svg(
+    "g",
+    { class: "ghost" },
+    svg("path", { d: bar(Math.hypot(pin[0] - view.x(0), pin[1] - view.y(0)), link), transform: placed([view.x(0), view.y(0)], pin) }),
+    svg("path", { d: bar(Math.hypot(slider[0] - pin[0], slider[1] - pin[1]), link), transform: placed(pin, slider) }),
+    svg("rect", { x: slider[0] - 0.75 * size, y: slider[1] - 0.5 * size, width: 1.5 * size, height: size, rx: 2 }),
+  );
+}
+
+function rotation(view, r, direction) {
+  if (!direction) return null;
+  const at = (degrees) => [view.x(0) + view.unit * r * Math.cos(degrees), view.y(0) - view.unit * r * Math.sin(degrees)];
+  const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
+  const [start, end] = [at(from), at(to)];
+  const radius = view.unit * r;
+  const head = to + (direction > 0 ? Math.PI / 2 : -Math.PI / 2); // which way it points there
+  const wing = (by) => `${end[0] - 9 * Math.cos(head + by)} ${end[1] + 9 * Math.sin(head + by)}`;
+  const arc = `M${start}A${radius} ${radius} 0 0 ${direction > 0 ? 0 : 1} ${end}`;
+  return svg("path", { class: "rotation", d: `${arc}M${wing(0.4)}L${end}L${wing(-0.4)}` });
+}
+
+function offset(view, e, x) {
+  const [from, to] = [view.y(0), view.y(e)];
+  if (Math.abs(to - from) < 16) return null;
+  const tip = Math.sign(to - from) * 6;
+  const heads = `M${x - 3} ${from + tip}L${x} ${from}L${x + 3} ${from + tip}M${x - 3} ${to - tip}L${x} ${to}L${x + 3} ${to - tip}`;
+  return svg(
+    "g",
+    { class: "dimension" },
+    svg("path", { d: `M${x} ${from}V${to}${heads}` }),
+    svg("text", { x: x + 6, y: (from + to) / 2 + 4 }, `offset ${withUnit(e, "mm", 4)}`),
+  );
+}
+
+function bearing(x, y, link) {
+  const foot = 1.7 * link;
+  const ground = y + foot;
+  const strokes = [-1, -0.4, 0.2, 0.8].map((at) => `M${x + at * foot} ${ground}l${-5} 6`).join("");
+  return svg(
+    "g",
+    { class: "bearing" },
+    svg("path", { d: `M${x} ${y}L${x - 0.7 * foot} ${ground}H${x + 0.7 * foot}Z` }),
+    svg("path", { class: "guide", d: `M${x - 1.15 * foot} ${ground}H${x + 1.15 * foot}${strokes}` }),
+  );
+}
+
+/** Return the outline of a link with round ends, from the origin along +x. */
+export function bar(length, width) {
+  const half = width / 2;
+  return `M0 ${-half}H${length}A${half} ${half} 0 0 1 ${length} ${half}H0A${half} ${half} 0 0 1 0 ${-half}Z`;
+}
+
+/** Return the transform that lays such a link from one point towards another. */
+export function placed(from, to) {
+  const turn = (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
+  return `translate(${from[0].toFixed(2)} ${from[1].toFixed(2)}) rotate(${turn.toFixed(3)})`;
+}
