@@ -1,7 +1,7 @@
 /** What the ranges allow, beside the form, in the reader's units. */
 
 import { fill, h } from "../lib/dom.js";
-import { text, unitOf, withUnit } from "../lib/numbers.js";
+import { text, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. */
 export function showFacts(place, { allowed, example, understood }) {
@@ -40,5 +40,5 @@ function share(value) {
 function between(ends, unit) {
   if (!ends) return "none";
   const [low, high] = ends.map((end) => text(end, unit, 3));
-  return low === high ? withUnit(ends[0], unit, 3) : `${low} to ${high} ${unitOf(unit)}`.trim();
+  return low === high ? withUnit(ends[0], unit, 3) : `${low} to ${withUnit(ends[1], unit, 3)}`;
 }

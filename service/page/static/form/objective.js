@@ -20,11 +20,10 @@ export function objective(form, quantity) {
     form.redraw();
   });
   const ask = explanation(idOf(path, "why"), quantity.title, { sentence: quantity.sentence, name: quantity.name });
-  const tick = h("div", { class: "tick" }, box, h("label", { for: box.id }, quantity.title), ask.button);
   const controls = given === undefined ? [] : wanted(form, path, quantity, kind, given);
   const made = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
   made.classList.add("objective");
-  made.querySelector(".label").replaceWith(tick);
+  made.querySelector(".label").replaceWith(h("div", { class: "tick" }, box, h("label", { for: box.id }, quantity.title), ask.button));
   made.querySelector(".controls").after(ask.text);
   return made;
 }

@@ -24,7 +24,7 @@ export function sections(form) {
     section("Motion", fields(speed(form), requirements(form, MOTION)), more("Acceleration of the crank, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "branch"]))),
     section(
       "Dimensions",
-      fields(["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
+      h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
       h("h3", {}, "Rules of proportion"),
       fields(requirements(form, RULES)),
     ),
