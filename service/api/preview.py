@@ -89,6 +89,7 @@ class PreviewModel(BaseModel):
     """What can be said of a job while it is being written."""
 
     wrong: list[WrongModel]
+    checked: bool = Field(description="false for a job of so many values that only its submission checks it")
     understood: Understood | None = Field(description="what was understood, once nothing is wrong")
     allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
     example: ExampleModel | None = Field(description="null where nothing turns fully")
@@ -103,6 +104,7 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
     return PreviewModel(
         wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
+        checked=look.checked,
         understood=None if look.problem is None else Understood(**summarise(look.problem)),
         allowed=_allowed(look),
         example=_example(look),

@@ -39,6 +39,6 @@ function share(value) {
 
 function between(ends, unit) {
   if (!ends) return "none";
-  const [low, high] = ends.map((end) => text(end, unit, 3));
-  return low === high ? withUnit(ends[0], unit, 3) : `${low} to ${withUnit(ends[1], unit, 3)}`;
+  const [low, high] = ends.map((end) => (unit === "deg" ? Math.round(10 * end) / 10 : end));
+  return text(low, unit, 3) === text(high, unit, 3) ? withUnit(low, unit, 3) : `${text(low, unit, 3)} to ${withUnit(high, unit, 3)}`;
 }

@@ -28,7 +28,7 @@ export function link(form, path, label) {
   const { keys, more } = WAYS[way];
   const fields = (names) => names.map((key) => byschema(form, [...path, key], { label: `${label}, ${key.replace("_", " ")}`, required: true }));
   return [
-    field(form, path, label, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),
+    field(form, path, `mass of the ${label}`, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),
     fields(keys),
     more.length ? h("details", { class: "more" }, h("summary", {}, `Mass centre and inertia of the ${label}`), h("div", { class: "fields" }, fields(more))) : null,
   ];
