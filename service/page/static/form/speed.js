@@ -36,6 +36,6 @@ export function speed(form) {
   });
   return [
     field(form, PATH, "crank speed", [input, units], "The speed at which the crank turns; it is taken as steady."),
-    field(form, PATH, "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
+    field(form, [...PATH, "direction"], "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
   ];
 }

@@ -138,6 +138,7 @@ function build(place, { draft, schema, quantities, shipped, signal }) {
       return;
     }
     start.disabled = true;
+    keepDraft(draft); // with its key: should the answer be lost, the same is sent again
     const { priority, ...limits } = form.submission;
     try {
       const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits }, { headers: { "Idempotency-Key": draft.key } });
