@@ -1,0 +1,70 @@
+"""Trade-off rates at any design of a stored front: its slopes are not stored, and computed anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...optimise.elimination import Sheet
+    from ...optimise.front import ParetoFront
+    from ...optimise.stationarity import Array
+    from .stored_designs import StoredDesign
+
+_NEAR = 1e-9  # relative: how well a point of the unit box must give the design back
+
+
+def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign) -> list[str]:
+    """Return what one objective costs in the others at a design, in words, the active constraints held.
+
+    front: of `front_of`. row: of the design in it. Raises `InputError` where there are no such rates: a single
+    objective, an objective without gradient, a design that does not meet its constraints.
+    """
+    import numpy as np
+
+    from ...optimise.elimination import sheets
+    from ...optimise.evaluation import Evaluator
+    from ...optimise.gradients import without_gradient
+    from ...optimise.hypervolume import scaling
+    from ...optimise.polish import polish
+
+    if len(front.objectives) < 2:
+        raise InputError("objectives are traded where there are several; got one; add another one to the job")
+    lacking = without_gradient(design.part)
+    if lacking:
+        raise InputError(
+            f'trade-off rates need the gradient of every quantity; got {", ".join(lacking)} with gradient = "none"; '
+            'set gradient = "finite differences"'
+        )
+    values = np.array(design.values)
+    for sheet in sheets(design.part):
+        point = _point(sheet, values)
+        if point is None:
+            continue
+        span = scaling(front.values)[1]
+        found = polish(Evaluator(design.part, sheet), point[None], span, iterations=0)
+        owner, slopes = found.goals[0]
+        nothing = (np.zeros(0), np.zeros((0, 0)))
+        goals, active = [nothing] * len(front), [nothing[1]] * len(front)
+        goals[row], active[row] = (owner, slopes * span[owner.astype(int)][:, None]), found.active[0]
+        return replace(front, goals=tuple(goals), active=tuple(active)).trade_offs(row)
+    raise InputError(
+        "trade-off rates are those of a design that meets the rules of its job; this one does not; run the job again"
+    )
+
+
+def _point(sheet: Sheet, values: Array) -> Array | None:
+    """Return the point of the unit box that gives a design, None if no point of the sheet does."""
+    import numpy as np
+
+    if values[2] * sheet.sign < 0.0:
+        return None
+    sizes = np.abs(values)
+    unknowns = np.concatenate([sizes[:3], values[3:]])
+    free = np.array([unknowns[sheet.names.index(name)] for name in sheet.free])
+    point = np.clip((free - sheet.lower) / (sheet.upper - sheet.lower), 0.0, 1.0)
+    scale = np.concatenate([np.full(3, sizes[:3].max()), sizes[3:]])
+    near = np.abs(sheet.dimensions(point)[0] - values) <= _NEAR * scale
+    return np.asarray(point) if near.all() else None
