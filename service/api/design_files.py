@@ -119,6 +119,7 @@ def _report(found: StoredFront, design: int, store: Store) -> Report:
     from ..report.design_report import design_report
     from ..report.subject import subject_of
 
+    found.row(design)
     job = found.job.id
     kept = set(store.artefacts(job))
     versions, certificate = (

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...model.linkage import Linkage
     from ...model.mechanism import Mechanism
 
-FRAMES, MILLISECONDS = 72, 50
+FRAMES, MILLISECONDS = 60, 60
 """Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
 _WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
 _COLOURS = 32

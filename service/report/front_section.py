@@ -71,12 +71,12 @@ def _marked(subject: Subject) -> Table:
         for place, words in labels.items()
     )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    share = 0.76 / len(columns)
+    share = 0.81 / len(columns)
     return Table(
         "Marked designs",
         ("no.", "what it is", *heads),
         rows,
-        (0.05, 0.19, *(share for _ in columns)),
+        (0.05, 0.14, *(share for _ in columns)),
         frozenset({0, *range(2, 2 + len(columns))}),
         bold=frozenset({0}),
         small=len(columns) > 5,

@@ -22,7 +22,7 @@ _INKS: dict[Tone, str] = {"plain": INK, "note": MUTED, "good": "#1c6b30", "bad":
 _MARKS: dict[Tone, str] = {"plain": "", "note": "", "good": "✓ ", "bad": "✗ "}
 _TALLEST = 6.6  # of a figure
 _SHRUNK = 0.7  # of its size, rather than leaving the foot of a page empty
-_BETWEEN = 0.06  # columns
+_BETWEEN = 0.09  # columns
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ class _Layout:
         figure = picture.draw()
         width, height = figure.get_size_inches()
         scale = min(_ACROSS / width, _TALLEST / height, 1.0)
-        left = self.y - _BOTTOM - 0.4
+        left = self.y - _BOTTOM - 0.42
         if _SHRUNK * scale * height <= left < scale * height:
             scale = left / height
         self.room(scale * height + 0.4)

@@ -84,7 +84,7 @@ def test_the_picture_is_one_turn_at_the_same_scale_in_both_directions() -> None:
         assert getattr(picture, "n_frames", 1) == FRAMES
         assert picture.info["duration"] == MILLISECONDS
         assert picture.info["loop"] == 0
-        for step in range(0, FRAMES, FRAMES // 8):
+        for step in range(0, FRAMES, FRAMES // 12):
             picture.seek(step)
             frames.append(np.asarray(picture.convert("RGB")).astype(int))
     assert (frames[0][0, 0] == 255).all()
