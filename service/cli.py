@@ -30,6 +30,7 @@ from .commands.job import check, schema
 from .commands.like import like
 from .commands.optimise import optimise
 from .commands.queue import cancel, delete, jobs, resume
+from .commands.report import report
 from .commands.runs import front
 from .commands.screen import give, say
 from .commands.sections import sections
@@ -128,6 +129,7 @@ COMMANDS = (
     schema,
     front,
     export,
+    report,
     cases,
     serve,
     submit,

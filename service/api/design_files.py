@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Response
 
@@ -15,8 +16,13 @@ from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from .figures import require_figures
 from .problems import problem_responses
+from .state import StoreDep
 from .stored_fronts import DesignNumber, FrontDep, StoredFront
 from .turns import DRAWING
+
+if TYPE_CHECKING:
+    from ..report.document import Report
+    from ..store import Store
 
 router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
 
@@ -36,9 +42,16 @@ def _kind(media_type: str) -> dict[str, Any]:
 
 
 def _file(
-    found: StoredFront, design: int, ending: str, media_type: str, content: bytes, *, policy: str = _SEALED
+    found: StoredFront,
+    design: int,
+    ending: str,
+    media_type: str,
+    content: bytes,
+    *,
+    policy: str = _SEALED,
+    label: str = "",
 ) -> Response:
-    name = f"{slug(found.result.name)}-{found.job.id}-design-{design}.{ending}"
+    name = f"{slug(found.result.name)}-{found.job.id}-design-{design}{label}.{ending}"
     headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Security-Policy": policy}
     return Response(content, media_type=media_type, headers=headers)
 
@@ -68,7 +81,7 @@ def show_motion(found: FrontDep, design: DesignNumber) -> Response:
 
     of = found.design(design)
     content = player_page(of.mechanism, of.linkage, name=found.result.name, number=design)
-    return _file(found, design, "html", "text/html; charset=utf-8", content, policy=_PLAYING)
+    return _file(found, design, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **_kind("image/gif"))
@@ -80,7 +93,49 @@ def animate_linkage(found: FrontDep, design: DesignNumber) -> Response:
     content = _made(
         found, design, "gif", lambda: animated_gif(of.mechanism, of.linkage, name=found.result.name, number=design)
     )
-    return _file(found, design, "gif", "image/gif", content)
+    return _file(found, design, "gif", "image/gif", content, label="-motion")
+
+
+@router.get("/report.html", dependencies=[Depends(require_figures)], **_kind("text/html"))
+def report_design(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+    """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
+    from ..report.html import html_file
+
+    content = _made(found, design, "report", lambda: html_file(_report(found, design, store)))
+    return _file(found, design, "html", "text/html; charset=utf-8", content, label="-report")
+
+
+@router.get("/report.pdf", dependencies=[Depends(require_figures)], **_kind("application/pdf"))
+def print_report(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+    """Give the same report as PDF."""
+    from ..report.pdf import pdf_file
+
+    content = _made(found, design, "pdf", lambda: pdf_file(_report(found, design, store)))
+    return _file(found, design, "pdf", "application/pdf", content, label="-report")
+
+
+def _report(found: StoredFront, design: int, store: Store) -> Report:
+    """Return the report of a design, with what the store keeps beside the result."""
+    from ..report.design_report import design_report
+    from ..report.subject import subject_of
+
+    found.row(design)
+    job = found.job.id
+    kept = set(store.artefacts(job))
+    versions, certificate = (
+        json.loads(store.artefact(job, name).content) if name in kept else None
+        for name in ("versions.json", "certificate.json")
+    )
+    subject = subject_of(
+        found.problem,
+        found.result,
+        design,
+        run=found.job.run,
+        versions=versions or {},
+        certificate=certificate,
+        front=found.front,
+    )
+    return design_report(subject)
 
 
 def _made(found: StoredFront, design: int, kind: str, make: Callable[[], bytes]) -> bytes:

@@ -56,10 +56,10 @@ def export(
     """
     files = dict(zip(_FILES, (dxf, svg, motion, gif), strict=True))
     of_one = any(file is not None for file in files.values())
-    _require_something(csv, json, of_one=of_one)
     picked = design is not None or knee or topsis is not None or lexicographic is not None
     if picked and not of_one:
-        raise InputError(f"a design is written with {', '.join(_FILES)}; got none of them; give one, or leave it out")
+        raise InputError(f"a design is written with {', '.join(_FILES)}; got none of them; give one")
+    _require_something(csv, json, of_one=of_one)
     if at is not None and dxf is None and svg is None:
         raise InputError("--at is for --dxf and --svg, which are not asked for; add one or leave --at out")
     angle = _angle(at)

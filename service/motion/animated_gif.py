@@ -6,8 +6,8 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
+from ..drawings.painting import paint
 from ..drawings.parts import extent, moving, pins_at, proportions, scenery, sizes_of
-from .painting import paint
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from ...model.linkage import Linkage
     from ...model.mechanism import Mechanism
 
-FRAMES, MILLISECONDS = 72, 50
+FRAMES, MILLISECONDS = 60, 60
 """Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
 _WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
 _COLOURS = 32
+_WHITE = 246  # of 255; the fill of the slider is just below
 
 
 def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None) -> bytes:
@@ -83,11 +84,13 @@ def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]
 
 
 def _palette(picture: Picture) -> Picture:
-    """Return the colours of a picture, the one of its corner white."""
-    found = picture.quantize(_COLOURS)
-    colours = found.getpalette() or []
-    paper = found.getpixel((0, 0))
-    assert isinstance(paper, int)
-    colours[3 * paper : 3 * paper + 3] = [255, 255, 255]
+    """Return the colours of a picture, those near to white as white."""
+    from PIL import Image
+
+    colours = picture.quantize(_COLOURS).getpalette() or []
+    for place in range(0, len(colours), 3):
+        if min(colours[place : place + 3]) > _WHITE:
+            colours[place : place + 3] = [255, 255, 255]
+    found = Image.new("P", (1, 1))
     found.putpalette(colours)
     return found

@@ -1,4 +1,4 @@
-"""`slidercrank export` of one design: drawing and motion."""
+"""`slidercrank export` of one design, drawing and motion, and `slidercrank report`."""
 
 from __future__ import annotations
 
@@ -81,5 +81,51 @@ def test_a_wrong_request_is_exit_code_2_and_writes_nothing(
     monkeypatch.chdir(tmp_path)
     done = command("export", "latest", "--runs", kept, *arguments)
     assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_report_is_written_as_html_and_as_pdf(
+    kept: Path, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    front = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)
+    done = command("report", "latest", "--runs", kept, "--design", 3)
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    (file,) = tmp_path.iterdir()
+    assert file.name.endswith("short-test-job-design-3.html")
+    assert done.stderr == f"report: {file.name}\n"
+    page = file.read_text(encoding="utf-8")
+    assert all(repr(value) in page for value in front["designs"][2].values() if isinstance(value, float))
+    assert "Trade-offs here, to first order: " in page
+    assert "<script" not in page
+    done = command("report", "latest", "--runs", kept, "--knee", "--out", tmp_path / "knee.pdf")
+    assert done.exit_code == 0, done.stderr
+    assert (tmp_path / "knee.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        ((), 2, "a design is named by --design NO"),
+        (("--design", 9), 2, "the run has designs 1 to 8; got 9"),
+        (("--design", 1, "--where", "time_ratio > 1"), 2, "a design is chosen in one way"),
+        (("--knee", "--where", "time_ratio > 9"), 3, "none of the 8 designs meets time_ratio > 9"),
+        (("--knee", "--pdf", "--out", "a.html"), 2, "--pdf writes PDF; got --out a.html"),
+        (("--knee", "--out", "none/there/a.html"), 2, "must be a folder that can be written"),
+    ],
+)
+def test_a_report_that_cannot_be_written_is_refused(
+    arguments: tuple[object, ...],
+    code: int,
+    words: str,
+    kept: Path,
+    tmp_path: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = command("report", "latest", "--runs", kept, *arguments)
+    assert (done.exit_code, done.stdout) == (code, "")
     assert words in done.stderr
     assert list(tmp_path.iterdir()) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
@@ -12,6 +13,7 @@ import pytest
 from ezdxf.filemanagement import read as read_dxf
 
 from slidercrank.service.api.settings import Settings
+from slidercrank.service.runs.result import rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
@@ -23,6 +25,8 @@ KINDS = {
     "linkage.svg": ("image/svg+xml", "svg"),
     "motion.html": ("text/html; charset=utf-8", "html"),
     "motion.gif": ("image/gif", "gif"),
+    "report.html": ("text/html; charset=utf-8", "html"),
+    "report.pdf": ("application/pdf", "pdf"),
 }
 
 
@@ -38,7 +42,8 @@ def test_a_file_of_a_design_is_a_download_that_is_sealed_off(name: str, solved: 
     media_type, ending = KINDS[name]
     answer = client.get(f"{solved.path}/designs/3/{name}")
     assert (answer.status_code, answer.headers["content-type"]) == (200, media_type)
-    file = f"short-test-job-{solved.number}-design-3.{ending}"
+    part = "" if name.startswith("linkage") else f"-{name.split('.')[0]}"
+    file = f"short-test-job-{solved.number}-design-3{part}.{ending}"
     assert answer.headers["content-disposition"] == f'attachment; filename="{file}"'
     policy = answer.headers["content-security-policy"]
     assert policy.startswith("default-src 'none'")
@@ -62,6 +67,30 @@ def test_the_dxf_is_the_design_of_the_table(solved: Solved, client: httpx.Client
     assert path.dxf.start.y == pytest.approx(design["offset_mm"], rel=1e-12)
 
 
+def test_the_report_has_the_numbers_of_the_api_and_of_the_csv(solved: Solved, client: httpx.Client) -> None:
+    page = client.get(f"{solved.path}/designs/3/report.html").text
+    cells = re.findall(r'<td class="right">([^<]*)</td><td>([a-zA-Z0-9_]+)</td></tr>', page)
+    stored = {key: text for text, key in cells}
+    design = client.get(f"{solved.path}/designs/3").json()["design"]
+    table = rows_from_csv(client.get(f"{solved.path}/export.csv").text)[2]
+    assert list(stored) == list(design) == list(table)
+    for key, value in design.items():
+        if isinstance(value, float):
+            assert float(stored[key]) == value == table[key], key
+        else:
+            assert (stored[key], value) == ("", table[key]), key
+    versions = client.get(f"{solved.path}/files/versions.json").json()
+    assert f"numpy {versions['numpy']}" in page
+    assert "No certificate" in page
+
+
+def test_a_report_is_kept_and_drawn_once(solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
+    with client_of(solved.store) as client:
+        first = client.get(f"{solved.path}/designs/2/report.html")
+        monkeypatch.setattr("slidercrank.service.report.html.html_file", None)
+        assert client.get(f"{solved.path}/designs/2/report.html").content == first.content
+
+
 @pytest.mark.parametrize("name", KINDS)
 @pytest.mark.parametrize(("design", "status"), [("9", 404), ("0", 422), ("x", 422), ("99999999999999", 422)])
 def test_designs_that_are_not_there_are_refused(
@@ -78,7 +107,8 @@ def test_crank_angles_that_are_none_are_refused(angle: str, solved: Solved, clie
 def test_a_service_without_figures_draws_for_cad_all_the_same(solved: Solved) -> None:
     with client_of(solved.store, Settings(figures=False)) as client:
         assert client.get(f"{solved.path}/designs/1/linkage.dxf").status_code == 200
-        assert "draws no figures" in refused(client.get(f"{solved.path}/designs/1/motion.gif"), 404)
+        for name in ("motion.gif", "report.html", "report.pdf"):
+            assert "draws no figures" in refused(client.get(f"{solved.path}/designs/1/{name}"), 404)
 
 
 def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> None:

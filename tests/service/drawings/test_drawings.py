@@ -283,3 +283,13 @@ def test_lines_and_circles_of_a_drawing_are_finite() -> None:
                     assert all(map(math.isfinite, (*shape.start, *shape.end)))
                 elif isinstance(shape, Circle):
                     assert shape.radius > 0.0
+
+
+def test_the_layers_are_those_that_the_documentation_names(pytestconfig: pytest.Config) -> None:
+    text = (pytestconfig.rootpath / "docs" / "drawings.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1:4] for line in text.splitlines() if line.startswith("|")]
+    named = {name.strip(): dashes.strip() for names, _, dashes in rows for name in names.split(",")}
+    found = read(drawing_of(LINKAGES["offset"]))
+    for layer in LAYERS:
+        assert named[layer.name] == str(found.layers.get(layer.name).dxf.linetype).upper(), layer.name
+    assert {name for name in named if name.isupper() and "_" in name} <= {layer.name for layer in LAYERS}
