@@ -27,8 +27,8 @@ export function scatter(chart) {
     const height = Math.max(260, Math.min(460, Math.round(width * 0.72)));
     const { data } = chart;
     const [x, y] = [axis(chart.x(), AREA.left, width - AREA.right, 6), axis(chart.y(), height - AREA.bottom, AREA.top, 6)];
-    const across = Float32Array.from(data.numbers(chart.x()), x.at);
-    const up = Float32Array.from(data.numbers(chart.y()), y.at);
+    const across = data.numbers(chart.x()).map(x.at);
+    const up = data.numbers(chart.y()).map(y.at);
     const many = data.count > FEW;
     stack.resize(width, height, many ? [BACK, FRONT] : []);
     view = { width, height, x, y, across, up, many, ink: colours(), shades: shades() };
@@ -62,7 +62,8 @@ export function scatter(chart) {
     const words = data.words(key);
     if (words) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
     const { low, high } = data.range(key);
-    const of = Uint8Array.from(numbers, (number) => Math.min(SHADES - 1, Math.floor(((number - low) / (high - low || 1)) * SHADES)));
+    const of = new Uint8Array(numbers.length);
+    for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
     return { of, colours: ramp(ink, SHADES) };
   }
 
@@ -195,7 +196,7 @@ export function scatter(chart) {
     draw(what) {
       if (what === "all" || !view) lay();
       if (what !== "marks") drawChosen();
-      drawOver();
+      if (what !== "chosen" || box) drawOver();
     },
     /** Return the colours of the legend, low to high. */
     colours: () => view.shades.colours,

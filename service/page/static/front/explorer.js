@@ -16,6 +16,7 @@ import { scatterPanel } from "./scatter_panel.js";
 import { selectedBar } from "./selected.js";
 import { designTable } from "./table.js";
 
+const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
 const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
 const ORDER = ["marks", "table", "chosen", "all"];
 
@@ -88,6 +89,7 @@ class Explorer {
     this.signal.addEventListener("abort", () => {
       sizes.disconnect();
       clearTimeout(this.settling);
+      clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
     });
     for (const name of ["units", "scheme"]) window.addEventListener(name, again, { signal: this.signal });
@@ -153,9 +155,21 @@ class Explorer {
     }
     if (what === "all") this.scatterPanel.legend();
     if (what === "marks") this.table.mark();
-    else this.table.draw();
+    else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
     this.selected.draw();
+  }
+
+  /** Draw the table, soon where it may wait and was drawn a moment ago. */
+  drawTable(waits) {
+    clearTimeout(this.tabling);
+    const passed = performance.now() - (this.tabled ?? -Infinity);
+    if (waits && passed < OFTEN) {
+      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - passed);
+      return;
+    }
+    this.tabled = performance.now();
+    this.table.draw();
   }
 
   /** Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones. */
