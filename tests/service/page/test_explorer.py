@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from typing import Any
+from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
@@ -259,3 +260,36 @@ def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) ->
     page.mouse.move(x, (top + bottom) / 2, steps=4)
     page.mouse.up()
     expect(field(page, "At most least transmission angle")).not_to_have_value("")
+
+
+def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[Store, list[Row]]) -> None:
+    store, rows = large
+    page = open_page(store, "#/jobs/1?x=crank_mm&y=rod_mm")
+    page.get_by_role("combobox", name="Drag").select_option("by hand")
+    canvas = page.locator(".dots canvas").last
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for dx, dy in ((100, 0), (0, 100)):
+        page.mouse.move(x + dx, y + dy)
+    page.mouse.up()
+    expect(page).to_have_url(re.compile("lasso=crank_mm%2Crod_mm"))
+    shown = parse_qs(urlsplit(hash_of(page).replace("#", "")).query)["lasso"][0].split(",")[2:]
+    (x1, y1), (x2, y2), (x3, y3) = (tuple(map(float, shown[i : i + 2])) for i in (0, 2, 4))
+    assert (y2, x3) == pytest.approx((y1, x1), rel=1e-3)
+    kept = 0
+    for row in rows:
+        across = (float(row["crank_mm"] or 0.0) - x1) / (x2 - x1)
+        up = (float(row["rod_mm"] or 0.0) - y1) / (y3 - y1)
+        kept += across >= 0.0 and up >= 0.0 and across + up <= 1.0
+    assert kept > 20
+    count = page.get_by_text("of 10,000 designs chosen")
+    found = int(count.inner_text().split()[0].replace(",", ""))
+    assert found == pytest.approx(kept, abs=3)  # the address has five digits of the corners
+    again = open_page(store, hash_of(page))
+    expect(again.get_by_text("of 10,000 designs chosen")).not_to_contain_text("10,000 of")
+    page.get_by_role("button", name="Clear all limits").click()
+    expect(page.get_by_text("10,000 of 10,000 designs chosen")).to_be_visible()

@@ -36,7 +36,7 @@ class Explorer {
     this.signal = signal;
     this.data = new FrontData(job.id, front, signal);
     this.chosen = choicesFrom(query, front);
-    this.limits = new Limits(this.data, this.chosen.limits);
+    this.limits = new Limits(this.data, this.chosen.limits, this.chosen.lasso);
     this.pointed = null;
     this.picked = null; // by weights
     this.waiting = null;
@@ -46,7 +46,8 @@ class Explorer {
   /** Return the columns that are shown or limited. */
   wanted() {
     const { axes, x, y, colour, columns, sort } = this.chosen;
-    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys()].filter(Boolean);
+    const { lasso } = this.limits;
+    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys(), lasso?.x, lasso?.y].filter(Boolean);
   }
 
   build(place) {
@@ -64,6 +65,7 @@ class Explorer {
         this.limits.set(chosen.x, x);
         this.limit(chosen.y, y);
       },
+      lasso: (line) => this.surround(line),
     };
     this.dots = scatter(dots);
     this.scatterPanel = scatterPanel(this, this.dots);
@@ -117,9 +119,17 @@ class Explorer {
     else this.change({}, "chosen");
   }
 
+  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. */
+  surround(line) {
+    this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
+    this.chosen.page = 1;
+    this.update("chosen");
+  }
+
   clear() {
-    this.limits.of.clear();
+    this.limits.clear();
     this.change({ page: 1 }, "chosen");
+    this.update("marks"); // a line around designs is drawn with them
   }
 
   /** Draw in the next frame; several changes within a frame are drawn once. */
@@ -131,7 +141,7 @@ class Explorer {
       [this.frame, this.waiting] = [0, null];
       this.draw(waiting);
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => keep(queryOf(this.chosen)), SETTLED);
+      this.settling = setTimeout(() => keep(queryOf(this.chosen, this.limits.lasso)), SETTLED);
     });
   }
 
@@ -140,7 +150,7 @@ class Explorer {
       this.limits.apply();
       const { chosen } = this.limits;
       this.count.textContent = `${chosen.toLocaleString("en")} of ${this.data.count.toLocaleString("en")} designs chosen`;
-      this.clearing.disabled = !this.limits.of.size;
+      this.clearing.disabled = this.limits.open;
     }
     if (what === "all") {
       this.width = this.place.clientWidth;
@@ -203,7 +213,7 @@ class Explorer {
   }
 
   open(row) {
-    keep(queryOf(this.chosen)); // so that the way back leads here
+    keep(queryOf(this.chosen, this.limits.lasso)); // so that the way back leads here
     location.hash = this.hrefOf(row);
   }
 
