@@ -36,21 +36,28 @@ export function parallel(chart) {
     const heights = new Int16Array(data.count * axes.length).fill(-1);
     axes.forEach(({ key }, axis) => {
       const numbers = data.numbers(key);
-      const { at } = scales[axis];
+      const zero = scales[axis].at(0);
+      const factor = scales[axis].at(1) - zero;
       for (let row = 0; row < numbers.length; row += 1) {
-        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(at(numbers[row]));
+        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(zero + factor * numbers[row]);
       }
     });
     const many = data.count > FEW;
     stack.resize(width, height, many ? [BACK, FRONT] : []);
-    view = { width, height, axes, across, scales, heights, many, density: null, drawn: null, ink: colours() };
+    view = { width, height, axes, across, scales, heights, many, all: null, backed: false, density: null, drawn: null, ink: colours() };
     if (many) {
-      const all = new Density(width, height, across, heights);
-      for (let row = 0; row < data.count; row += 1) all.add(row, 1);
-      all.paint(contexts[BACK], rgb(view.ink.quiet), strength(data.count) / 3);
+      view.all = new Density(width, height, across, heights);
+      for (let row = 0; row < data.count; row += 1) view.all.add(row, 1);
     } else {
       lines(contexts[BACK], (row) => row >= 0, view.ink.line, 1);
     }
+  }
+
+  /** Draw all designs behind the chosen ones, once, and not before some are left out. */
+  function drawBack() {
+    if (!view.many || view.backed || chart.limits.chosen === chart.data.count) return;
+    view.backed = true;
+    view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
   }
 
   function lines(context, wanted, colour, width, alpha = 1) {
@@ -65,16 +72,21 @@ export function parallel(chart) {
   /** Draw the chosen ones. Of many, only those are touched that changed, unless most did. */
   function drawChosen() {
     const { mask, chosen } = chart.limits;
+    drawBack();
     if (!view.many) {
       stack.clear(FRONT);
       lines(contexts[FRONT], (row) => mask[row], view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
       return;
     }
-    view.density ??= new Density(view.width, view.height, view.across, view.heights);
+    if (!view.density) {
+      view.density = new Density(view.width, view.height, view.across, view.heights);
+      view.density.counts.set(view.all.counts);
+      view.drawn = new Uint8Array(mask.length).fill(1);
+    }
     const before = view.drawn;
     let changed = 0;
-    if (before) for (let row = 0; row < mask.length; row += 1) changed += mask[row] !== before[row];
-    if (before && changed < chosen) {
+    for (let row = 0; row < mask.length; row += 1) changed += mask[row] !== before[row];
+    if (changed <= chosen) {
       for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) view.density.add(row, mask[row] ? 1 : -1);
     } else {
       view.density.clear();

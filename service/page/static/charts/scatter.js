@@ -2,6 +2,7 @@
 
 import { inShown } from "../lib/numbers.js";
 import { drawAxes } from "./axes.js";
+import { drawLasso, thinned } from "./lasso.js";
 import { layers, palette, ramp, squares } from "./paint.js";
 import { colours, range, scale } from "./scale.js";
 
@@ -13,22 +14,24 @@ const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
 
 /**
  * Return {place, draw(what), colours()}. `chart` gives what is drawn: data, limits, x(), y(), colour() (keys), marks()
- * [{row, colour, name}], pointed() (a row or null), and takes what the reader does: box(x, y) with limits, point(row or null),
- * open(row), select(row).
+ * [{row, colour, name}], pointed() (a row or null), and takes what the reader does: box(x, y) with limits, lasso(line)
+ * with corners in the units of the columns, point(row or null), open(row), select(row).
  */
 export function scatter(chart) {
   const stack = layers(3, "Scatter of two quantities. The table below has the same designs.");
   const { place, contexts, top } = stack;
   let view = null;
   let box = null;
+  let line = null; // drawn by hand, in pixels
+  let free = false; // whether a drag draws a line, not a box
 
   function lay() {
     const width = Math.max(1, Math.round(place.clientWidth));
     const height = Math.max(260, Math.min(460, Math.round(width * 0.72)));
     const { data } = chart;
     const [x, y] = [axis(chart.x(), AREA.left, width - AREA.right, 6), axis(chart.y(), height - AREA.bottom, AREA.top, 6)];
-    const across = Float32Array.from(data.numbers(chart.x()), x.at);
-    const up = Float32Array.from(data.numbers(chart.y()), y.at);
+    const across = data.numbers(chart.x()).map(x.at);
+    const up = data.numbers(chart.y()).map(y.at);
     const many = data.count > FEW;
     stack.resize(width, height, many ? [BACK, FRONT] : []);
     view = { width, height, x, y, across, up, many, ink: colours(), shades: shades() };
@@ -62,7 +65,8 @@ export function scatter(chart) {
     const words = data.words(key);
     if (words) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
     const { low, high } = data.range(key);
-    const of = Uint8Array.from(numbers, (number) => Math.min(SHADES - 1, Math.floor(((number - low) / (high - low || 1)) * SHADES)));
+    const of = new Uint8Array(numbers.length);
+    for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
     return { of, colours: ramp(ink, SHADES) };
   }
 
@@ -107,6 +111,9 @@ export function scatter(chart) {
       context.fillRect(box.x, box.y, box.right - box.x, box.bottom - box.y);
       context.globalAlpha = 1;
     }
+    const { lasso } = chart.limits;
+    const drawn = lasso && lasso.x === chart.x() && lasso.y === chart.y() ? lasso.line.map(([a, b]) => [view.x.at(a), view.y.at(b)]) : null;
+    if (line ?? drawn) drawLasso(context, line ?? drawn, ink);
   }
 
   /** Write a name beside a design, unless others are `written` there. */
@@ -160,14 +167,19 @@ export function scatter(chart) {
       chart.point(row);
       return;
     }
-    if (!box && Math.hypot(here.x - from.x, here.y - from.y) < 5) return;
+    if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return;
+    if (free) {
+      line = [...(line ?? [[from.x, from.y]]), [here.x, here.y]];
+      if (line.length > 2) chart.lasso(thinned(line).map(([x, y]) => [view.x.value(x), view.y.value(y)]));
+      return;
+    }
     box = { x: Math.min(from.x, here.x), right: Math.max(from.x, here.x), y: Math.min(from.y, here.y), bottom: Math.max(from.y, here.y) };
     chart.box(limitOf(chart.x(), view.x, box.x, box.right), limitOf(chart.y(), view.y, box.bottom, box.y));
   });
   const end = (event) => {
     if (!from) return;
-    const drawn = box;
-    [from, box] = [null, null];
+    const drawn = box ?? line;
+    [from, box, line] = [null, null, null];
     if (drawn) drawOver();
     else if (event.type === "pointerup") {
       const row = under(at(event));
@@ -195,7 +207,11 @@ export function scatter(chart) {
     draw(what) {
       if (what === "all" || !view) lay();
       if (what !== "marks") drawChosen();
-      drawOver();
+      if (what !== "chosen" || box || line || chart.limits.lasso) drawOver();
+    },
+    /** Choose what a drag draws: a line by hand, or a box. */
+    byHand: (yes) => {
+      free = yes;
     },
     /** Return the colours of the legend, low to high. */
     colours: () => view.shades.colours,

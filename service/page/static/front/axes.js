@@ -1,9 +1,8 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
-import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { fromShown, text } from "../lib/numbers.js";
-import { headed, helpName } from "./columns.js";
+import { headed, helpLink } from "./columns.js";
 
 const MOST_WORDS = 8; // as ticks; the rest stays in the table
 
@@ -31,7 +30,7 @@ export function axisFields(explorer) {
         above.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
       } }, sign);
     return h("div", { class: "axis-head" },
-      h("a", { href: link(["help", helpName(key, explorer.data.objectives)]), title: `What is ${column.title}?` }, headed(column)),
+      h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
       h("div", { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
         act(flipped ? "↑" : "↓", "Flip", () => explorer.flipAxis(index)),

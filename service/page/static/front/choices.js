@@ -19,6 +19,7 @@ export function choicesFrom(query, front) {
   return {
     axes: axes.length ? axes : standard.map((key) => ({ key, flipped: false })),
     limits: limitsFrom(query, known),
+    lasso: lassoFrom(query, known),
     x: one("x", objectives[0] ?? keys[0]),
     y: one("y", objectives[1] ?? sizes[0] ?? keys[0]),
     colour: query.get("colour") === "none" ? "" : one("colour", objectives[2] ?? ""),
@@ -45,8 +46,15 @@ function limitsFrom(query, known) {
   return limits;
 }
 
+function lassoFrom(query, known) {
+  const [x, y, ...corners] = (query.get("lasso") ?? "").split(",");
+  const numbers = corners.map(Number);
+  if (!known(x) || !known(y) || numbers.length < 6 || numbers.length % 2 || !numbers.every(Number.isFinite)) return null;
+  return { x, y, line: Array.from({ length: numbers.length / 2 }, (_, index) => [numbers[2 * index], numbers[2 * index + 1]]) };
+}
+
 /** Return the query of an address; what is as it would be anyway is left out. */
-export function queryOf(chosen) {
+export function queryOf(chosen, lasso) {
   const { standard } = chosen;
   const unless = (value, usual) => (value === usual ? "" : value);
   const query = {
@@ -59,6 +67,7 @@ export function queryOf(chosen) {
     page: chosen.page > 1 ? chosen.page : "",
     selected: chosen.selected.join(","),
     weights: chosen.weights?.join(",") ?? "",
+    lasso: lasso ? [lasso.x, lasso.y, ...lasso.line.flat().map((number) => Number(number.toPrecision(5)))].join(",") : "",
   };
   for (const [key, limit] of chosen.limits) {
     if (limit.words) query[`is.${key}`] = limit.words.join("|");

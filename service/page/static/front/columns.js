@@ -1,5 +1,6 @@
 /** What the columns of a table of designs are called where the service does not say it beside them. */
 
+import { link } from "../lib/address.js";
 import { unitOf, withUnit } from "../lib/numbers.js";
 
 // How a key ends, and the unit that this means; the longer endings first.
@@ -15,10 +16,9 @@ export function columnOf(key) {
   return { key, title: key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
 }
 
-/** Return what a column is called in the help: the quantity of an objective, else the key without its unit. */
-export function helpName(key, objectives = []) {
-  const objective = objectives.find(({ column }) => column === key);
-  return objective?.quantity ?? columnOf(key.replace(/^slack_/, "")).title.replaceAll(" ", "_");
+/** Return the link to what a column means; the slack of a quantity is explained with it. */
+export function helpLink(key) {
+  return link(["help", key.replace(/^slack_/, "")]);
 }
 
 /** Return a value of a column with its title and unit: "peak torque 3.12 N m". */

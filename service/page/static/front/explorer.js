@@ -16,6 +16,7 @@ import { scatterPanel } from "./scatter_panel.js";
 import { selectedBar } from "./selected.js";
 import { designTable } from "./table.js";
 
+const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
 const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
 const ORDER = ["marks", "table", "chosen", "all"];
 
@@ -35,7 +36,7 @@ class Explorer {
     this.signal = signal;
     this.data = new FrontData(job.id, front, signal);
     this.chosen = choicesFrom(query, front);
-    this.limits = new Limits(this.data, this.chosen.limits);
+    this.limits = new Limits(this.data, this.chosen.limits, this.chosen.lasso);
     this.pointed = null;
     this.picked = null; // by weights
     this.waiting = null;
@@ -45,7 +46,8 @@ class Explorer {
   /** Return the columns that are shown or limited. */
   wanted() {
     const { axes, x, y, colour, columns, sort } = this.chosen;
-    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys()].filter(Boolean);
+    const { lasso } = this.limits;
+    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys(), lasso?.x, lasso?.y].filter(Boolean);
   }
 
   build(place) {
@@ -63,6 +65,7 @@ class Explorer {
         this.limits.set(chosen.x, x);
         this.limit(chosen.y, y);
       },
+      lasso: (line) => this.surround(line),
     };
     this.dots = scatter(dots);
     this.scatterPanel = scatterPanel(this, this.dots);
@@ -88,6 +91,7 @@ class Explorer {
     this.signal.addEventListener("abort", () => {
       sizes.disconnect();
       clearTimeout(this.settling);
+      clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
     });
     for (const name of ["units", "scheme"]) window.addEventListener(name, again, { signal: this.signal });
@@ -115,9 +119,17 @@ class Explorer {
     else this.change({}, "chosen");
   }
 
+  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. */
+  surround(line) {
+    this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
+    this.chosen.page = 1;
+    this.update("chosen");
+  }
+
   clear() {
-    this.limits.of.clear();
+    this.limits.clear();
     this.change({ page: 1 }, "chosen");
+    this.update("marks"); // a line around designs is drawn with them
   }
 
   /** Draw in the next frame; several changes within a frame are drawn once. */
@@ -129,7 +141,7 @@ class Explorer {
       [this.frame, this.waiting] = [0, null];
       this.draw(waiting);
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => keep(queryOf(this.chosen)), SETTLED);
+      this.settling = setTimeout(() => keep(queryOf(this.chosen, this.limits.lasso)), SETTLED);
     });
   }
 
@@ -138,7 +150,7 @@ class Explorer {
       this.limits.apply();
       const { chosen } = this.limits;
       this.count.textContent = `${chosen.toLocaleString("en")} of ${this.data.count.toLocaleString("en")} designs chosen`;
-      this.clearing.disabled = !this.limits.of.size;
+      this.clearing.disabled = this.limits.open;
     }
     if (what === "all") {
       this.width = this.place.clientWidth;
@@ -153,9 +165,21 @@ class Explorer {
     }
     if (what === "all") this.scatterPanel.legend();
     if (what === "marks") this.table.mark();
-    else this.table.draw();
+    else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
     this.selected.draw();
+  }
+
+  /** Draw the table, soon where it may wait and was drawn a moment ago. */
+  drawTable(waits) {
+    clearTimeout(this.tabling);
+    const passed = performance.now() - (this.tabled ?? -Infinity);
+    if (waits && passed < OFTEN) {
+      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - passed);
+      return;
+    }
+    this.tabled = performance.now();
+    this.table.draw();
   }
 
   /** Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones. */
@@ -189,7 +213,7 @@ class Explorer {
   }
 
   open(row) {
-    keep(queryOf(this.chosen)); // so that the way back leads here
+    keep(queryOf(this.chosen, this.limits.lasso)); // so that the way back leads here
     location.hash = this.hrefOf(row);
   }
 

@@ -1,12 +1,18 @@
 /** Limits on quantities, and which designs are within all of them. */
 
+import { inside } from "../charts/lasso.js";
+
 const NEAR = 1e-9; // relative: a design on a limit is within it, also where the limit was rounded on its way through a unit
 
-/** Limits by column: {low, high}, each a number or null, for numbers; {words: [...]} for words. */
+/**
+ * Limits by column: {low, high}, each a number or null, for numbers; {words: [...]} for words. Beside them a line drawn around
+ * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
+ */
 export class Limits {
-  constructor(data, given = new Map()) {
+  constructor(data, given = new Map(), lasso = null) {
     this.data = data;
     this.of = given;
+    this.lasso = lasso;
     this.mask = new Uint8Array(data.count);
     this.chosen = 0;
   }
@@ -35,12 +41,27 @@ export class Limits {
         for (let row = 0; row < mask.length; row += 1) if (!(numbers[row] >= low && numbers[row] <= high)) mask[row] = 0;
       }
     }
+    if (this.lasso && data.has(this.lasso.x) && data.has(this.lasso.y)) {
+      const [across, up] = [data.numbers(this.lasso.x), data.numbers(this.lasso.y)];
+      for (let row = 0; row < mask.length; row += 1) if (mask[row] && !inside(this.lasso.line, across[row], up[row])) mask[row] = 0;
+    }
     let chosen = 0;
     for (let row = 0; row < mask.length; row += 1) chosen += mask[row];
     this.chosen = chosen;
   }
 
-  /** Return the limits as conditions of the API, those of one wanted word only. */
+  /** Whether there is none. */
+  get open() {
+    return !this.of.size && !this.lasso;
+  }
+
+  /** Let all of them go. */
+  clear() {
+    this.of.clear();
+    this.lasso = null;
+  }
+
+  /** Return the limits as conditions of the API, which knows no line around designs. */
   conditions() {
     const found = [];
     for (const [key, limit] of this.of) {

@@ -20,7 +20,7 @@ export function marksPanel(explorer) {
     list,
     front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), h("ul", { class: "trade-offs" }, front.trade_offs.map((sentence) => h("li", {}, sentence)))],
     several && [h("h3", {}, "Weigh the objectives"),
-      h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those chosen."),
+      h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
       h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
   let timer = null;
   let asked = "";

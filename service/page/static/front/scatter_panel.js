@@ -10,15 +10,17 @@ export function scatterPanel(explorer, dots) {
   const pick = (label, name, none) =>
     h("label", {}, `${label} `, h("select", { name, onchange: (event) => explorer.change({ [name]: event.target.value }, "all") },
       none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title))));
+  const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.target.value === "line") },
+    h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
   const tip = h("div", { class: "tip panel", hidden: true });
   const place = h("section", { class: "panel", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
-    h("div", { class: "row picks" }, picks),
+    h("div", { class: "row picks" }, picks, drag),
     h("div", { class: "dots" }, dots.place, tip),
     key,
-    h("p", { class: "quiet hint" }, "Drag a box to keep what is in it. Click on a design to open it, with Shift to select it."));
+    h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
 
   function draw() {
     for (const one of picks) {

@@ -1,9 +1,8 @@
 /** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
 
-import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { inShown, text } from "../lib/numbers.js";
-import { headed, helpName } from "./columns.js";
+import { headed, helpLink } from "./columns.js";
 
 const PAGE = 20;
 
@@ -62,7 +61,7 @@ export function designTable(explorer) {
     return h("th", { scope: "col", class: words ? null : "number", "aria-sort": sorted },
       h("button", { type: "button", class: "sort", "data-act": `sort-${key}`, title: `Sort by ${column.title}`, onclick: () => explorer.sortBy(key) },
         headed(column), h("span", { "aria-hidden": "true" }, { ascending: " ▲", descending: " ▼", none: "" }[sorted])),
-      h("a", { class: "what-is", href: link(["help", helpName(key, explorer.data.objectives)]), "aria-label": `What is ${column.title}?` }, "?"));
+      h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"));
   }
 
   function line(row, columns, names) {

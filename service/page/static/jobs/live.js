@@ -10,6 +10,7 @@ import { stateWord } from "./states.js";
 import { clock, duration } from "./times.js";
 
 const OFTEN = 700; // ms between two looks at the job for its front
+const AGAIN = 2000; // ms until the next try where the service does not answer
 const PAST = 400; // events before now that are shown
 const LOG = 200; // lines
 
@@ -94,7 +95,10 @@ export function watch(place, job, { signal, changed }) {
       }
     } catch (problem) {
       if (problem.status === 404) end(null);
-      else if (problem.name !== "AbortError") lost.hidden = false;
+      else if (problem.name !== "AbortError") {
+        lost.hidden = false;
+        soon(AGAIN);
+      }
     } finally {
       asking = false;
     }

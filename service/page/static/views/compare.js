@@ -5,7 +5,7 @@ import { keep, link } from "../lib/address.js";
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
-import { headed, helpName } from "../front/columns.js";
+import { headed, helpLink } from "../front/columns.js";
 
 export const title = "Compare runs";
 
@@ -55,8 +55,8 @@ export async function show(place, { query, signal }) {
       const least = Math.min(...values.map(rank));
       const unit = objectives.get(column).unit;
       return h("tr", {},
-        h("th", { scope: "row" }, h("a", { href: link(["help", helpName(column, [...objectives.values()])]) }, `best ${headed(objectives.get(column))}`)),
-        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), rank(value) === least && runs.length > 1 ? h("strong", { class: "best" }, " best") : null)));
+        h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(objectives.get(column))}`)),
+        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), rank(value) === least && values.some((other) => rank(other) > least) ? h("strong", { class: "best" }, " best") : null)));
     });
     const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
