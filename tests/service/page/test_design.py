@@ -21,8 +21,14 @@ from tests.service.api.fixed_front import Solved, served
 from tests.service.page.conftest import Open, watch
 
 Opened = Callable[..., Page]
-STILL = {"reduced_motion": "reduce"}
+Shared = tuple[Page, list[str]]
+STILL: dict[str, Any] = {"reduced_motion": "reduce", "color_scheme": "light"}
+WIDE = {"width": 1280, "height": 900}
 NARROW = {"width": 390, "height": 800}
+CENTRES = """nodes => nodes.map(node => {
+  const box = node.getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+})"""
 NUMBERS = """nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"""
 
 
@@ -37,21 +43,37 @@ def service(solved: Solved) -> Iterator[str]:
         yield address
 
 
-@pytest.fixture
-def opened(browser: Browser, service: str, solved: Solved) -> Iterator[Opened]:
-    """Return what opens a design and waits for its mechanism. Nothing may go wrong but what is expected."""
-    with contextlib.ExitStack() as stack:
-        wrong: list[str] = []
-
-        def opening(design: int = 3, query: str = "", *, expected: tuple[str, ...] = (), **options: Any) -> Page:
-            page = stack.enter_context(contextlib.closing(browser.new_context(**{**STILL, **options}))).new_page()
-            watch(page, service, wrong, expected)
-            page.goto(f"{service}/{view(solved, design, query)}")
-            expect(page.locator(".mechanism .link.crank").first).to_be_visible(timeout=30_000)
-            return page
-
-        yield opening
+@pytest.fixture(scope="module")
+def shared(browser: Browser, service: str) -> Iterator[Shared]:
+    """Return one page for all tests here, and what it may complain of."""
+    wrong: list[str] = []
+    expected: list[str] = []
+    with contextlib.closing(browser.new_context()) as context:
+        page = context.new_page()
+        watch(page, service, wrong, expected)
+        page.goto(service)
+        yield page, expected
     assert wrong == []
+
+
+@pytest.fixture
+def opened(shared: Shared, solved: Solved) -> Opened:
+    """Return what opens a design as if for the first time and waits for its mechanism."""
+    page, expected = shared
+
+    def opening(
+        design: int = 3, query: str = "", *, complaints: tuple[str, ...] = (), viewport: Any = WIDE, **media: Any
+    ) -> Page:
+        expected[:] = complaints
+        page.evaluate("localStorage.clear(); location.hash = '#/help'")
+        page.set_viewport_size(viewport)
+        page.emulate_media(**{**STILL, **media})
+        page.evaluate("view => { location.hash = view; }", view(solved, design, query))
+        expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {design}", timeout=30_000)
+        expect(page.locator(".mechanism .link.crank").first).to_be_visible()
+        return page
+
+    return opening
 
 
 def crank_angle(page: Page) -> Locator:
@@ -63,7 +85,8 @@ def angle_of(page: Page) -> float:
 
 
 def place_of(part: Locator) -> str | None:
-    return part.get_attribute("transform")
+    """Where a link, or a cursor, is: it moves with its parent, or by its style."""
+    return part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
 
 
 def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
@@ -71,7 +94,7 @@ def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
     crank = page.locator(".mechanism .link.crank")
     before = place_of(crank)
     page.wait_for_function(
-        "before => document.querySelector('.link.crank').getAttribute('transform') !== before", arg=before
+        "before => document.querySelector('.link.crank').parentElement.getAttribute('transform') !== before", arg=before
     )
     page.get_by_role("button", name="Pause").click()
     stopped = place_of(crank)
@@ -112,11 +135,7 @@ def test_pins_are_where_the_api_says(opened: Opened, solved: Solved, service: st
     crank_angle(page).evaluate("(node) => { node.value = 90; node.dispatchEvent(new Event('input')); }")
     curves = httpx.get(f"{service}{solved.path}/designs/3/curves", params={"angles": 360}).json()["curves"]
     row = httpx.get(f"{service}{solved.path}/designs/3").json()["design"]
-    pins = [
-        [float(number) for number in str(place_of(pin)).removeprefix("translate(").rstrip(")").split()]
-        for pin in page.locator(".mechanism .pin").all()
-    ]
-    (px, py), (ax, ay), (bx, by) = pins
+    (bx, by), (px, py), (ax, ay) = page.locator(".mechanism .pin").evaluate_all(CENTRES)
     unit = (py - ay) / row["crank_mm"]
     assert (ax - px) / unit == pytest.approx(0.0, abs=0.5)
     assert (bx - px) / unit == pytest.approx(curves["slider_position_mm"][90], abs=0.5)
@@ -171,7 +190,7 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
 
 
 def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened: Opened) -> None:
-    page = opened(expected=("422",))
+    page = opened(complaints=("422",))
     ranges = page.get_by_label("Rod", exact=True)
     ranges.fill("60")
     expect(page.get_by_role("alert")).to_contain_text("rod must exceed crank + |offset| for full rotation")

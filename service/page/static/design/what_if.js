@@ -22,7 +22,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   const fields = {};
   const controls = h("div", { class: "lengths" });
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
-  const results = h("div", {});
+  const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
   fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, verdict, results, picture);
