@@ -12,7 +12,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from axe_playwright_python.sync_playwright import Axe
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from slidercrank.objectives.analysis import analyse
@@ -86,7 +86,8 @@ def angle_of(page: Page) -> float:
 
 def place_of(part: Locator) -> str | None:
     """Where a link, or a cursor, is: it moves with its parent, or by its style."""
-    return part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
+    found: str | None = part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
+    return found
 
 
 def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
@@ -152,6 +153,15 @@ def test_a_chart_moves_the_mechanism_and_the_mechanism_the_cursors(opened: Opene
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     assert 150 < angle_of(page) < 200
     assert place_of(page.locator("figure[data-key='slider_position_mm'] .cursor")) != before
+
+
+def test_the_cursor_is_at_the_crank_angle_of_the_axis(opened: Opened) -> None:
+    page = opened()
+    crank_angle(page).evaluate("(node) => { node.value = 180; node.dispatchEvent(new Event('input')); }")
+    chart = page.locator("figure[data-key='slider_velocity_m_s']")
+    (cursor,) = chart.locator(".cursor").evaluate_all(CENTRES)
+    (tick,) = chart.locator("text", has_text="180°").evaluate_all(CENTRES)
+    assert cursor[0] == pytest.approx(tick[0], abs=1.0)
 
 
 def test_every_chart_says_its_least_and_greatest_value(opened: Opened) -> None:

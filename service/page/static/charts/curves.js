@@ -35,7 +35,7 @@ export function curveCharts(place, turned) {
       charts.forEach((one) => sight.observe(one.figure));
       width = 0;
     }
-    width = Math.round(charts[0]?.figure.clientWidth ?? 0);
+    width = Math.round(charts[0]?.plot.clientWidth ?? 0);
     if (width < 80) return;
     charts.forEach((one, n) => one.draw(panels[n], series, width));
     turn({ angle: at, settled: true });
@@ -54,7 +54,7 @@ export function curveCharts(place, turned) {
     for (const { target, isIntersecting } of seen) isIntersecting ? inSight.add(target) : inSight.delete(target);
   });
 
-  const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].figure.clientWidth) !== width && arrange());
+  const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].plot.clientWidth) !== width && arrange());
   watcher.observe(grid);
   return {
     show(series, panels) {
@@ -93,6 +93,7 @@ function chart(panel, turned) {
   return {
     panel,
     figure,
+    plot,
     draw({ key, title: words, unit }, all, width) {
       series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)) }));
       title.textContent = `${words} (${unitOf(unit)})`;
