@@ -72,7 +72,7 @@ class TradeOffsModel(BaseModel):
 class OtherLengths(BaseModel):
     """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
