@@ -12,7 +12,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from axe_playwright_python.sync_playwright import Axe
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from slidercrank.objectives.analysis import analyse
@@ -21,8 +21,14 @@ from tests.service.api.fixed_front import Solved, served
 from tests.service.page.conftest import Open, watch
 
 Opened = Callable[..., Page]
-STILL = {"reduced_motion": "reduce"}
+Shared = tuple[Page, list[str]]
+STILL: dict[str, Any] = {"reduced_motion": "reduce", "color_scheme": "light"}
+WIDE = {"width": 1280, "height": 900}
 NARROW = {"width": 390, "height": 800}
+CENTRES = """nodes => nodes.map(node => {
+  const box = node.getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+})"""
 NUMBERS = """nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"""
 
 
@@ -37,21 +43,37 @@ def service(solved: Solved) -> Iterator[str]:
         yield address
 
 
-@pytest.fixture
-def opened(browser: Browser, service: str, solved: Solved) -> Iterator[Opened]:
-    """Return what opens a design and waits for its mechanism. Nothing may go wrong but what is expected."""
-    with contextlib.ExitStack() as stack:
-        wrong: list[str] = []
-
-        def opening(design: int = 3, query: str = "", *, expected: tuple[str, ...] = (), **options: Any) -> Page:
-            page = stack.enter_context(contextlib.closing(browser.new_context(**{**STILL, **options}))).new_page()
-            watch(page, service, wrong, expected)
-            page.goto(f"{service}/{view(solved, design, query)}")
-            expect(page.locator(".mechanism .link.crank").first).to_be_visible(timeout=30_000)
-            return page
-
-        yield opening
+@pytest.fixture(scope="module")
+def shared(browser: Browser, service: str) -> Iterator[Shared]:
+    """Return one page for all tests here, and what it may complain of."""
+    wrong: list[str] = []
+    expected: list[str] = []
+    with contextlib.closing(browser.new_context()) as context:
+        page = context.new_page()
+        watch(page, service, wrong, expected)
+        page.goto(service)
+        yield page, expected
     assert wrong == []
+
+
+@pytest.fixture
+def opened(shared: Shared, solved: Solved) -> Opened:
+    """Return what opens a design as if for the first time and waits for its mechanism."""
+    page, expected = shared
+
+    def opening(
+        design: int = 3, query: str = "", *, complaints: tuple[str, ...] = (), viewport: Any = WIDE, **media: Any
+    ) -> Page:
+        expected[:] = complaints
+        page.evaluate("localStorage.clear(); location.hash = '#/help'")
+        page.set_viewport_size(viewport)
+        page.emulate_media(**{**STILL, **media})
+        page.evaluate("view => { location.hash = view; }", view(solved, design, query))
+        expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {design}", timeout=30_000)
+        expect(page.locator(".mechanism .link.crank").first).to_be_visible()
+        return page
+
+    return opening
 
 
 def crank_angle(page: Page) -> Locator:
@@ -63,7 +85,9 @@ def angle_of(page: Page) -> float:
 
 
 def place_of(part: Locator) -> str | None:
-    return part.get_attribute("transform")
+    """Where a link, or a cursor, is: it moves with its parent, or by its style."""
+    found: str | None = part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
+    return found
 
 
 def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
@@ -71,7 +95,7 @@ def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
     crank = page.locator(".mechanism .link.crank")
     before = place_of(crank)
     page.wait_for_function(
-        "before => document.querySelector('.link.crank').getAttribute('transform') !== before", arg=before
+        "before => document.querySelector('.link.crank').parentElement.getAttribute('transform') !== before", arg=before
     )
     page.get_by_role("button", name="Pause").click()
     stopped = place_of(crank)
@@ -112,11 +136,7 @@ def test_pins_are_where_the_api_says(opened: Opened, solved: Solved, service: st
     crank_angle(page).evaluate("(node) => { node.value = 90; node.dispatchEvent(new Event('input')); }")
     curves = httpx.get(f"{service}{solved.path}/designs/3/curves", params={"angles": 360}).json()["curves"]
     row = httpx.get(f"{service}{solved.path}/designs/3").json()["design"]
-    pins = [
-        [float(number) for number in str(place_of(pin)).removeprefix("translate(").rstrip(")").split()]
-        for pin in page.locator(".mechanism .pin").all()
-    ]
-    (px, py), (ax, ay), (bx, by) = pins
+    (bx, by), (px, py), (ax, ay) = page.locator(".mechanism .pin").evaluate_all(CENTRES)
     unit = (py - ay) / row["crank_mm"]
     assert (ax - px) / unit == pytest.approx(0.0, abs=0.5)
     assert (bx - px) / unit == pytest.approx(curves["slider_position_mm"][90], abs=0.5)
@@ -133,6 +153,15 @@ def test_a_chart_moves_the_mechanism_and_the_mechanism_the_cursors(opened: Opene
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     assert 150 < angle_of(page) < 200
     assert place_of(page.locator("figure[data-key='slider_position_mm'] .cursor")) != before
+
+
+def test_the_cursor_is_at_the_crank_angle_of_the_axis(opened: Opened) -> None:
+    page = opened()
+    crank_angle(page).evaluate("(node) => { node.value = 180; node.dispatchEvent(new Event('input')); }")
+    chart = page.locator("figure[data-key='slider_velocity_m_s']")
+    (cursor,) = chart.locator(".cursor").evaluate_all(CENTRES)
+    (tick,) = chart.locator("text", has_text="180°").evaluate_all(CENTRES)
+    assert cursor[0] == pytest.approx(tick[0], abs=1.0)
 
 
 def test_every_chart_says_its_least_and_greatest_value(opened: Opened) -> None:
@@ -152,8 +181,25 @@ def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
     expect(page.locator(".legend.forces")).to_contain_text("guide on slider")
 
 
+def release(page: Page) -> None:
+    """Let lengths be moved against the rules that ask for exact values."""
+    page.get_by_role("checkbox", name="The other lengths follow").uncheck()
+
+
+def test_the_other_lengths_follow_to_keep_what_is_asked_exactly(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    row = solved.result.designs[2]
+    page.get_by_label("Rod", exact=True).fill(str(float(row["rod_mm"] or 0.0) * 1.02))
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+    expect(page.locator(".verdict")).not_to_contain_text("stroke")
+    assert float(page.get_by_label("Crank", exact=True).input_value()) != pytest.approx(row["crank_mm"], rel=1e-4)
+    stroke = page.get_by_role("region", name="Motion").locator("td[data-design='What if'][data-key='stroke_mm']")
+    expect(stroke).to_have_text("280")
+
+
 def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, service: str) -> None:
     page = opened()
+    release(page)
     row = solved.result.designs[2]
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     table = page.get_by_role("table", name="Objectives before and after the change")
@@ -171,7 +217,8 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
 
 
 def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened: Opened) -> None:
-    page = opened(expected=("422",))
+    page = opened(complaints=("422",))
+    release(page)
     ranges = page.get_by_label("Rod", exact=True)
     ranges.fill("60")
     expect(page.get_by_role("alert")).to_contain_text("rod must exceed crank + |offset| for full rotation")

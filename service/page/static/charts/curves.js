@@ -8,6 +8,7 @@ import { range, scale } from "./scale.js";
 const HEIGHT = 170;
 const ROOM = { left: 52, right: 12, top: 18, bottom: 22 };
 const QUARTERS = [0, 90, 180, 270, 360];
+const SOON = 150; // ms after a change, until charts that are out of sight follow
 const EVERY = 100; // ms between two readouts while it moves; faster ones cannot be read
 
 /**
@@ -23,6 +24,9 @@ export function curveCharts(place, turned) {
   let width = 0;
   let at = 0;
   let told = 0;
+  let later = 0;
+  let observed = false;
+  const inSight = new Set(); // charts that the reader sees
 
   function arrange() {
     if (!shown) return;
@@ -30,12 +34,27 @@ export function curveCharts(place, turned) {
     if (charts.map((one) => one.panel.key).join() !== panels.map((panel) => panel.key).join()) {
       charts = panels.map((panel) => chart(panel, turned));
       fill(grid, charts.map((one) => one.figure));
+      sight.disconnect();
+      observed = false;
+      charts.forEach((one) => sight.observe(one.figure));
       width = 0;
     }
-    width = Math.round(charts[0]?.figure.clientWidth ?? 0);
+    width = Math.round(charts[0]?.plot.clientWidth ?? 0);
     if (width < 80) return;
-    charts.forEach((one, n) => one.draw(panels[n], series, width));
+    charts.forEach((one, n) => {
+      one.stale = () => one.draw(panels[n], series, width);
+      if (!observed || inSight.has(one.figure)) drawn(one);
+    });
     turn({ angle: at, settled: true });
+    clearTimeout(later);
+    later = setTimeout(() => charts.forEach(drawn), SOON);
+  }
+
+  /** Draw a chart that has changed. */
+  function drawn(one) {
+    one.stale?.();
+    if (one.stale) one.turn(at, true);
+    one.stale = null;
   }
 
   function turn({ angle, settled }) {
@@ -44,10 +63,16 @@ export function curveCharts(place, turned) {
     const now = performance.now();
     const read = settled || now - told > EVERY;
     if (read) told = now;
-    for (const one of charts) one.turn(angle, read);
+    for (const one of charts) if (settled || inSight.has(one.figure)) one.turn(angle, read);
   }
 
-  const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].figure.clientWidth) !== width && arrange());
+  const sight = new IntersectionObserver((seen) => {
+    observed = true;
+    for (const { target, isIntersecting } of seen) isIntersecting ? inSight.add(target) : inSight.delete(target);
+    charts.filter((one) => inSight.has(one.figure)).forEach(drawn);
+  });
+
+  const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].plot.clientWidth) !== width && arrange());
   watcher.observe(grid);
   return {
     show(series, panels) {
@@ -55,7 +80,10 @@ export function curveCharts(place, turned) {
       arrange();
     },
     turn,
-    close: () => watcher.disconnect(),
+    close() {
+      clearTimeout(later);
+      for (const one of [watcher, sight]) one.disconnect();
+    },
   };
 }
 
@@ -63,8 +91,11 @@ function chart(panel, turned) {
   const readout = h("span", { class: "readout number" });
   const title = h("span", { class: "title" });
   const picture = svg("svg", { class: "chart", role: "img" });
-  const figure = h("figure", { "data-key": panel.key }, h("figcaption", {}, title, readout), picture);
-  const cursor = svg("line", { class: "cursor", y1: ROOM.top, y2: HEIGHT - ROOM.bottom });
+  // Cursor and dots lie over the picture, which is not painted again as they move.
+  const cursor = h("div", { class: "cursor" });
+  const plot = h("div", { class: "plot" }, picture);
+  const figure = h("figure", { "data-key": panel.key }, h("figcaption", {}, title, readout), plot);
+  cursor.style.height = `${HEIGHT - ROOM.top - ROOM.bottom}px`;
   let [x, y, series, dots] = [null, null, [], []];
   let lit = false;
 
@@ -83,6 +114,7 @@ function chart(panel, turned) {
   return {
     panel,
     figure,
+    plot,
     draw({ key, title: words, unit }, all, width) {
       series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)) }));
       title.textContent = `${words} (${unitOf(unit)})`;
@@ -91,15 +123,16 @@ function chart(panel, turned) {
       y = scale(low, high, HEIGHT - ROOM.bottom, ROOM.top, 4);
       picture.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
       picture.setAttribute("aria-label", summary(words, unit, series, key));
-      dots = series.map((one) => svg("circle", { class: "dot", r: 3.5, "data-series": one.series }));
-      fill(picture, axes(x, y, width), centreLines(x, series[0]), series.map((one) => line(one, x, y)).reverse(), series[0] && peaks(series[0], x, y), cursor, dots.toReversed());
+      dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
+      fill(picture, axes(x, y, width), centreLines(x, series[0]), series.map((one) => line(one, x, y)).reverse(), series[0] && peaks(series[0], x, y));
+      fill(plot, picture, cursor, dots.toReversed());
     },
     turn(angle, read) {
       if (!x) return;
       const across = x.at(angle).toFixed(1);
-      cursor.setAttribute("transform", `translate(${across} 0)`);
+      cursor.style.transform = `translate(${across}px, ${ROOM.top}px)`;
       const values = series.map((one) => between(one.values, angle));
-      values.forEach((value, n) => dots[n].setAttribute("transform", value === null ? "translate(-99 0)" : `translate(${across} ${y.at(value).toFixed(1)})`));
+      values.forEach((value, n) => (dots[n].style.transform = value === null ? "translate(-99px, 0)" : `translate(${across}px, ${y.at(value).toFixed(1)}px)`));
       if (read) readout.textContent = values.map((value) => (value === null ? "–" : text(value, "", 4))).join("  ·  ");
     },
   };

@@ -7,6 +7,7 @@ import { ARROWS, largestForce } from "../mechanism/arrows.js";
 import { drawing } from "../mechanism/drawing.js";
 import { around, frameOf } from "../mechanism/frame.js";
 
+const EVERY = 100; // ms between two readouts while it moves
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
 /**
@@ -81,9 +82,11 @@ export function stage(place, turning) {
   }
 
   function tell({ angle: at, playing }) {
-    for (const one of drawings) one.turn(at);
+    for (const one of drawings) one.turn(at, !playing);
+    const now = performance.now();
+    if (!machines.length || (playing && now - since < EVERY)) return;
+    since = now;
     angle.value = at;
-    if (!machines.length) return;
     const words = `${Math.round(at) % 360}°`;
     if (told.textContent !== words) told.textContent = words;
     if (playing) return;
@@ -91,7 +94,7 @@ export function stage(place, turning) {
     angle.setAttribute("aria-valuetext", `${words}, slider at ${withUnit(position, "mm", 4)}`);
   }
 
-  let was = null;
+  let [was, since] = [null, 0];
   turning.listen((state) => {
     tell(state);
     if (state.playing === was) return;
