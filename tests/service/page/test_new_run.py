@@ -130,6 +130,11 @@ def test_what_was_typed_survives_leaving_and_starting_over_is_asked_for(open_pag
     expect(page.get_by_label("name", exact=True)).to_have_value("New slider-crank")
     page.get_by_role("button", name="Bring back what was there").click()
     expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
+    page.evaluate("location.hash = '#/new?preset=sieve'")  # as by a link
+    expect(page.get_by_label("name", exact=True)).to_have_value("Vibrating sieve")
+    page.get_by_role("button", name="Bring back what was there").click()
+    page.reload()
+    expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
 
 
 def test_a_copy_of_a_job_begins_with_its_tables(open_page: Open, store: Store, shipped: dict[str, Any]) -> None:

@@ -13,7 +13,7 @@ const RADIUS = 38;
 /** Return the picture of a kind of quantity; title: for readers of the screen. */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
-  return svg("svg", { class: "picture", viewBox: "0 28 300 152", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
+  return svg("svg", { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
 }
 
 const PICTURES = {
