@@ -22,6 +22,7 @@ export function showFacts(place, { allowed, example, understood }) {
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       example ? row("slow stroke", example.slow_stroke) : null,
     ),
+    allowed.unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${allowed.unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
     allowed.said.map((sentence) => h("p", { class: "warning" }, sentence)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   );
