@@ -11,8 +11,10 @@ if TYPE_CHECKING:
 
     from ...model.linkage import Linkage
     from ...model.mechanism import Mechanism
+    from ...optimise.stationarity import Array
 
 SAMPLES = 20_000
+BINS = 40  # of the histogram
 
 
 def numbers(
@@ -22,7 +24,8 @@ def numbers(
 
     limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
     case are given. Shares are those at the crank angle of the first-order worst case, of the variance as simulated.
-    The exact worst case is None where a linkage within the tolerances does not turn. Raises `InputError` if there are
+    The exact worst case is None where a linkage within the tolerances does not turn. The histogram counts machines by
+    their greatest error, in even bins from 0. Raises `InputError` if there are
     no tolerances.
     """
     import numpy as np
@@ -85,6 +88,7 @@ def numbers(
             "percentiles_greatest_mm": {
                 f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
             },
+            "histogram": _histogram(simulation.greatest),
         },
         "yields": [
             {
@@ -98,6 +102,17 @@ def numbers(
             for name, value, found in yields
         ],
     }
+
+
+def _histogram(greatest: Array) -> dict[str, list[float] | list[int]] | None:
+    """Return edges, mm, and counts of the machines that turn; None if none does."""
+    import numpy as np
+
+    turning = 1e3 * greatest[np.isfinite(greatest)]
+    if not len(turning) or not turning.max() > 0.0:
+        return None
+    counts, edges = np.histogram(turning, bins=BINS, range=(0.0, float(turning.max())))
+    return {"edges_mm": edges.tolist(), "counts": counts.tolist()}
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ...model.errors import InputError
 from ..designs.columns import find_column
 from ..designs.cycle_table import LEAST, MOST
-from ..designs.requirements import ranges_of, requirements_of, speed_rpm
+from ..designs.requirements import has_tolerances, names_of, ranges_of, requirements_of, speed_rpm
 from ..designs.trade_offs import trade_offs_of
 from ..designs.variation import variation_of, with_lengths
 from ..runs.result import finite
@@ -48,6 +48,7 @@ class RequirementsModel(BaseModel):
     """What the job asks of a design, with the choices that it made.
 
     ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
+    names: of quantities, as in job files, by column. tolerances: whether the machine has any.
     """
 
     job: int = Field(examples=[7])
@@ -55,6 +56,8 @@ class RequirementsModel(BaseModel):
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
     requirements: list[RequirementModel]
     speed_rpm: float = Field(examples=[300.0])
+    tolerances: bool
+    names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
 
 
 class TradeOffsModel(BaseModel):
@@ -110,6 +113,8 @@ def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsMode
         ranges=ranges_of(stored.part),
         requirements=asked,
         speed_rpm=speed_rpm(stored.mechanism),
+        names=names_of(stored.part),
+        tolerances=has_tolerances(stored),
     )
 
 

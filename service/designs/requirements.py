@@ -10,6 +10,7 @@ from ..runs.result import Row
 if TYPE_CHECKING:
     from ...model.mechanism import Mechanism
     from ...optimise.problem import Problem, Range
+    from .stored_designs import StoredDesign
 
 _RPM = 9.549296585513721  # in one rad/s
 _MET = 1e-8  # of a bound: designs meet their constraints to this
@@ -53,6 +54,22 @@ def requirements_of(part: Problem) -> list[Requirement]:
 def ranges_of(part: Problem) -> dict[str, tuple[float, float]]:
     """Return where crank, rod and offset may lie, mm, by column."""
     return {f"{name}_mm": (1e3 * of.lower, 1e3 * of.upper) for name, of in _dimensions(part).items()}
+
+
+def names_of(part: Problem) -> dict[str, str]:
+    """Return the names of all quantities of a problem, its own ones included, by column."""
+    from ...objectives.registry import QUANTITIES
+
+    return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
+
+
+def has_tolerances(design: StoredDesign) -> bool:
+    """Return whether anything of a design has a tolerance or a clearance."""
+    import numpy as np
+
+    from ...model.tolerance.sources import limits
+
+    return bool(np.any(limits(design.mechanism, design.linkage)))
 
 
 def outside(part: Problem, row: Row) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -75,7 +75,7 @@ def open_page(browser: Browser) -> Iterator[Open]:
     assert wrong == []
 
 
-def watch(page: Page, address: str, wrong: list[str], expected: tuple[str, ...] = ()) -> None:
+def watch(page: Page, address: str, wrong: list[str], expected: Collection[str] = ()) -> None:
     """Write down what goes wrong on a page."""
     origin = urlsplit(address).netloc
 

@@ -3,7 +3,7 @@
 import { between } from "../charts/cycle.js";
 import { svg } from "../lib/dom.js";
 
-const LONGEST = 80; // pixels, of the greatest force over the turn
+const LONGEST = 110; // pixels, of the greatest force over the turn
 const SHORTEST = 3;
 const HEAD = 7;
 

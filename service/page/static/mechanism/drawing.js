@@ -1,11 +1,13 @@
 /** A mechanism that moves: drawn once, then only moved. */
 
 import { between, extremes } from "../charts/cycle.js";
-import { fill, svg } from "../lib/dom.js";
+import { fill, h, svg } from "../lib/dom.js";
 import { text } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { fitted, frameOf } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
+
+const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
 
 /**
  * Put a drawing into `place`; label: what a screen reader says of it. It fills the width of its place and returns
@@ -13,14 +15,16 @@ import { bar, placed, scenery } from "./scenery.js";
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves).
- * - turn(angle): set the crank to an angle in deg. - fade(yes): show that it is not what was asked for.
- * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: the SVG. - close().
+ * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
+ * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
+ *   lies over the crank circle, to be taken hold of. - close().
  */
 export function drawing(place, { label }) {
-  const node = svg("svg", { class: "mechanism", role: "img", "aria-label": label });
-  const still = svg("g");
   const parts = movingParts();
-  node.append(still, ...parts.nodes);
+  const handle = svg("circle", { class: "handle" });
+  // What stands still is a picture of its own, so that it is not painted again in every frame.
+  const [still, moving] = [svg("svg", { class: "still" }), svg("svg", { class: "moving" }, parts.nodes, handle)];
+  const node = h("div", { class: "mechanism", role: "img", "aria-label": label }, still, moving);
   place.append(node);
   let shown = null; // {linkage, motion, options}
   let view = null;
@@ -33,15 +37,16 @@ export function drawing(place, { label }) {
     const { linkage, motion, options } = shown;
     const own = frameOf(linkage, motion);
     view = fitted(options.frame ?? own, width);
-    node.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
+    for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1 }));
+    for (const [name, number] of Object.entries({ cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link })) handle.setAttribute(name, number);
     parts.size({ linkage, view, block: own.block, link });
     parts.forces.size(motion, view, options.largest_force);
     turn(angle);
   }
 
-  function turn(to) {
+  function turn(to, settled = true) {
     angle = to;
     if (!view) return;
     const { linkage, motion } = shown;
@@ -49,7 +54,7 @@ export function drawing(place, { label }) {
     const radians = (angle * Math.PI) / 180;
     const pin = [view.x(linkage.crank_mm * Math.cos(radians)), view.y(linkage.crank_mm * Math.sin(radians))];
     const slider = [view.x(position), view.y(linkage.offset_mm)];
-    parts.move([view.x(0), view.y(0)], pin, slider, motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle));
+    parts.move([view.x(0), view.y(0)], pin, slider, motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle), settled);
     if (arrowed) parts.forces.move([view.x(0), view.y(0)], pin, slider, angle);
   }
 
@@ -57,6 +62,7 @@ export function drawing(place, { label }) {
   watcher.observe(place);
   return {
     node,
+    handle,
     show(linkage, motion, options = {}) {
       shown = { linkage, motion, options };
       arrange();
@@ -83,49 +89,57 @@ function deadCentres(motion, angles) {
   return found.map((angle) => ({ angle, position: between(motion.slider_position_mm, angle) }));
 }
 
+/** Few elements are moved in a frame: what is joined to a link is drawn in the link's own coordinates. */
 function movingParts() {
-  const crank = svg("path", { class: "link crank" });
-  const rod = svg("path", { class: "link rod" });
-  const block = svg("rect", { class: "slider", rx: 2 });
-  const pins = [0, 1, 2].map(() => svg("circle", { class: "pin" }));
+  const pin = () => svg("circle", { class: "pin" });
+  const [crank, rod, block] = [svg("path", { class: "link crank" }), svg("path", { class: "link rod" }), svg("rect", { class: "slider", rx: 2 })];
+  const pins = [pin(), pin(), pin()];
+  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, pins[0], pins[1]), svg("g", {}, rod, pins[2]), svg("g", {}, block)];
   const normal = svg("path", { class: "transmission normal" });
   const arc = svg("path", { class: "transmission" });
   const value = svg("text", { class: "transmission" });
+  const marked = svg("g", {}, normal, arc, value);
   const forces = arrows();
   let radius = 0; // of the arc
+  let told = 0; // when the value was written last
+  let side = ""; // on which it stands
   return {
-    nodes: [block, rod, crank, ...pins, normal, arc, value, forces.node],
+    nodes: [sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
     size({ linkage, view, block: height, link }) {
       const size = height * view.unit;
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
       for (const [name, number] of Object.entries({ x: -0.75 * size, y: -0.5 * size, width: 1.5 * size, height: size })) block.setAttribute(name, number);
-      for (const pin of pins) pin.setAttribute("r", Math.max(2.5, 0.28 * link));
+      for (const one of pins) one.setAttribute("r", Math.max(2.5, 0.28 * link));
+      pins[1].setAttribute("cx", linkage.crank_mm * view.unit);
+      pins[2].setAttribute("cx", linkage.rod_mm * view.unit);
       radius = Math.min(Math.max(0.42 * linkage.rod_mm * view.unit, 26), 90);
+      side = "";
     },
-    move(pivot, pin, slider, degrees) {
-      crank.setAttribute("transform", placed(pivot, pin));
-      rod.setAttribute("transform", placed(pin, slider));
-      block.setAttribute("transform", `translate(${slider[0].toFixed(2)} ${slider[1].toFixed(2)})`);
-      [pivot, pin, slider].forEach(([x, y], n) => pins[n].setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`));
-      angleBetween(pin, slider, degrees);
+    move(pivot, crankPin, slider, degrees, settled) {
+      crankGroup.setAttribute("transform", placed(pivot, crankPin));
+      rodGroup.setAttribute("transform", placed(crankPin, slider));
+      const there = `translate(${slider[0].toFixed(2)} ${slider[1].toFixed(2)})`;
+      sliderGroup.setAttribute("transform", there);
+      marked.setAttribute("transform", there);
+      angleBetween([crankPin[0] - slider[0], crankPin[1] - slider[1]], degrees, settled);
     },
   };
 
-  /** Mark the angle between the rod and the normal of the slider line, at the slider pin, on the rod's side. */
-  function angleBetween(pin, slider, degrees) {
-    const up = pin[1] < slider[1] ? -1 : 1;
-    const away = pin[0] < slider[0] ? 1 : -1;
-    const size = Math.hypot(pin[0] - slider[0], pin[1] - slider[1]);
-    const end = [slider[0] + (radius * (pin[0] - slider[0])) / size, slider[1] + (radius * (pin[1] - slider[1])) / size];
-    normal.setAttribute("d", `M${slider[0].toFixed(1)} ${slider[1].toFixed(1)}v${(up * (radius + 8)).toFixed(1)}`);
-    const sweep = up * away > 0 ? 1 : 0;
-    arc.setAttribute("d", `M${slider[0].toFixed(1)} ${(slider[1] + up * radius).toFixed(1)}A${radius} ${radius} 0 0 ${sweep} ${end[0].toFixed(1)} ${end[1].toFixed(1)}`);
-    if (typeof degrees !== "number") return;
+  /** Mark the angle between the rod and the normal of the slider line, on the rod's side. along: from the slider pin. */
+  function angleBetween(along, degrees, settled) {
+    const [away, up] = [along[0] < 0 ? 1 : -1, along[1] < 0 ? -1 : 1];
+    const size = Math.hypot(...along) / radius;
+    arc.setAttribute("d", `M0 ${up * radius}A${radius} ${radius} 0 0 ${up * away > 0 ? 1 : 0} ${(along[0] / size).toFixed(1)} ${(along[1] / size).toFixed(1)}`);
+    if (side !== `${up} ${away}`) {
+      side = `${up} ${away}`;
+      normal.setAttribute("d", `M0 0v${up * (radius + 8)}`);
+      value.setAttribute("transform", `translate(${away * 6} ${up * (radius + 2) + 4})`);
+      value.setAttribute("text-anchor", away > 0 ? "start" : "end");
+    }
+    if (typeof degrees !== "number" || (!settled && performance.now() - told < EVERY)) return;
+    told = performance.now();
     value.textContent = `${text(degrees, "deg", 3)}°`;
-    value.setAttribute("x", (slider[0] + away * 6).toFixed(1));
-    value.setAttribute("y", (slider[1] + up * (radius + 2) + 4).toFixed(1));
-    value.setAttribute("text-anchor", away > 0 ? "start" : "end");
   }
 }

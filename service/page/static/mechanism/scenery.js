@@ -24,7 +24,7 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
     rotation(view, r, direction),
-    offset(view, e, reach[0] + 14),
+    offset(view, e, reach[0] + 4),
     bearing(x(0), y(0), link),
   ];
 }
@@ -70,7 +70,7 @@ function offset(view, e, x) {
     "g",
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
-    svg("text", { x: x + 6, y: (from + to) / 2 + 4 }, `offset ${withUnit(e, "mm", 4)}`),
+    Math.abs(to - from) < 24 || view.width < 330 ? null : svg("text", { x: x + 6, y: (from + to) / 2 + 4 }, `offset ${withUnit(e, "mm", 4)}`),
   );
 }
 

@@ -1,16 +1,96 @@
-import { get } from "../lib/api.js";
+/** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
+
+import { curveCharts } from "../charts/curves.js";
+import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
+import { showNumbers } from "../design/numbers.js";
+import { showObjectives } from "../design/objectives.js";
+import { panelsOf } from "../design/panels.js";
+import { stage } from "../design/stage.js";
+import { loadFront } from "../design/surroundings.js";
+import { takeAway } from "../design/take_away.js";
+import { topics } from "../design/topics.js";
+import { top } from "../design/top.js";
+import { tradeOffs } from "../design/trade_offs.js";
+import { turning } from "../design/turning.js";
+import { whatIf } from "../design/what_if.js";
+import { keep } from "../lib/address.js";
+import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { drawing } from "../mechanism/drawing.js";
 
 export const title = "Design";
 
-export async function show(place, { parts, signal }) {
-  const path = `jobs/${parts[1]}/designs/${parts[3]}`;
-  const [{ design }, { curves, ...centres }] = await Promise.all([get(path, {}, signal), get(`${path}/curves`, {}, signal)]);
-  const stage = h("div", { class: "panel" });
-  fill(place, h("h1", {}, `Design ${parts[3]}`), stage);
-  const mechanism = drawing(stage, { label: "The mechanism" });
-  mechanism.show(design, curves, { dead_centres_deg: [centres.inner_dead_centre_deg, centres.outer_dead_centre_deg] });
-  mechanism.forces(true);
-  mechanism.turn(50);
+const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
+
+/** Show the design that the address names. */
+export async function show(place, { parts, query, signal }) {
+  const [, job, , given] = parts;
+  const number = Number(given);
+  if (!Number.isInteger(number) || number < 1) throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
+  const path = `jobs/${job}/designs/${number}`;
+  const [front, main, requirements] = await Promise.all([
+    get(`jobs/${job}/front`, {}, signal), loadDesign(job, number, 1, signal), get(`${path}/requirements`, {}, signal)]);
+  const { names } = requirements;
+  const [rows, ...others] = await Promise.all([
+    loadFront(job, front, signal), ...besideOf(query, number).map((other, n) => loadDesign(job, other, n + 2, signal))]);
+  if (signal.aborted) return;
+
+  const objectives = front.objectives;
+  const shared = { job, number, front, objectives, rows, main, others, requirements, names, signal };
+  const angle = turning(requirements.speed_rpm, signal);
+  const hold = (at, taken) => {
+    if (taken && angle.playing) angle.pause();
+    if (!angle.playing) angle.set(at);
+  };
+  const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
+  fill(place, top(shared), takeAway(job, number), places.objectives,
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places.topics);
+  for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
+  const machines = stage(places.stage, angle);
+  const charts = curveCharts(places.curves, hold);
+  angle.listen(charts.turn);
+  signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
+
+  let changed = null; // the answer to "what if"
+  const draw = () => {
+    const asked = changed && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
+    const moving = [asked ?? main, ...others];
+    machines.show(moving);
+    machines.fade(false);
+    const series = asked ? [asked, main, ...others] : moving;
+    charts.show(series, panelsOf(main.curveColumns, series));
+    legend(places.curves, series);
+    showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, names });
+  };
+  const sliders = whatIf(places["what-if"], {
+    job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
+    start: startOf(query),
+    changed(answer, lengths) {
+      changed = answer;
+      draw();
+      keep({ beside: others.map((one) => one.number).join(","), ...(lengths ?? {}) });
+    },
+    refused: () => machines.fade(true),
+  });
+  const drawAll = () => {
+    showObjectives(places.objectives, { objectives, front: rows, designs: [main], names });
+    draw();
+  };
+  drawAll();
+  tradeOffs(places["trade-offs"], shared);
+  topics(places.topics, shared);
+  window.addEventListener("units", () => [drawAll, sliders.draw].forEach((each) => each()), { signal });
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
+}
+
+function startOf(query) {
+  const lengths = LENGTHS.map((key) => [key, Number.parseFloat(query.get(key))]);
+  return lengths.every(([, value]) => Number.isFinite(value)) ? Object.fromEntries(lengths) : null;
+}
+
+function legend(place, series) {
+  const old = place.querySelector(".legend");
+  const items = series.map((one) => h("li", { "data-series": one.series }, one.name));
+  const list = h("ul", { class: "legend", hidden: series.length < 2 }, items);
+  if (old) old.replaceWith(list);
+  else place.prepend(list);
 }

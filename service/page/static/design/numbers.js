@@ -1,0 +1,98 @@
+/** All numbers of designs side by side, in groups. */
+
+import { fill, h } from "../lib/dom.js";
+import { link } from "../lib/address.js";
+import { text, unitOf, withUnit } from "../lib/numbers.js";
+import { groupsOf } from "./groups.js";
+
+const MET = 1e-8; // of a bound: designs meet their constraints to this
+
+/**
+ * Put the numbers of designs into `place`. designs: each {name, row}, the first is what the others are compared with; columns: of
+ * the first; requirements: of the API; names: of quantities by column.
+ */
+export function showNumbers(place, { designs, columns, requirements, names }) {
+  const groups = groupsOf(columns).map(({ title, columns: own }) =>
+    h("section", { class: "panel group" }, h("h3", {}, title), table(title, designs, own, names)));
+  fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, names), quality(designs, columns)));
+}
+
+/** Return a link to the help of a column. */
+export function helpLink({ key, title }, names) {
+  return h("a", { href: link(["help", names[key] ?? key]), class: "help-link" }, title);
+}
+
+/** Return a cell with a number, which carries its full precision. */
+export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
+  return h(tag, { class: typeof value === "number" ? "number" : "number word", "data-key": column.key, "data-design": name || null, "data-value": value === null || value === undefined ? "" : String(value) }, text(value, column.unit, digits));
+}
+
+/** Return how much a value is from another, as text: "+1.2 %"; empty where that has no meaning. */
+export function difference(value, from) {
+  if (typeof value !== "number" || typeof from !== "number" || from === 0) return "";
+  const percent = (100 * (value - from)) / Math.abs(from);
+  if (Math.abs(percent) < 0.005) return "=";
+  return `${percent > 0 ? "+" : "−"}${Math.abs(percent) >= 1000 ? Math.round(Math.abs(percent)) : Number(Math.abs(percent).toPrecision(3))} %`;
+}
+
+function table(caption, designs, columns, names) {
+  const [first, ...others] = designs;
+  const head = h("tr", {}, h("th", { scope: "col" }, "Quantity"), heading(first), others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]), h("th", { scope: "col" }, "Unit"));
+  const rows = columns.map((column) =>
+    h("tr", {}, h("th", { scope: "row" }, helpLink(column, names)), cell(first.row[column.key], column, { name: first.name }),
+      others.map(({ row, name }) => [cell(row[column.key], column, { name }), h("td", { class: "number quiet" }, difference(row[column.key], first.row[column.key]))]),
+      h("td", { class: "quiet" }, unitOf(column.unit))));
+  return scrolled(caption, h("table", {}, h("caption", { class: "hidden" }, caption), h("thead", { class: others.length ? null : "hidden" }, head), h("tbody", {}, rows)));
+}
+
+function heading({ name, series }) {
+  return h("th", { scope: "col", class: "number", "data-series": series }, name);
+}
+
+function scrolled(label, node) {
+  return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
+}
+
+function limits(designs, requirements, names) {
+  const rows = requirements.map((asked) => {
+    const column = { key: asked.column, title: asked.title, unit: asked.unit };
+    return h("tr", {}, h("th", { scope: "row" }, helpLink(column, names), h("span", { class: "quiet asked" }, ` ${wanted(asked)}`)),
+      designs.map(({ row, name }) => [cell(row[asked.column], column, { name }), h("td", {}, met(row, asked))]));
+  });
+  const head = h("tr", {}, h("th", { scope: "col" }, "Rule"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
+  return h("section", { class: "panel group" }, h("h3", {}, "Rules of the job"),
+    requirements.length
+      ? scrolled("Rules of the job", h("table", {}, h("caption", { class: "hidden" }, "Rules of the job"), h("thead", {}, head), h("tbody", {}, rows)))
+      : h("p", { class: "quiet" }, "The job sets none."));
+}
+
+/** Return what a rule asks, in words. */
+export function wanted({ lower, upper, unit }) {
+  if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
+  if (upper === null) return `at least ${withUnit(lower, unit)}`;
+  if (lower === null) return `at most ${withUnit(upper, unit)}`;
+  return `${text(lower, unit)} to ${withUnit(upper, unit)}`;
+}
+
+function met(row, { lower, upper, slack, unit }) {
+  const left = row[slack];
+  const size = Math.max(Math.abs(lower ?? 0), Math.abs(upper ?? 0), 1e-300);
+  const data = { "data-key": slack, "data-value": left === null ? "" : String(left) };
+  if (typeof left !== "number") return h("span", data, lower === upper ? "–" : "far from it");
+  if (left < -MET * size) return h("span", { ...data, class: "bad" }, `broken by ${withUnit(-left, unit, 3)}`);
+  if (left <= MET * size) return h("span", { ...data, class: "at-limit" }, lower === upper ? "met" : "at its limit");
+  return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);
+}
+
+function quality(designs, columns) {
+  if (!columns.some(({ key }) => key === "status")) return null;
+  const words = (row) => row.status === "stationary"
+    ? "A local optimum: no small change improves one objective without worsening another."
+    : "The best that was found; a small change might still improve it.";
+  return h("section", { class: "panel group" }, h("h3", {}, "Quality of the optimum"),
+    designs.filter(({ row }) => row.status).map(({ row, name }) =>
+      h("div", {}, designs.length > 1 ? h("h4", {}, name) : null, h("p", {}, words(row)),
+        h("dl", { class: "facts" }, h("dt", {}, "status"), h("dd", { "data-key": "status", "data-value": row.status }, row.status),
+          h("dt", {}, "stationarity residual"), h("dd", { class: "number", "data-key": "residual", "data-value": row.residual === null ? "" : String(row.residual) },
+            row.residual === null ? "not known" : Number(row.residual).toExponential(1).replace("-", "−"))))));
+}

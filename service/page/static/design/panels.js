@@ -1,0 +1,27 @@
+/** Which curves of the API are shown, and which are made of several of them. */
+
+const RESULTANTS = [
+  ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
+  ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
+  ["slider_pin_N", "Slider pin force", "slider_pin_x_N", "slider_pin_y_N"],
+];
+const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
+
+/** Return {curves, columns} with the sizes of the joint forces beside their components. */
+export function withResultants({ curves, columns }) {
+  const more = { ...curves };
+  const known = [...columns];
+  for (const [key, title, x, y] of RESULTANTS) {
+    if (!curves[x] || !curves[y]) continue;
+    more[key] = curves[x].map((value, n) => (value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n])));
+    known.push({ key, title, unit: "N" });
+  }
+  return { curves: more, columns: known };
+}
+
+/** Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero in all designs. */
+export function panelsOf(columns, designs) {
+  const some = ({ key }) => designs.some(({ curves }) => curves[key]?.some((value) => value !== 0));
+  const found = ORDER.map((start) => columns.find(({ key }) => key.startsWith(start))).filter((column) => column && some(column));
+  return found.map(({ key, title, unit }) => ({ key, title: title.charAt(0).toUpperCase() + title.slice(1), unit }));
+}

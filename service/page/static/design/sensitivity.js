@@ -1,0 +1,51 @@
+/** How much each objective changes with each dimension, as a tornado. */
+
+import { tornado } from "../charts/bars.js";
+import { fill, h } from "../lib/dom.js";
+import { inShown, unitOf } from "../lib/numbers.js";
+
+const DIMENSIONS = ["crank", "rod", "offset"];
+const MEASURES = [
+  { key: "percent", title: "% of the objective for 1 % more of a dimension" },
+  { key: "per_mm", title: "for 1 mm more of a dimension" },
+  { key: "tolerance", title: "for the tolerance of a dimension" },
+];
+
+/** Put the tornado into `place`; quantities: of the API; objectives: of the job, shown first. */
+export function sensitivity(place, { quantities }, { objectives, signal }) {
+  const wanted = objectives.map(({ quantity }) => quantity);
+  const own = wanted.map((name) => quantities.find((one) => one.quantity === name)).filter(Boolean);
+  const rest = quantities.filter((one) => !wanted.includes(one.quantity) && one.value !== null && DIMENSIONS.some((name) => one[`${name}_per_mm`]));
+  const measures = MEASURES.filter(({ key }) => own.concat(rest).some((one) => DIMENSIONS.some((name) => one[`${name}_${key}`])));
+  let measure = measures[0];
+  let all = false;
+  const bars = h("div", { class: "tornados" });
+  const choice = h("select", { onchange: (event) => { measure = measures[Number(event.target.value)]; draw(); } },
+    measures.map(({ title }, n) => h("option", { value: n }, title)));
+  const more = h("input", { type: "checkbox", onchange: () => { all = more.checked; draw(); } });
+  fill(place, h("div", { class: "row" }, h("label", {}, "Change ", choice), h("label", {}, more, " all quantities")), bars,
+    h("p", { class: "quiet hint" }, "To first order, the other dimensions as they are. The longest bar matters most."));
+
+  function draw() {
+    const shown = all ? [...own, ...rest] : own;
+    const relative = measure.key === "percent";
+    const value = (one, name) => one[`${name}_${measure.key}`];
+    const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => Math.abs(value(one, name) ?? 0))));
+    fill(bars, shown.map((one) => {
+      const objective = objectives.find(({ quantity }) => quantity === one.quantity);
+      const largest = relative && objective ? common : Math.max(...DIMENSIONS.map((name) => Math.abs(value(one, name) ?? 0)));
+      const unit = relative ? "%" : unitOf(one.unit);
+      const text = (number) => (number === null || number === undefined ? "–" : `${signed(relative ? number : inShown(number, one.unit))} ${unit}`);
+      const good = (number) => !objective || objective.sense === "target" ? null : (number > 0) === (objective.sense === "maximise");
+      return tornado(DIMENSIONS.map((name) => ({ title: name, value: value(one, name) ?? null, text: text(value(one, name)) })), { largest, good, caption: one.title });
+    }));
+  }
+
+  draw();
+  window.addEventListener("units", draw, { signal });
+}
+
+function signed(number) {
+  if (Math.abs(number) < 1e-12) return "0";
+  return `${number > 0 ? "+" : "−"}${Number(Math.abs(number).toPrecision(3))}`;
+}

@@ -1,0 +1,122 @@
+/** The mechanisms that move together, and what moves them: play, speed, crank angle, forces. */
+
+import { between } from "../charts/cycle.js";
+import { fill, h } from "../lib/dom.js";
+import { withUnit } from "../lib/numbers.js";
+import { ARROWS, largestForce } from "../mechanism/arrows.js";
+import { drawing } from "../mechanism/drawing.js";
+import { around, frameOf } from "../mechanism/frame.js";
+
+const EVERY = 100; // ms between two readouts while it moves
+const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
+
+/**
+ * Put mechanisms and their controls into `place`; turning: of turning.js. Returns
+ * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
+ */
+export function stage(place, turning) {
+  const drawn = h("div", { class: "machines" });
+  let machines = [];
+  let drawings = [];
+  const toggle = h("button", { type: "button", class: "primary play", onclick: () => (turning.playing ? turning.pause() : turning.play()) }, "Play");
+  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": "Crank angle", onkeydown: byKey, oninput: (event) => hold(Number(event.target.value)) });
+  const told = h("output", { class: "number angle" });
+  const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.target.value)]) },
+    turning.paces.map((one, n) => h("option", { value: n, selected: one === turning.pace }, one.title)));
+  const forces = h("input", { type: "checkbox", onchange: showForces });
+  const legend = h("ul", { class: "legend forces", hidden: true }, ARROWS.map(({ name, title }) => h("li", { class: name }, title)));
+  const largest = h("span", { class: "quiet" });
+  fill(
+    place,
+    drawn,
+    h("div", { class: "row controls" }, toggle, h("label", { class: "crank-angle" }, h("span", {}, "Crank angle"), angle), told,
+      h("label", {}, "Speed ", pace), h("label", {}, forces, " Forces"), largest),
+    legend,
+    h("p", { class: "quiet hint" }, "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."),
+  );
+
+  function hold(to) {
+    turning.pause();
+    turning.set(to);
+  }
+
+  function byKey(event) {
+    const step = KEYS[event.key];
+    if (!step) return;
+    event.preventDefault();
+    hold(Math.round(turning.angle) + step);
+  }
+
+  function showForces() {
+    legend.toggleAttribute("hidden", !forces.checked);
+    for (const one of drawings) one.forces(forces.checked);
+    const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
+    fill(largest, forces.checked ? `longest arrow ${withUnit(greatest, "N", 3)}` : "");
+  }
+
+  function show(shown) {
+    const again = shown.length === drawings.length;
+    machines = shown;
+    if (!again) {
+      drawings.forEach((one) => one.close());
+      const places = machines.map(() => h("div", { class: "machine" }));
+      fill(drawn, places);
+      drawings = places.map((each) => draggable(drawing(each, { label: "" }), hold));
+    }
+    const frame = around(machines.map(({ row, curves }) => frameOf(row, curves)));
+    const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
+    machines.forEach(({ name, series, row, curves, centres }, n) => {
+      const one = drawings[n];
+      const holder = one.node.parentElement;
+      holder.dataset.series = series;
+      one.node.setAttribute("aria-label", `${name}: crank ${withUnit(row.crank_mm, "mm", 4)}, rod ${withUnit(row.rod_mm, "mm", 4)}, offset ${withUnit(row.offset_mm, "mm", 4)}`);
+      if (machines.length > 1) {
+        const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
+        title.textContent = name;
+      }
+      one.show(row, curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest });
+      one.turn(turning.angle);
+    });
+    showForces();
+    tell(turning);
+  }
+
+  function tell({ angle: at, playing }) {
+    for (const one of drawings) one.turn(at, !playing);
+    const now = performance.now();
+    if (!machines.length || (playing && now - since < EVERY)) return;
+    since = now;
+    angle.value = at;
+    const words = `${Math.round(at) % 360}°`;
+    if (told.textContent !== words) told.textContent = words;
+    if (playing) return;
+    const position = between(machines[0].curves.slider_position_mm, at);
+    angle.setAttribute("aria-valuetext", `${words}, slider at ${withUnit(position, "mm", 4)}`);
+  }
+
+  let [was, since] = [null, 0];
+  turning.listen((state) => {
+    tell(state);
+    if (state.playing === was) return;
+    was = state.playing;
+    toggle.textContent = was ? "Pause" : "Play";
+  });
+  return { show, fade: (yes) => drawings.forEach((one) => one.fade(yes)), close: () => drawings.forEach((one) => one.close()) };
+}
+
+/** Let the crank of a drawing be dragged; hold(angle) is told. */
+function draggable(one, hold) {
+  const { handle } = one;
+  let held = false;
+  one.node.classList.add("draggable");
+  handle.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    handle.setPointerCapture(event.pointerId);
+    held = true;
+    hold(one.angleAt(event.clientX, event.clientY));
+  });
+  handle.addEventListener("pointermove", (event) => held && hold(one.angleAt(event.clientX, event.clientY)));
+  for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => (held = false));
+  return one;
+}

@@ -1,0 +1,65 @@
+/** What tolerances do to the slider's position: the spread of random machines, the worst case, and what it comes from. */
+
+import { histogram, tornado } from "../charts/bars.js";
+import { fill, h } from "../lib/dom.js";
+import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+
+/** Put the numbers of the API into `place`. */
+export function tolerances(place, found, { signal }) {
+  const chart = h("div", {});
+  const facts = h("div", {});
+  const sources = h("div", {});
+  fill(place, h("div", { class: "tolerance-columns" }, h("div", {}, chart, facts), sources));
+  let drawn = null;
+
+  function draw() {
+    drawn?.close();
+    drawn = spread(chart, found);
+    fill(facts, numbers(found));
+    fill(sources, contributions(found));
+  }
+
+  draw();
+  window.addEventListener("units", draw, { signal });
+  signal.addEventListener("abort", () => drawn?.close(), { once: true });
+}
+
+function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_square_mm: square }) {
+  const { histogram: bins, samples, stuck } = simulated;
+  if (!bins) {
+    fill(place, h("p", { class: "quiet" }, "None of the random machines turns fully: lengthen the rod, or narrow the tolerances."));
+    return { close() {} };
+  }
+  const shown = (value) => inShown(value, "mm");
+  const marks = [
+    { value: shown(square), title: "root sum square" },
+    { value: shown(worst), title: "worst case" },
+    ...Object.entries(simulated.percentiles_greatest_mm).slice(1, 2).map(([percent, value]) => ({ value: shown(value), title: `${percent} % within` })),
+  ];
+  const holder = h("div", {});
+  fill(place, h("h3", {}, `Greatest position error of ${(samples - stuck).toLocaleString("en")} random machines (${unitOf("mm")})`), holder);
+  const label = `Histogram of the greatest position error of random machines: half of them within ${withUnit(simulated.percentiles_greatest_mm["50"], "mm", 3)}, worst case ${withUnit(worst, "mm", 3)}.`;
+  return histogram(holder, { edges: bins.edges_mm.map(shown), counts: bins.counts, marks, label });
+}
+
+function numbers(found) {
+  const { exact_worst_case_mm: exact, monte_carlo: { percentiles_greatest_mm: percentiles, stuck }, yields } = found;
+  const at = (size, angle) => `${withUnit(size, "mm", 4)} at ${text(angle, "deg", 4)}°`;
+  const rows = [
+    ["worst case, first order", at(found.worst_case_mm, found.worst_case_angle_deg)],
+    ["worst case, exact", exact === null ? "a linkage within the tolerances does not turn fully" : at(exact, found.exact_worst_case_angle_deg)],
+    ["root sum square", at(found.root_sum_square_mm, found.root_sum_square_angle_deg)],
+    ...Object.entries(percentiles).map(([percent, value]) => [`${percent} % of the machines within`, withUnit(value, "mm", 4)]),
+    ...yields.map((one) => [`yield at ${withUnit(one.limit_mm, "mm", 4)} (${one.limit})`, `${one.yield_percent.toFixed(2)} %, between ${one.yield_low_percent.toFixed(2)} and ${one.yield_high_percent.toFixed(2)} %`]),
+    ...(stuck ? [["do not turn fully", stuck.toLocaleString("en")]] : []),
+  ];
+  return h("dl", { class: "facts" }, rows.map(([title, value]) => [h("dt", {}, title), h("dd", {}, value)]));
+}
+
+function contributions({ contributions: parts }) {
+  const limit = (part) => (part.limit_mm === null ? `${text(part.limit_deg, "deg", 3)}°` : withUnit(part.limit_mm, "mm", 3));
+  const table = (key, caption) => tornado(
+    parts.map((part) => ({ title: `${part.source}, ±${limit(part)}`, value: part[key], text: `${part[key].toFixed(1)} %` })),
+    { largest: Math.max(...parts.map((part) => part[key])), good: () => null, caption, signed: false });
+  return [h("h3", {}, "What it comes from"), table("share_of_worst_case_percent", "of the worst case"), table("share_of_variance_percent", "of the variance")];
+}

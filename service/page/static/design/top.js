@@ -1,0 +1,44 @@
+/** The head of the view: where it is, the designs before and after it, and what stands beside it. */
+
+import { link } from "../lib/address.js";
+import { h } from "../lib/dom.js";
+
+/** Return the head. */
+export function top({ job, number, front, others }) {
+  const beside = others.map((one) => one.number).join(",");
+  const step = (to, words, sign) =>
+    to >= 1 && to <= front.count
+      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside: beside || null }), "aria-label": words, title: words }, sign)
+      : h("span", { class: "button off", "aria-hidden": "true" }, sign);
+  return h(
+    "header",
+    { class: "design-head" },
+    h("p", { class: "back" }, h("a", { href: backTo(job) }, `← ${front.name}`)),
+    h("div", { class: "row" },
+      h("h1", {}, `Design ${number}`, h("span", { class: "quiet" }, ` of ${front.count}`)),
+      step(number - 1, "Previous design", "‹"), step(number + 1, "Next design", "›"), compare({ job, number, front, others })),
+  );
+}
+
+/** Return the address of the front as it was left, or its plain one. */
+function backTo(job) {
+  return sessionStorage.getItem(`left ${link(["jobs", job])}`) ?? link(["jobs", job]);
+}
+
+function compare({ job, number, front, others }) {
+  const numbers = others.map((one) => one.number);
+  const to = (list) => link(["jobs", job, "designs", number], { beside: list.join(",") || null });
+  const field = h("input", { type: "number", min: 1, max: front.count, required: true, id: "beside", class: "beside-number" });
+  const add = (event) => {
+    event.preventDefault();
+    const other = Number(field.value);
+    if (other !== number && !numbers.includes(other)) location.hash = to([...numbers, other]);
+  };
+  return h("div", { class: "row beside" },
+    others.map((one) => h("span", { class: "chip", "data-series": one.series },
+      h("a", { href: link(["jobs", job, "designs", one.number]) }, one.name),
+      h("a", { href: to(numbers.filter((other) => other !== one.number)), "aria-label": `Take design ${one.number} away`, class: "chip-close" }, "×"))),
+    numbers.length < 2 && front.count > 1
+      ? h("form", { class: "row", onsubmit: add }, h("label", { for: "beside" }, "Beside design"), field, h("button", {}, "Compare"))
+      : null);
+}

@@ -1,0 +1,83 @@
+/** The crank angle that all parts of the view share, and what turns it. */
+
+import { turned } from "../charts/cycle.js";
+
+const READABLE = [1, 8]; // s of a turn that can be followed at its real speed
+const TURNS = [16, 8, 4, 2, 1]; // s of a turn, to choose from
+const SHORTEST = 0.2; // s of a turn that a screen can show
+
+/**
+ * Return the shared crank angle: {angle, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
+ * rpm: of the crank, its sign the direction. told({angle, playing, settled}) is called for every change and every frame; settled:
+ * whether nothing moves, so that what takes longer to draw may be drawn.
+ */
+export function turning(rpm, signal) {
+  const listeners = [];
+  const paces = pacesOf(rpm);
+  const direction = rpm < 0 ? -1 : 1;
+  let frame = 0;
+  let last = 0;
+  const state = { angle: 0, playing: false, pace: paces.find((pace) => pace.chosen), paces };
+
+  const tell = () => listeners.forEach((told) => told({ angle: state.angle, playing: state.playing, settled: !state.playing }));
+  const step = (now) => {
+    const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a pause of the browser it goes on where it was
+    last = now;
+    state.angle = turned(state.angle + (direction * 360 * seconds) / state.pace.seconds);
+    tell();
+    frame = requestAnimationFrame(step);
+  };
+  const pause = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    state.playing = false;
+    tell();
+  };
+  signal.addEventListener("abort", () => cancelAnimationFrame(frame), { once: true });
+  return Object.assign(state, {
+    direction,
+    set(angle) {
+      state.angle = turned(angle);
+      if (!frame) tell();
+    },
+    play() {
+      if (frame) return;
+      last = 0;
+      state.playing = true;
+      tell();
+      frame = requestAnimationFrame(step);
+    },
+    pause,
+    choose(pace) {
+      state.pace = pace;
+    },
+    listen(told) {
+      listeners.push(told);
+      told({ angle: state.angle, playing: state.playing, settled: !state.playing });
+    },
+  });
+}
+
+/** Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen. */
+export function pacesOf(rpm) {
+  const real = rpm ? 60 / Math.abs(rpm) : null;
+  const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds)}${real ? `, ${share(real / seconds)}` : ""}` }));
+  if (real && real >= SHORTEST) {
+    const same = paces.findIndex(({ seconds }) => Math.abs(seconds / real - 1) < 1e-9);
+    if (same >= 0) paces.splice(same, 1);
+    paces.push({ seconds: real, title: `${turn(real)}, real speed` });
+    paces.sort((one, other) => other.seconds - one.seconds);
+  }
+  const chosen = real && real >= READABLE[0] && real <= READABLE[1] ? real : 4;
+  return paces.map((pace) => ({ ...pace, chosen: pace.seconds === chosen }));
+}
+
+function turn(seconds) {
+  if (seconds >= 120) return `one turn in ${Number((seconds / 60).toPrecision(3))} min`;
+  return `one turn in ${Number(seconds.toPrecision(3))} s`;
+}
+
+function share(ratio) {
+  if (Math.abs(ratio - 1) < 1e-9) return "real speed";
+  return ratio < 1 ? `1/${Number((1 / ratio).toPrecision(3))} of real speed` : `${Number(ratio.toPrecision(3))} times real speed`;
+}

@@ -1,0 +1,184 @@
+/** What if the lengths were others? Sliders, and where the change leaves the front. */
+
+import { post } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { link } from "../lib/address.js";
+import { frontMap } from "./front_map.js";
+import { difference } from "./numbers.js";
+import { rankOf } from "./objectives.js";
+
+const LENGTHS = [["crank_mm", "Crank"], ["rod_mm", "Rod"], ["offset_mm", "Offset"]];
+const STEPS = 1000; // of a slider over its range
+const SAME = 1e-9; // relative
+
+/**
+ * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
+ * of the job; start: lengths to begin with, or null. changed(answer): the answer of the API that is drawn, null for the design
+ * itself; refused(sentence). Returns {draw()}: once more, in other units.
+ */
+export function whatIf(place, { job, path, base, ranges, requirements, objectives, front, start, changed, refused, signal }) {
+  const lengths = Object.fromEntries(LENGTHS.map(([key]) => [key, start?.[key] ?? base[key]]));
+  const fields = {};
+  const controls = h("div", { class: "lengths" });
+  const verdict = h("div", { class: "verdict", "aria-live": "polite" });
+  const results = h("div", { class: "results" });
+  const picture = h("div", { class: "map" });
+  const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
+  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, verdict, results, picture);
+  const map = frontMap(picture, { objectives, front });
+  let answer = null;
+  let busy = false;
+  let again = false;
+
+  const moved = () => LENGTHS.some(([key]) => Math.abs(lengths[key] - base[key]) > SAME * Math.abs(base[key] || 1));
+
+  function back() {
+    for (const [key] of LENGTHS) lengths[key] = base[key];
+    fields.show();
+    ask();
+  }
+
+  /** One question at a time, the latest lengths next: questions that overtake each other would leave the slider without answer. */
+  async function ask() {
+    reset.disabled = !moved();
+    if (busy) {
+      again = true;
+      return;
+    }
+    if (!moved()) {
+      answer = null;
+      changed(null);
+      tell();
+      return;
+    }
+    busy = true;
+    try {
+      const found = await post(`${path}/what-if`, { ...lengths, angles: 180 }, { signal });
+      if (moved()) {
+        answer = found;
+        changed(found, { ...lengths });
+        tell();
+      }
+    } catch (error) {
+      if (error.name === "AbortError") return;
+      if (moved()) {
+        answer = null;
+        refused(error.message);
+        fill(verdict, h("p", { class: "bad", role: "alert" }, error.message));
+        fill(results);
+        map.show(base, null);
+      }
+    } finally {
+      busy = false;
+      if (again && !signal.aborted) {
+        again = false;
+        ask();
+      }
+    }
+  }
+
+  function tell() {
+    map.show(base, answer?.design ?? null);
+    if (!answer) {
+      fill(verdict, h("p", { class: "quiet" }, "Move a length; everything is computed anew as you move it."));
+      fill(results);
+      return;
+    }
+    fill(verdict, sentences(answer, requirements, job));
+    fill(results, comparison(objectives, base, answer.design));
+  }
+
+  function drawControls() {
+    const rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
+      lengths[key] = value;
+      ask();
+    }));
+    fill(controls, rows.map((row) => row.node));
+    fields.show = () => rows.forEach((row) => row.show(lengths[row.key]));
+    fields.show();
+  }
+
+  drawControls();
+  tell();
+  if (moved()) ask();
+  return {
+    draw() {
+      drawControls();
+      map.arrange();
+      tell();
+    },
+  };
+}
+
+function lengthRow(key, title, [low, high], set) {
+  const fixed = low === high;
+  const digits = (value) => Number(inShown(value, "mm").toPrecision(6));
+  const id = `what-if-${key}`;
+  const number = h("input", { type: "number", id, step: "any", disabled: fixed, min: digits(low), max: digits(high), oninput: () => take(number, Number.parseFloat(number.value)) });
+  const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: () => {
+    const value = low + (slider.value / STEPS) * (high - low);
+    number.value = digits(value);
+    take(slider, inShown(value, "mm"));
+  } });
+
+  function take(from, shown) {
+    const value = fromShown(shown, "mm");
+    const inside = Number.isFinite(value) && value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high);
+    number.setAttribute("aria-invalid", String(!inside));
+    if (!inside) return;
+    if (from === number) slider.value = high > low ? (STEPS * (value - low)) / (high - low) : 0;
+    slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
+    set(value);
+  }
+
+  return {
+    key,
+    node: h("div", { class: "length" }, h("label", { for: id }, title), slider, number, h("span", { class: "quiet" }, unitOf("mm")),
+      h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`)),
+    show(value) {
+      number.value = digits(value);
+      number.setAttribute("aria-invalid", "false");
+      slider.value = high > low ? (STEPS * (value - low)) / (high - low) : 0;
+      slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
+    },
+  };
+}
+
+function comparison(objectives, before, after) {
+  const rows = objectives.map((objective) => {
+    const [from, to] = [before, after].map((row) => row[objective.column]);
+    const gain = rankOf(from, objective) - rankOf(to, objective);
+    const same = Math.abs(gain) <= SAME * Math.abs(from || 1);
+    const word = same ? "same" : gain > 0 ? "better" : "worse";
+    return h("tr", {}, h("th", { scope: "row" }, objective.title), h("td", { class: "number quiet" }, text(from, objective.unit)),
+      h("td", { class: "number", "data-key": objective.column, "data-value": String(to) }, withUnit(to, objective.unit)),
+      h("td", { class: same ? "quiet" : gain > 0 ? "good" : "bad" }, same ? "= same" : `${gain > 0 ? "▲" : "▼"} ${word}`, same ? null : h("span", { class: "quiet by" }, difference(to, from))));
+  });
+  return h("table", { class: "before-after" }, h("caption", { class: "hidden" }, "Objectives before and after the change"),
+    h("thead", {}, h("tr", {}, ["Objective", "before", "after", "change"].map((title, n) => h("th", { scope: "col", class: n === 1 || n === 2 ? "number" : null }, title)))),
+    h("tbody", {}, rows));
+}
+
+function sentences(answer, requirements, job) {
+  const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
+  const found = broken.map((column) => {
+    const asked = requirements.find((one) => one.column === column);
+    return h("p", { class: "bad" }, `Breaks a rule: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`);
+  });
+  if (count) {
+    const shown = better.slice(0, 3).map((number, n) => [n ? ", " : "", h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`)]);
+    found.push(h("p", {}, `Behind the front: ${count === 1 ? "one design is" : `${count} designs are`} at least as good in every objective: `, shown, count > 3 ? ", …" : ""));
+  } else if (broken.length) {
+    found.push(h("p", {}, `No design of the front beats it in every objective, but it is not allowed.`));
+  } else {
+    found.push(h("p", { class: "good" }, beaten ? `Beyond the front: it beats ${beaten === 1 ? "one design" : `${beaten} designs`} of it in every objective.` : "On the front as far as the objectives tell: no design of it is better in every objective."));
+  }
+  return found;
+}
+
+function bounds({ lower, upper, unit }) {
+  if (lower === null) return `at most ${withUnit(upper, unit)}`;
+  if (upper === null) return `at least ${withUnit(lower, unit)}`;
+  return lower === upper ? withUnit(lower, unit) : `${text(lower, unit)} to ${withUnit(upper, unit)}`;
+}

@@ -1,0 +1,311 @@
+"""The view of a design: it moves, its curves follow, what-if, others beside it, the same numbers everywhere."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from slidercrank.objectives.analysis import analyse
+from slidercrank.optimise.job import load_job
+from tests.service.api.fixed_front import Solved, served
+from tests.service.page.conftest import Open, watch
+
+Opened = Callable[..., Page]
+Shared = tuple[Page, list[str]]
+STILL: dict[str, Any] = {"reduced_motion": "reduce", "color_scheme": "light"}
+WIDE = {"width": 1280, "height": 900}
+NARROW = {"width": 390, "height": 800}
+CENTRES = """nodes => nodes.map(node => {
+  const box = node.getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+})"""
+NUMBERS = """nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"""
+
+
+def view(solved: Solved, design: int = 3, query: str = "") -> str:
+    return f"#/jobs/{solved.number}/designs/{design}{query}"
+
+
+@pytest.fixture(scope="module")
+def service(solved: Solved) -> Iterator[str]:
+    """Return the address of one service for all tests here."""
+    with served(solved.store) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def shared(browser: Browser, service: str) -> Iterator[Shared]:
+    """Return one page for all tests here, and what it may complain of."""
+    wrong: list[str] = []
+    expected: list[str] = []
+    with contextlib.closing(browser.new_context()) as context:
+        page = context.new_page()
+        watch(page, service, wrong, expected)
+        page.goto(service)
+        yield page, expected
+    assert wrong == []
+
+
+@pytest.fixture
+def opened(shared: Shared, solved: Solved) -> Opened:
+    """Return what opens a design as if for the first time and waits for its mechanism."""
+    page, expected = shared
+
+    def opening(
+        design: int = 3, query: str = "", *, complaints: tuple[str, ...] = (), viewport: Any = WIDE, **media: Any
+    ) -> Page:
+        expected[:] = complaints
+        page.evaluate("localStorage.clear(); location.hash = '#/help'")
+        page.set_viewport_size(viewport)
+        page.emulate_media(**{**STILL, **media})
+        page.evaluate("view => { location.hash = view; }", view(solved, design, query))
+        expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {design}", timeout=30_000)
+        expect(page.locator(".mechanism .link.crank").first).to_be_visible()
+        return page
+
+    return opening
+
+
+def crank_angle(page: Page) -> Locator:
+    return page.get_by_role("slider", name="Crank angle")
+
+
+def angle_of(page: Page) -> float:
+    return float(crank_angle(page).input_value())
+
+
+def place_of(part: Locator) -> str | None:
+    """Where a link, or a cursor, is: it moves with its parent, or by its style."""
+    found: str | None = part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
+    return found
+
+
+def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:
+    page = opened(reduced_motion="no-preference")
+    crank = page.locator(".mechanism .link.crank")
+    before = place_of(crank)
+    page.wait_for_function(
+        "before => document.querySelector('.link.crank').parentElement.getAttribute('transform') !== before", arg=before
+    )
+    page.get_by_role("button", name="Pause").click()
+    stopped = place_of(crank)
+    page.wait_for_timeout(150)
+    assert place_of(crank) == stopped
+
+
+def test_it_stands_still_for_who_prefers_reduced_motion(opened: Opened) -> None:
+    page = opened()
+    before = place_of(page.locator(".mechanism .link.crank"))
+    page.wait_for_timeout(150)
+    assert place_of(page.locator(".mechanism .link.crank")) == before
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+
+
+def test_keys_turn_the_crank_by_one_and_by_ten_degrees(opened: Opened) -> None:
+    page = opened()
+    crank = crank_angle(page)
+    for key, angle in (("ArrowRight", 1), ("PageUp", 11), ("ArrowLeft", 10), ("PageDown", 0), ("ArrowDown", 359)):
+        crank.press(key)
+        assert angle_of(page) == angle, key
+
+
+def test_the_crank_follows_the_pointer(opened: Opened) -> None:
+    page = opened()
+    circle = page.locator(".mechanism .handle").bounding_box()
+    assert circle is not None
+    x, y, r = circle["x"] + circle["width"] / 2, circle["y"] + circle["height"] / 2, 0.4 * circle["width"]
+    page.mouse.move(x + r, y)
+    page.mouse.down()
+    page.mouse.move(x + r * math.cos(2.0), y - r * math.sin(2.0), steps=5)
+    page.mouse.up()
+    assert angle_of(page) == pytest.approx(math.degrees(2.0), abs=2.0)
+
+
+def test_pins_are_where_the_api_says(opened: Opened, solved: Solved, service: str) -> None:
+    page = opened()
+    crank_angle(page).evaluate("(node) => { node.value = 90; node.dispatchEvent(new Event('input')); }")
+    curves = httpx.get(f"{service}{solved.path}/designs/3/curves", params={"angles": 360}).json()["curves"]
+    row = httpx.get(f"{service}{solved.path}/designs/3").json()["design"]
+    (bx, by), (px, py), (ax, ay) = page.locator(".mechanism .pin").evaluate_all(CENTRES)
+    unit = (py - ay) / row["crank_mm"]
+    assert (ax - px) / unit == pytest.approx(0.0, abs=0.5)
+    assert (bx - px) / unit == pytest.approx(curves["slider_position_mm"][90], abs=0.5)
+    assert (py - by) / unit == pytest.approx(row["offset_mm"], abs=0.5)
+
+
+def test_a_chart_moves_the_mechanism_and_the_mechanism_the_cursors(opened: Opened) -> None:
+    page = opened()
+    chart = page.locator("figure[data-key='torque_Nm'] svg")
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    assert box is not None
+    before = place_of(page.locator("figure[data-key='slider_position_mm'] .cursor"))
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    assert 150 < angle_of(page) < 200
+    assert place_of(page.locator("figure[data-key='slider_position_mm'] .cursor")) != before
+
+
+def test_the_cursor_is_at_the_crank_angle_of_the_axis(opened: Opened) -> None:
+    page = opened()
+    crank_angle(page).evaluate("(node) => { node.value = 180; node.dispatchEvent(new Event('input')); }")
+    chart = page.locator("figure[data-key='slider_velocity_m_s']")
+    (cursor,) = chart.locator(".cursor").evaluate_all(CENTRES)
+    (tick,) = chart.locator("text", has_text="180°").evaluate_all(CENTRES)
+    assert cursor[0] == pytest.approx(tick[0], abs=1.0)
+
+
+def test_every_chart_says_its_least_and_greatest_value(opened: Opened) -> None:
+    page = opened()
+    labels = page.locator(".curves figure svg").evaluate_all("nodes => nodes.map(node => node.ariaLabel)")
+    assert len(labels) >= 8
+    assert all("least" in label and "greatest" in label and "°" in label for label in labels)
+
+
+def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
+    page = opened()
+    arrows = page.locator(".mechanism .force")
+    expect(arrows.first).to_be_hidden()
+    page.get_by_role("checkbox", name="Forces").check()
+    crank_angle(page).press("PageUp")
+    assert "L" in str(arrows.first.get_attribute("d"))
+    expect(page.locator(".legend.forces")).to_contain_text("guide on slider")
+
+
+def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, service: str) -> None:
+    page = opened()
+    row = solved.result.designs[2]
+    page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
+    table = page.get_by_role("table", name="Objectives before and after the change")
+    expect(table).to_be_visible()
+    expect(page.locator(".verdict")).to_contain_text("Breaks a rule: stroke")
+    expect(page.locator(".front-map .changed")).to_be_visible()
+    lengths = {name: row[name] for name in ("rod_mm", "offset_mm")} | {"crank_mm": float(row["crank_mm"] or 0) * 0.98}
+    answer = httpx.post(f"{service}{solved.path}/designs/3/what-if", json=lengths).json()["design"]
+    for key, value in table.locator("[data-value]").evaluate_all(NUMBERS):
+        assert float(value) == answer[key], key
+    assert "crank_mm" in page.url
+    page.get_by_role("button", name="Reset").click()
+    expect(table).to_have_count(0)
+    assert "crank_mm" not in page.url
+
+
+def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened: Opened) -> None:
+    page = opened(complaints=("422",))
+    ranges = page.get_by_label("Rod", exact=True)
+    ranges.fill("60")
+    expect(page.get_by_role("alert")).to_contain_text("rod must exceed crank + |offset| for full rotation")
+    expect(page.locator(".mechanism.faded .link.crank")).to_be_visible()
+    page.get_by_role("button", name="Reset").click()
+    expect(page.get_by_role("alert")).to_have_count(0)
+    expect(page.locator(".mechanism.faded")).to_have_count(0)
+
+
+def test_a_link_shows_the_change_to_somebody_else(opened: Opened, solved: Solved) -> None:
+    row = solved.result.designs[2]
+    query = f"?crank_mm={float(row['crank_mm'] or 0) * 0.98}&rod_mm={row['rod_mm']}&offset_mm={row['offset_mm']}"
+    page = opened(query=query)
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+
+
+def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
+    page = opened(query="?beside=1,5")
+    expect(page.locator(".machine .mechanism")).to_have_count(3)
+    crank_angle(page).press("PageUp")
+    turns = {str(place_of(crank)).split("rotate")[1] for crank in page.locator(".mechanism .link.crank").all()}
+    assert turns == {"(-10.000)"}
+    assert page.locator("figure[data-key='torque_Nm'] .curve").count() == 3
+    columns = page.get_by_role("region", name="Dimensions").locator("thead th").all_inner_texts()
+    assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change", "Unit"]
+    page.get_by_label("Take design 1 away").click()
+    expect(page.locator(".machine .mechanism")).to_have_count(2)
+    assert "beside=5" in page.url
+
+
+def test_a_design_is_put_beside_by_its_number(opened: Opened) -> None:
+    page = opened()
+    page.get_by_label("Beside design").fill("4")
+    page.get_by_role("button", name="Compare").click()
+    expect(page.locator(".machine .mechanism")).to_have_count(2)
+
+
+def test_sensitivity_comes_when_it_is_scrolled_to_and_missing_tolerances_are_said(opened: Opened) -> None:
+    page = opened()
+    page.locator(".sensitivity").scroll_into_view_if_needed()
+    expect(page.get_by_role("table", name="time ratio")).to_be_visible(timeout=30_000)
+    page.locator(".tolerances").scroll_into_view_if_needed()
+    expect(page.locator(".tolerances")).to_contain_text("The job gives no tolerances")
+
+
+def test_designs_are_walked_through_by_number(opened: Opened, solved: Solved) -> None:
+    page = opened(design=1)
+    assert page.get_by_label("Previous design").count() == 0
+    page.get_by_label("Next design").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(f"Design 2 of {len(solved.result.designs)}")
+
+
+def test_a_design_that_is_not_there_is_said(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view(solved, 99), expected=("404",))
+    expect(page.get_by_role("main")).to_contain_text("has designs 1 to")
+    page.evaluate("location.hash = location.hash.replace('99', 'x')")
+    expect(page.get_by_role("main")).to_contain_text("A design is called by its number")
+
+
+def test_units_are_the_readers(opened: Opened) -> None:
+    page = opened()
+    cell = page.locator(".numbers td[data-key='crank_mm']")
+    millimetres = float(cell.inner_text())
+    page.get_by_label("Units").select_option("inch")
+    assert float(cell.inner_text()) == pytest.approx(millimetres / 25.4, rel=1e-4)
+    assert float(page.get_by_label("Crank", exact=True).input_value()) == pytest.approx(millimetres / 25.4, rel=1e-4)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_bars_the_way_of_anybody(opened: Opened, solved: Solved, scheme: str) -> None:
+    page = opened(query="?beside=5", color_scheme=scheme)
+    page.get_by_role("checkbox", name="Forces").check()
+    row = solved.result.designs[2]
+    page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+    page.locator(".sensitivity").scroll_into_view_if_needed()
+    expect(page.get_by_role("table", name="time ratio")).to_be_visible(timeout=30_000)
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+
+
+def test_a_narrow_screen_shows_all_without_scrolling_sideways(opened: Opened, solved: Solved) -> None:
+    page = opened(query="?beside=5", viewport=NARROW)
+    row = solved.result.designs[2]
+    page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
+
+
+def test_page_api_csv_and_python_have_the_same_numbers(opened: Opened, solved: Solved, service: str) -> None:
+    page = opened()
+    shown = dict(page.locator(".numbers [data-value]").evaluate_all(NUMBERS))
+    of_api = httpx.get(f"{service}{solved.path}/designs/3").json()["design"]
+    exported = httpx.get(f"{service}{solved.path}/export.csv").text
+    of_csv = list(csv.DictReader(io.StringIO(exported)))[2]
+    lengths = np.array([[float(of_csv[name]) / 1e3 for name in ("crank_mm", "rod_mm", "offset_mm")]])
+    of_python = analyse(load_job(solved.job).mechanism, lengths).iloc[0]
+    assert set(shown) == set(of_api) == set(of_csv)
+    for key, value in of_api.items():
+        if value is None:
+            assert (shown[key], of_csv[key]) in (("", ""), ("", "inf")), key
+        elif isinstance(value, str):
+            assert shown[key] == of_csv[key] == value
+        else:
+            assert float(shown[key]) == float(of_csv[key]) == value, key
+        if key in of_python and isinstance(value, float):
+            # A millimetre is a thousandth of a metre only to rounding, which forces near a jump amplify.
+            assert of_python[key] == pytest.approx(value, rel=1e-9, abs=1e-9), key
