@@ -14,7 +14,7 @@ export function showFacts(place, { allowed, example, understood }) {
     place,
     h(
       "dl",
-      { class: "facts" },
+      { class: "terms" },
       row("turns fully", share(allowed.turning_share), "of the ranges"),
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
