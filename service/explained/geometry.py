@@ -52,7 +52,7 @@ GEOMETRY = (
             "The transmission angle is the angle between the rod and the normal of the slider line; its least value "
             "over the turn says how well the rod pushes the slider along instead of against its guide."
         ),
-        advice="90 deg is ideal; least values of 30 to 50 deg are usual. Offset and a long crank lower it, a long rod raises it.",
+        advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
         formula="cos(mu_min) = (r + |e|) / l",
         section=_CLOSED,
         picture="transmission angle",
