@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.units import kind_for, to_si
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible
@@ -224,6 +225,20 @@ def test_the_text_and_the_form_are_in_step_and_unknown_parts_survive(form: Open,
     page.locator("#job-text").fill("{")
     expect(page.locator("#job-text-error")).to_contain_text("no valid JSON yet")
     expect(page.get_by_label("crank speed", exact=True)).to_have_value("80")
+
+
+def test_every_unit_that_a_field_offers_is_one_of_job_files_and_means_the_same(form: Open, store: Store) -> None:
+    page = form(store, "#/help")
+    offered = page.evaluate(
+        """async () => {
+          const { kinds, unitsOf, convert } = await import(new URL("page/form/units.js", document.baseURI));
+          const one = (kind, unit) => [unit, convert("1", unit, unitsOf(kind)[0], kind)];
+          return kinds().flatMap((kind) => unitsOf(kind).map((unit) => one(kind, unit)));
+        }"""
+    )
+    assert len(offered) > 50
+    for unit, in_si in offered:
+        assert to_si(f"1 {unit}", kind_for(unit)) == pytest.approx(float(in_si), rel=1e-9), unit
 
 
 def test_loads_requirements_and_objectives_are_added_and_taken_away(form: Open, store: Store) -> None:
