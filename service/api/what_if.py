@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ...model.errors import InputError
 from ..designs.columns import find_column
 from ..designs.cycle_table import LEAST, MOST
+from ..designs.holding import held
 from ..designs.requirements import has_tolerances, names_of, ranges_of, requirements_of, speed_rpm
 from ..designs.trade_offs import trade_offs_of
 from ..designs.variation import variation_of, with_lengths
@@ -70,14 +71,19 @@ class TradeOffsModel(BaseModel):
 
 
 class OtherLengths(BaseModel):
-    """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none."""
+    """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none.
 
-    model_config = ConfigDict(extra="forbid")
+    hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
+    to take the lengths as they are.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True)
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
     offset_mm: float = Field(ge=-_LONGEST, le=_LONGEST, examples=[20.0])
     angles: int = Field(180, ge=0, le=MOST)
+    hold: Literal["crank", "rod", "offset"] | None = None
 
 
 class WhatIfModel(BaseModel):
@@ -138,7 +144,8 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
             f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
         )
     lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
-    stored = with_lengths(found.design(design), lengths)
+    stored = found.design(design)
+    stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
     changed = variation_of(stored, found.result, found.minimised)
     cycle = cycle_model(stored.mechanism, stored.linkage, asked.angles) if asked.angles else None
     keys = list(changed.row)

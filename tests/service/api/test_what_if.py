@@ -136,3 +136,20 @@ def test_trade_offs_are_known_at_every_design(client: httpx.Client, solved: Solv
         given = client.get(f"{solved.path}/designs/{number}/trade-offs").json()
         assert given["note"] == "", number
         assert all("costs" in sentence for sentence in given["trade_offs"])
+
+
+@pytest.mark.parametrize("moved", ["crank", "rod", "offset"])
+def test_other_lengths_follow_to_keep_a_stroke(client: httpx.Client, solved: Solved, moved: str) -> None:
+    body = lengths(solved, 3, **{f"{moved}_mm": 0.98})
+    answer = change(client, solved, {**body, "hold": moved}).json()
+    assert answer["design"][f"{moved}_mm"] == pytest.approx(body[f"{moved}_mm"], rel=1e-15)
+    assert answer["design"]["stroke_mm"] == pytest.approx(280.0, rel=1e-11)
+    assert "stroke_mm" not in answer["broken"]
+
+
+def test_a_length_that_no_others_can_follow_is_refused(client: httpx.Client, solved: Solved) -> None:
+    refused = change(client, solved, {"crank_mm": 200.0, "rod_mm": 600.0, "offset_mm": 0.0, "hold": "crank"})
+    assert refused.status_code == 422
+    assert (
+        "rod and offset must follow so as to keep stroke exactly 280 mm; got crank 200 mm" in refused.json()["detail"]
+    )

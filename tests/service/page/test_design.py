@@ -181,8 +181,25 @@ def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
     expect(page.locator(".legend.forces")).to_contain_text("guide on slider")
 
 
+def release(page: Page) -> None:
+    """Let lengths be moved against the rules that ask for exact values."""
+    page.get_by_role("checkbox", name="The other lengths follow").uncheck()
+
+
+def test_the_other_lengths_follow_to_keep_what_is_asked_exactly(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    row = solved.result.designs[2]
+    page.get_by_label("Rod", exact=True).fill(str(float(row["rod_mm"] or 0.0) * 1.02))
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+    expect(page.locator(".verdict")).not_to_contain_text("stroke")
+    assert float(page.get_by_label("Crank", exact=True).input_value()) != pytest.approx(row["crank_mm"], rel=1e-4)
+    stroke = page.get_by_role("region", name="Motion").locator("td[data-design='What if'][data-key='stroke_mm']")
+    expect(stroke).to_have_text("280")
+
+
 def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, service: str) -> None:
     page = opened()
+    release(page)
     row = solved.result.designs[2]
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     table = page.get_by_role("table", name="Objectives before and after the change")
@@ -201,6 +218,7 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
 
 def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened: Opened) -> None:
     page = opened(complaints=("422",))
+    release(page)
     ranges = page.get_by_label("Rod", exact=True)
     ranges.fill("60")
     expect(page.get_by_role("alert")).to_contain_text("rod must exceed crank + |offset| for full rotation")

@@ -8,6 +8,7 @@ import { range, scale } from "./scale.js";
 const HEIGHT = 170;
 const ROOM = { left: 52, right: 12, top: 18, bottom: 22 };
 const QUARTERS = [0, 90, 180, 270, 360];
+const SOON = 150; // ms after a change, until charts that are out of sight follow
 const EVERY = 100; // ms between two readouts while it moves; faster ones cannot be read
 
 /**
@@ -23,6 +24,8 @@ export function curveCharts(place, turned) {
   let width = 0;
   let at = 0;
   let told = 0;
+  let later = 0;
+  let observed = false;
   const inSight = new Set(); // charts that the reader sees
 
   function arrange() {
@@ -32,13 +35,26 @@ export function curveCharts(place, turned) {
       charts = panels.map((panel) => chart(panel, turned));
       fill(grid, charts.map((one) => one.figure));
       sight.disconnect();
+      observed = false;
       charts.forEach((one) => sight.observe(one.figure));
       width = 0;
     }
     width = Math.round(charts[0]?.plot.clientWidth ?? 0);
     if (width < 80) return;
-    charts.forEach((one, n) => one.draw(panels[n], series, width));
+    charts.forEach((one, n) => {
+      one.stale = () => one.draw(panels[n], series, width);
+      if (!observed || inSight.has(one.figure)) drawn(one);
+    });
     turn({ angle: at, settled: true });
+    clearTimeout(later);
+    later = setTimeout(() => charts.forEach(drawn), SOON);
+  }
+
+  /** Draw a chart that has changed. */
+  function drawn(one) {
+    one.stale?.();
+    if (one.stale) one.turn(at, true);
+    one.stale = null;
   }
 
   function turn({ angle, settled }) {
@@ -51,7 +67,9 @@ export function curveCharts(place, turned) {
   }
 
   const sight = new IntersectionObserver((seen) => {
+    observed = true;
     for (const { target, isIntersecting } of seen) isIntersecting ? inSight.add(target) : inSight.delete(target);
+    charts.filter((one) => inSight.has(one.figure)).forEach(drawn);
   });
 
   const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].plot.clientWidth) !== width && arrange());
@@ -62,7 +80,10 @@ export function curveCharts(place, turned) {
       arrange();
     },
     turn,
-    close: () => [watcher, sight].forEach((one) => one.disconnect()),
+    close() {
+      clearTimeout(later);
+      for (const one of [watcher, sight]) one.disconnect();
+    },
   };
 }
 

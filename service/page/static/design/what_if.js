@@ -22,10 +22,17 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   const fields = {};
   const controls = h("div", { class: "lengths" });
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
+  const equal = requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
+  const holding = h("input", { type: "checkbox", checked: equal.length > 0, onchange: () => ask() });
+  const rule = equal.length
+    ? h("label", { class: "holding" }, holding, ` The other lengths follow, to keep ${equal.map(({ title, lower, unit }) => `${title} ${withUnit(lower, unit)}`).join(" and ")}`)
+    : null;
+  let last = "crank"; // the length that was moved last
+  let given = start !== null; // the lengths of a link are shown as they are
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
-  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, verdict, results, picture);
+  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, picture);
   const map = frontMap(picture, { objectives, front });
   let answer = null;
   let busy = false;
@@ -54,10 +61,12 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     }
     busy = true;
     try {
-      const found = await post(`${path}/what-if`, { ...lengths, angles: 180 }, { signal });
+      const found = await post(`${path}/what-if`, { ...lengths, angles: 180, hold: holding.checked && !given ? last : null }, { signal });
+      given = false;
       if (moved()) {
         answer = found;
-        changed(found, { ...lengths });
+        if (holding.checked && !again) follow(found.design);
+        changed(found, Object.fromEntries(LENGTHS.map(([key]) => [key, found.design[key]])));
         tell();
       }
     } catch (error) {
@@ -78,6 +87,15 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     }
   }
 
+  /** Let the other lengths stand where they followed to. */
+  function follow(design) {
+    for (const [key] of LENGTHS) {
+      if (key === `${last}_mm`) continue;
+      lengths[key] = design[key];
+      fields.one(key, design[key]);
+    }
+  }
+
   function tell() {
     map.show(base, answer?.design ?? null);
     if (!answer) {
@@ -92,8 +110,10 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   function drawControls() {
     const rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
       lengths[key] = value;
+      last = key.replace("_mm", "");
       ask();
     }));
+    fields.one = (name, value) => rows.find(({ key }) => key === name).show(value);
     fill(controls, rows.map((row) => row.node));
     fields.show = () => rows.forEach((row) => row.show(lengths[row.key]));
     fields.show();

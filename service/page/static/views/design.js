@@ -19,6 +19,7 @@ import { fill, h } from "../lib/dom.js";
 
 export const title = "Design";
 
+const SOON = 150; // ms
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
 /** Show the design that the address names. */
@@ -49,8 +50,10 @@ export async function show(place, { parts, query, signal }) {
   const charts = curveCharts(places.curves, hold);
   angle.listen(charts.turn);
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
+  signal.addEventListener("abort", () => clearTimeout(later), { once: true });
 
   let changed = null; // the answer to "what if"
+  let later = 0;
   const draw = () => {
     const asked = changed && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
@@ -59,21 +62,22 @@ export async function show(place, { parts, query, signal }) {
     const series = asked ? [asked, main, ...others] : moving;
     charts.show(series, panelsOf(main.curveColumns, series));
     legend(places.curves, series);
-    showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, names });
+    return () => showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, names });
   };
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
     start: startOf(query),
     changed(answer, lengths) {
       changed = answer;
-      draw();
+      clearTimeout(later);
+      later = setTimeout(draw(), SOON); // the tables, once the length rests
       keep({ beside: others.map((one) => one.number).join(","), ...(lengths ?? {}) });
     },
     refused: () => machines.fade(true),
   });
   const drawAll = () => {
     showObjectives(places.objectives, { objectives, front: rows, designs: [main], names });
-    draw();
+    draw()();
   };
   drawAll();
   tradeOffs(places["trade-offs"], shared);

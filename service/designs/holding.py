@@ -1,0 +1,87 @@
+"""Lengths that follow one that was moved, so that the rules that ask for exact values still hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Constraint
+    from ...optimise.stationarity import Array
+    from .stored_designs import StoredDesign
+
+_LENGTHS = ("crank", "rod", "offset")
+_ROUNDS = 30
+_CONVERGED = 1e-12  # of a target
+_HALVINGS = 12
+
+Lengths = tuple[float, float, float]
+
+
+def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
+    """Return lengths, m, near the given ones and with the moved one as given, that keep every equality of the job.
+
+    Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
+    equalities, halved while the linkage would not turn fully. Raises `InputError` where it finds none.
+    """
+    import numpy as np
+
+    part = design.part
+    equal = [constraint for constraint in part.constraints if constraint.equality]
+    place = _LENGTHS.index(moved)
+    free = [n for n, name in enumerate(_LENGTHS) if n != place and not getattr(part, name).fixed]
+    values = np.array([*lengths, *design.values[3:]])
+    if not equal:
+        return lengths
+    if not _turns(values):
+        raise _refused(design, equal, moved, values[place])
+    for _ in range(_ROUNDS):
+        misses, slopes, sizes = _misses(design, equal, values)
+        if not np.isfinite(misses).all() or not np.isfinite(slopes).all():
+            break
+        if (np.abs(misses) <= _CONVERGED * sizes).all():
+            return float(values[0]), float(values[1]), float(values[2])
+        step = np.zeros(len(values))
+        step[free] = -np.linalg.lstsq(slopes[:, free] / sizes[:, None], misses / sizes, rcond=1e-10)[0]
+        for _ in range(_HALVINGS):
+            if _turns(values + step):
+                break
+            step *= 0.5
+        else:
+            break
+        values = values + step
+    raise _refused(design, equal, moved, values[place])
+
+
+def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
+    """Return by how much the equalities are missed (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
+    import numpy as np
+
+    misses, slopes, sizes = [], [], []
+    for constraint in equal:
+        target = float(constraint.lower or 0.0)
+        found = design.part.quantity(constraint.quantity).evaluate(
+            design.part.mechanism, values[None, :], gradients=True
+        )
+        misses.append(found.values[0] - target)
+        slopes.append(np.full(len(values), np.nan) if found.gradients is None else found.gradients[0])
+        sizes.append(max(abs(target), 1e-6))
+    return np.array(misses), np.array(slopes), np.array(sizes)
+
+
+def _turns(values: Array) -> bool:
+    crank, rod, offset = values[:3]
+    return bool(crank > 0.0 and rod > crank + abs(offset))
+
+
+def _refused(design: StoredDesign, equal: list[Constraint], moved: str, value: float) -> InputError:
+    rules = []
+    for constraint in equal:
+        of = design.part.quantity(constraint.quantity)
+        rules.append(f"{of.title} exactly {(constraint.lower or 0.0) * of.unit.factor:.6g} {of.unit.symbol}".strip())
+    others = " and ".join(name for name in _LENGTHS if name != moved)
+    return InputError(
+        f"{others} must follow so as to keep {' and '.join(rules)}; got {moved} {1e3 * value:.6g} mm, with which none "
+        "was found; move it less, or let the rules be broken"
+    )
