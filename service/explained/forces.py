@@ -67,7 +67,7 @@ FORCES = (
     Text(
         name="peak_reflected_inertia",
         sentence="The greatest moment of inertia that the drive feels at the crank, with rod and slider counted in.",
-        advice="Servo drives want it within a few times the inertia of the motor, through the gear.",
+        advice="To compare it with the inertia of a motor, divide it by the square of the gear ratio.",
         formula="max J, where J omega^2 / 2 is the kinetic energy of all links",
         section=_MOTOR,
         picture="inertia",

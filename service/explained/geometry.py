@@ -52,7 +52,7 @@ GEOMETRY = (
             "The transmission angle is the angle between the rod and the normal of the slider line; its least value "
             "over the turn says how well the rod pushes the slider along instead of against its guide."
         ),
-        advice="90 deg is ideal; 40 deg is a usual least value, 30 deg where loads are light.",
+        advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
         formula="cos(mu_min) = (r + |e|) / l",
         section=_CLOSED,
         picture="transmission angle",
@@ -76,7 +76,6 @@ GEOMETRY = (
     Text(
         name="rod_to_crank",
         sentence="The length of the rod divided by that of the crank; the higher, the more evenly the slider moves.",
-        advice="Engines and pumps have 3 to 5.",
         formula="l / r",
         section=_CLOSED,
         picture="rod",
@@ -122,7 +121,7 @@ GEOMETRY = (
             "The position error to be expected where deviations are independent of each other, so that they seldom "
             "add up: the root of the sum of their squares."
         ),
-        advice="Between a third and three quarters of the worst case is common.",
+        advice="With the four tolerances alone it is at least half of the worst case, and never more than it.",
         formula="max over theta of sqrt(sum of (dx/di T_i)^2)",
         section="12. Position error",
         source=_ERROR,

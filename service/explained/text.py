@@ -6,9 +6,27 @@ from dataclasses import dataclass
 from typing import Literal
 
 Picture = Literal[
-    *("crank", "rod", "offset", "stroke", "time ratio", "transmission angle", "dead centres", "torque", "power"),
-    *("position error", "footprint", "pivot force", "crank pin force", "slider pin force", "guide force"),
-    *("speed", "acceleration", "shaking force", "shaking moment", "self-locking", "inertia", "wanted motion"),
+    "crank",
+    "rod",
+    "offset",
+    "stroke",
+    "time ratio",
+    "transmission angle",
+    "torque",
+    "power",
+    "inertia",
+    "position error",
+    "wanted motion",
+    "footprint",
+    "pivot force",
+    "crank pin force",
+    "slider pin force",
+    "guide force",
+    "self-locking",
+    "speed",
+    "acceleration",
+    "shaking force",
+    "shaking moment",
 ]
 """What a picture of the linkage points out."""
 

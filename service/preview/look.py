@@ -68,7 +68,9 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     if stated is None:
         return Look(wrong, whole, None, None, [], [], checked)
     found = possible(stated)
-    return Look(wrong, whole, stated, found, left_out(tables, stated), said(stated, found), checked)
+    return Look(
+        wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found), checked
+    )
 
 
 def _count(value: object) -> int:

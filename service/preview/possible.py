@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from .moment import within
 from .stated import is_closed
 
 if TYPE_CHECKING:
@@ -25,7 +26,8 @@ Ends = tuple[float, float]
 
 _SAMPLES = 512
 _BATCH = 64
-_MOMENT = 0.06  # s, for the quantities that take a cycle
+_MOMENT = 0.06  # s, for the designs of quantities that take a cycle
+_PATIENCE = 0.12  # s, until these are left out
 _CLOSE = 1e-6
 """Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
 
@@ -37,7 +39,8 @@ class Possible:
     stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold;
     None where no sample meets these. feasible: share of the `sampled` designs that meet every requirement that was
     checked. hardest: the requirement that the fewest designs meet which turn fully, and that share. example: crank, rod
-    and offset, m, near the middle of what is feasible, else the nearest to it; None if nothing turns.
+    and offset, m, near the middle of what is feasible, else the nearest to it; None if nothing turns. unchecked:
+    requirements that would have taken longer than a moment.
     """
 
     turning: float
@@ -49,6 +52,7 @@ class Possible:
     hardest: tuple[str, float] | None
     example: tuple[float, float, float] | None
     example_feasible: bool
+    unchecked: tuple[str, ...]
 
 
 def possible(problem: Problem) -> Possible:
@@ -60,7 +64,9 @@ def possible(problem: Problem) -> Possible:
     free = replace(problem, constraints=())
     box = _designs(free, _SAMPLES)
     turning = _turns(box)
-    found, violation = _screened(problem)
+    light, costly = _light(problem)
+    screened = within(_PATIENCE, lambda: _screened(problem)) if costly else None
+    found, violation = _screened(light) if screened is None else screened
     feasible = violation <= FEASIBLE
     example, nearest = None, np.flatnonzero(np.isfinite(violation))
     if len(nearest):
@@ -78,7 +84,19 @@ def possible(problem: Problem) -> Possible:
         hardest=_hardest(problem, box[turning]),
         example=example,
         example_feasible=bool(feasible.any()),
+        unchecked=costly if screened is None else (),
     )
+
+
+def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
+    """Return the problem with the requirements on the dimensions alone, and the names of the others."""
+    from ...model.mechanism import Mechanism
+    from ...optimise.evaluation import constraints_of
+
+    machine = Mechanism(speed=problem.mechanism.speed, branch=problem.mechanism.branch)
+    closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
+    costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
+    return replace(problem, mechanism=machine, constraints=closed), costly
 
 
 def _designs(problem: Problem, count: int) -> Array:

@@ -3,6 +3,7 @@
 import { post } from "../lib/api.js";
 
 const WAIT = 200; // ms
+const AGAIN = 3000; // ms until the next try while the service does not answer
 
 /** Return a function that asks about a job; told({answer}) or told({problem}) with the latest; `signal` ends it. */
 export function checker(told, signal) {
@@ -15,7 +16,9 @@ export function checker(told, signal) {
       const answer = await post("preview", { job }, { signal: mine.signal });
       if (asked === mine && !signal.aborted) told({ answer });
     } catch (problem) {
-      if (problem.name !== "AbortError" && asked === mine && !signal.aborted) told({ problem });
+      if (problem.name === "AbortError" || asked !== mine || signal.aborted) return;
+      told({ problem });
+      if (problem.status === 0) timer = setTimeout(() => ask(job), AGAIN);
     }
   };
   signal.addEventListener("abort", () => {

@@ -14,14 +14,15 @@ export function showFacts(place, { allowed, example, understood }) {
     place,
     h(
       "dl",
-      { class: "facts" },
+      { class: "terms" },
       row("turns fully", share(allowed.turning_share), "of the ranges"),
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
-      row("least transmission angles", between(allowed.transmission_angle_deg, "deg")),
-      row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} designs tried`),
+      row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
+      row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       example ? row("slow stroke", example.slow_stroke) : null,
     ),
+    allowed.unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${allowed.unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
     allowed.said.map((sentence) => h("p", { class: "warning" }, sentence)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   );

@@ -15,8 +15,8 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   const node = h(
     "div",
     { class: wide ? "field wide" : "field" },
-    h("div", { class: "label" }, labelled ? h("label", { for: controls[0].id }, label) : h("span", {}, label), explained?.button),
-    h("div", { class: "controls" }, controls),
+    h("div", { class: "field-label" }, labelled ? h("label", { for: controls[0].id }, label) : h("span", {}, label), explained?.button),
+    h("div", { class: "field-controls" }, controls),
     explained?.text,
     error,
   );

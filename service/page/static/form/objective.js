@@ -22,9 +22,9 @@ export function objective(form, quantity) {
   const ask = explanation(idOf(path, "why"), quantity.title, { sentence: quantity.sentence, name: quantity.name });
   const controls = given === undefined ? [] : wanted(form, path, quantity, kind, given);
   const made = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
-  made.classList.add("objective");
-  made.querySelector(".label").replaceWith(h("div", { class: "tick" }, box, h("label", { for: box.id }, quantity.title), ask.button));
-  made.querySelector(".controls").after(ask.text);
+  made.classList.add("wanted");
+  made.querySelector(".field-label").replaceWith(h("div", { class: "wish" }, box, h("label", { for: box.id }, quantity.title), ask.button));
+  made.querySelector(".field-controls").after(ask.text);
   return made;
 }
 

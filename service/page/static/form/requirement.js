@@ -44,7 +44,9 @@ export function requirement(form, quantity, { label = quantity.title, place = ["
   });
   const [low, high] = inputs;
   const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter(Boolean);
-  return field(form, path, label, controls, { sentence: quantity.sentence, name: quantity.name });
+  const made = field(form, path, label, controls, { sentence: quantity.sentence, name: quantity.name });
+  made.classList.toggle("two", mode === "between");
+  return made;
 }
 
 /** Return which kind of requirement is given. */

@@ -23,6 +23,7 @@ export function sketch(signal) {
     moving = !moving;
     label();
     if (moving) start();
+    else drawn.turn(angle);
   });
   function step(now) {
     if (!moving || !shown || signal.aborted) {
@@ -31,7 +32,7 @@ export function sketch(signal) {
     }
     if (before !== null) angle = (angle + (way * 360 * (now - before)) / TURN + 360) % 360;
     before = now;
-    drawn.turn(angle);
+    drawn.turn(angle, false);
     requestAnimationFrame(step);
   }
   const start = () => {

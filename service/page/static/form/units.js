@@ -31,6 +31,11 @@ const USUAL = {
 };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
+/** Return the names of all kinds. */
+export function kinds() {
+  return Object.keys(KINDS);
+}
+
 /** Return the kind of value that a unit measures, "length" for "mm"; null for none. */
 export function kindOf(unit) {
   return Object.keys(KINDS).find((kind) => unit in KINDS[kind]) ?? null;

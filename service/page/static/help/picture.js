@@ -13,7 +13,7 @@ const RADIUS = 38;
 /** Return the picture of a kind of quantity; title: for readers of the screen. */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
-  return svg("svg", { class: "picture", viewBox: "0 28 300 152", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
+  return svg("svg", { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
 }
 
 const PICTURES = {
@@ -21,7 +21,6 @@ const PICTURES = {
   rod: { marks: () => [bold(POSE.pin, POSE.slider), label(140, 72, "rod")] },
   offset: { marks: () => [size([24, O[1]], [24, LINE]), label(4, 80, "offset")] },
   stroke: { marks: () => [ghost(OUT), ghost(IN), size([IN.slider[0], 118], [OUT.slider[0], 118]), drop(IN.slider, 122), drop(OUT.slider, 122), label(180, 135, "stroke")] },
-  "dead centres": { marks: () => [ghost(OUT), ghost(IN), dot(OUT.slider), dot(IN.slider)] },
   "time ratio": { marks: () => [ghost(OUT), ghost(IN), thin(O, OUT.pin), thin(O, IN.pin), wide(OUT.pin, IN.pin, 1), label(18, 62, "slow stroke"), label(84, 148, "fast")] },
   "transmission angle": { pose: STEEP, marks: () => [thin(STEEP.slider, [STEEP.slider[0], 150]), stroked(`M${STEEP.slider[0]} 122A36 36 0 0 1 ${STEEP.slider[0] - 31.3} ${LINE + 17.7}`), label(162, 142, "µ")] },
   "self-locking": { pose: STEEP, marks: () => [arrow(STEEP.pin, [STEEP.slider[0] - 14, LINE + 8]), arrow([STEEP.slider[0], LINE + 42], [STEEP.slider[0], LINE + 13]), label(200, 132, "guide")] },

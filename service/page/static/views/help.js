@@ -85,7 +85,7 @@ function one(place, quantity, quantities) {
       quantity.advice ? h("p", {}, quantity.advice) : null,
       h(
         "dl",
-        { class: "facts" },
+        { class: "terms" },
         row("formula", h("code", {}, quantity.formula)),
         row("unit", unit || "none, a ratio"),
         row("in job files", h("code", {}, quantity.name)),

@@ -22,7 +22,8 @@ export async function show(place, { query, signal }) {
   const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal)]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
-  build(place, { draft, schema: reader(schema), quantities, shipped, signal });
+  const before = kept();
+  build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, shipped, signal });
 }
 
 /** Return the draft that the address asks for: what was typed in it before comes first. */
@@ -42,16 +43,22 @@ function begin(job, source) {
   return { job: structuredClone(job), submission: {}, source, key: newKey() };
 }
 
-function build(place, { draft, schema, quantities, shipped, signal }) {
+/** Return what the address says of where a draft began. */
+function addressOf(source) {
+  const [kind, name] = source.split(" ");
+  return kind === "preset" ? { preset: name } : kind === "job" ? { from: name } : {};
+}
+
+function build(place, { draft, before, schema, quantities, shipped, signal }) {
   let checked = null; // what the service said of the job as it is; null while it has not
-  let undone = null;
+  let undone = before; // what was typed elsewhere, when the address asks for something else
   const drawn = sketch(signal);
   const facts = h("div", {});
   const status = h("p", { role: "status", class: "status" });
   const general = h("ul", { class: "error", hidden: true });
   const refusal = h("p", { class: "error", role: "alert", hidden: true });
   const start = h("button", { type: "submit", class: "primary" }, "Start the search");
-  const undo = h("button", { type: "button", hidden: true, onclick: () => undone && take(undone) }, "Bring back what was there");
+  const undo = h("button", { type: "button", hidden: undone === null, onclick: () => undone && take(undone) }, "Bring back what was there");
   const body = h("div", { class: "sections" });
 
   const form = {
@@ -104,6 +111,7 @@ function build(place, { draft, schema, quantities, shipped, signal }) {
     form.submission = draft.submission;
     undo.hidden = undone === null;
     keepDraft(draft);
+    keep(addressOf(draft.source));
     redraw();
     file.refresh();
     checked = null;
@@ -162,14 +170,12 @@ function build(place, { draft, schema, quantities, shipped, signal }) {
     const chosen = shipped.find(({ name }) => name === from.value);
     if (!chosen) return;
     take(begin(chosen.job, `preset ${chosen.name}`));
-    keep({ preset: chosen.name });
     from.value = "";
   });
   const over = h("button", { type: "button" }, "Start over");
   over.addEventListener("click", () => {
     take(begin(firstJob(system()), ""));
     keepDraft(null);
-    keep({});
   });
 
   const whole = h(
