@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 import threading
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from tests.service.page.conftest import Open
 
 def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store: Store, tmp_path: Path) -> None:
     page = open_page(store, "", accept_downloads=True)
-    expect(page.get_by_role("heading", name="Runs")).to_be_visible()
+    expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible()
     page.get_by_role("navigation", name="Main").get_by_role("link", name="New run").click()
     page.get_by_label("Begin with a shipped job").select_option("sieve")
     page.get_by_label("stroke, exactly").fill("260")
@@ -39,6 +40,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
     page.get_by_role("textbox", name="At least least transmission angle").fill(str(least))
     page.get_by_role("textbox", name="At least least transmission angle").press("Enter")
     expect(page.get_by_text("6 of 12 designs chosen")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"min\."))
     brushed = page.url
     page.locator("table.designs tbody a").first.click()
     page.wait_for_url("**/designs/*")
@@ -46,6 +48,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
     row = rows[number - 1]
     assert row["least_transmission_angle_deg"] >= least  # type: ignore[operator]
 
+    page.get_by_role("checkbox", name="The other lengths follow").uncheck()
     changed = str(round(float(row["rod_mm"] or 0.0) * 1.02, 6))
     page.get_by_label("Rod", exact=True).fill(changed)
     expect(page.locator(".verdict")).to_contain_text("Breaks a rule: stroke")
