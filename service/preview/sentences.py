@@ -9,8 +9,8 @@ from .possible import Ends, Possible
 if TYPE_CHECKING:
     from ...optimise.problem import Constraint, Problem
 
-_NEAR = 0.005
-"""Relative: samples find the ends to within this, so that what is asked so near to them may be had."""
+_NEAR = 0.01
+"""Relative: the ends are found to within a part of this, so that what is asked so near to them may be had."""
 _REST = "with all other requirements on the dimensions"
 
 

@@ -70,8 +70,21 @@ def test_the_greatest_time_ratio_with_a_transmission_angle_is_that_of_the_edge(s
     cosine = 0.1 * math.cos(math.radians(40.0))
     fine = (0.02 + 1e-5 * step for step in range(4001))
     best = max(float(Linkage(crank, 0.1, cosine - crank).time_ratio) for crank in fine if cosine > crank)
-    assert allowed["time_ratio"][1] == pytest.approx(best, rel=2e-3)
+    assert allowed["time_ratio"][1] == pytest.approx(best, rel=1e-3)
     assert allowed["time_ratio"][1] <= best * (1.0 + 1e-6)
+
+
+def test_a_thin_band_allows_what_each_value_in_it_allows(shared: httpx.Client) -> None:
+    ranges = {"crank": ["20 mm", "100 mm"], "rod": ["60 mm", "400 mm"], "offset": ["0 mm", "100 mm"]}
+
+    def greatest(stroke: Job) -> float:
+        constraints = {"stroke": stroke, "transmission_angle": {"min": "40 deg"}}
+        ratio = preview(shared, {"variables": ranges, "constraints": constraints})["allowed"]["time_ratio"]
+        return float(ratio[1])
+
+    band = greatest({"min": "99 mm", "max": "101 mm"})
+    assert band >= 0.995 * greatest({"equals": "100 mm"})
+    assert band <= 1.2863  # what no linkage with 40 deg exceeds
 
 
 def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: httpx.Client, feeder: Job) -> None:
