@@ -15,8 +15,11 @@ import sys
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import cloudpickle
 import pytest
+from distributed import Client
 from sqlalchemy import create_engine
 
 from slidercrank.service.api.server import listen
@@ -26,6 +29,32 @@ from tests.service.conftest import Command
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
+HEAVY = """
+name = "Feeder"
+[mechanism]
+speed = "300 rpm"
+slider = { mass = "2 kg" }
+[tolerances]
+crank = "0.2 mm"
+rod = "0.2 mm"
+[variables]
+crank = ["20 mm", "80 mm"]
+rod = ["100 mm", "300 mm"]
+offset = ["20 mm", "60 mm"]
+[constraints]
+transmission_angle = { min = "40 deg" }
+stroke = { min = "80 mm", max = "100 mm" }
+[objectives]
+time_ratio = "maximise"
+peak_torque = "minimise"
+[robust]
+samples = 10000
+[optimiser]
+method = "random"
+evaluations = 40000
+designs = 8
+"""
+"""A job whose Monte Carlo is worth the way to a cluster."""
 STAYS = ("slidercrank serve", "slidercrank worker", "dask ")
 
 
@@ -48,14 +77,14 @@ def commands(docs: Path, section: str = "") -> list[str]:
 class Terminal:
     """Runs commands of the documentation in a folder that has its job file, with the programs of this environment."""
 
-    def __init__(self, folder: Path, programs: Path | None = None) -> None:
+    def __init__(self, folder: Path, programs: Path | None = None, job: str = fronts.JOB) -> None:
         self.folder = folder
         places = [str(Path(sys.executable).parent), *([str(programs)] if programs else []), os.environ["PATH"]]
         self.environment = {**os.environ, "PATH": os.pathsep.join(places)}
         for name in ("SLIDERCRANK_RUNS", "SLIDERCRANK_STORE", "SLIDERCRANK_TOKEN"):
             self.environment.pop(name, None)
         (folder / "runs").mkdir()
-        (folder / "runs" / "feeder.toml").write_text(fronts.JOB)
+        (folder / "runs" / "feeder.toml").write_text(job)
 
     def run(self, line: str, code: int = 0) -> str:
         """Run a command to its end and return its output."""
@@ -149,11 +178,24 @@ def server() -> Iterator[tuple[str, Path]]:
         yield f"postgresql://tests@/jobs?host={started.folder}", programs
 
 
+def done_on_cluster(port: int) -> int:
+    """Return how many kinds of tasks of the engine a scheduler saw done."""
+    cloudpickle.register_pickle_by_value(sys.modules[__name__])  # type: ignore[no-untyped-call]
+    with Client(f"tcp://127.0.0.1:{port}", set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        return int(client.run_on_scheduler(finished))
+
+
+def finished(dask_scheduler: Any) -> int:
+    """Return how many kinds of tasks of the engine a scheduler has seen done; runs in its process."""
+    groups = dask_scheduler.task_prefixes.values()
+    return sum(sum(group.all_durations.values()) > 0 for group in groups if group.name.startswith("slidercrank"))
+
+
 def test_postgresql_with_two_workers_and_a_dask_cluster(
     docs: Path, server: tuple[str, Path], tmp_path: Path, free_port: int
 ) -> None:
     address, programs = server
-    terminal = Terminal(tmp_path, programs)
+    terminal = Terminal(tmp_path, programs, HEAVY)
     lines = commands(docs, "PostgreSQL and Dask")
     assert lines[:4] == [  # of the server's administrator; the tests have their own server and packages
         "sudo -u postgres createuser slidercrank --pwprompt",
@@ -174,6 +216,7 @@ def test_postgresql_with_two_workers_and_a_dask_cluster(
                 running.enter_context(terminal.stays(line))
             else:
                 assert "8 designs" in terminal.run(line)
+        assert done_on_cluster(free_port) > 0
     assert (tmp_path / "log.txt").read_text().count(" of 2 started as process ") == 2
     with Store(address) as store:
         assert store.workers() == []
