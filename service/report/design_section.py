@@ -83,7 +83,8 @@ def _rules(subject: Subject) -> list[Block]:
         active = isinstance(slack, float) and abs(slack) <= _MET * size
         state = "met, active" if active and held else "met" if held else "not met"
         title = column.title.removeprefix("slack of ")
-        rows.append((title, rounded(value), rounded(slack), unit_text(column.unit), state))
+        distance = "0" if active else rounded(slack)
+        rows.append((title, rounded(value), distance, unit_text(column.unit), state))
     verdict = "All rules are met." if met else "Not all rules are met: see below."
     return [
         Paragraph(verdict, "good" if met else "bad"),

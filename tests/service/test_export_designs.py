@@ -99,9 +99,15 @@ def test_a_report_is_written_as_html_and_as_pdf(
     assert all(repr(value) in page for value in front["designs"][2].values() if isinstance(value, float))
     assert "Trade-offs here, to first order: " in page
     assert "<script" not in page
-    done = command("report", "latest", "--runs", kept, "--knee", "--out", tmp_path / "knee.pdf")
-    assert done.exit_code == 0, done.stderr
-    assert (tmp_path / "knee.pdf").read_bytes().startswith(b"%PDF")
+    monkeypatch.setattr("slidercrank.service.report.pdf.pdf_file", lambda report: report.title.encode())
+    number = front["knee"] + 1
+    for arguments, name in (
+        (("--out", "knee.PDF"), "knee.PDF"),
+        (("--pdf",), file.name.replace("3.html", f"{number}.pdf")),
+    ):
+        done = command("report", "latest", "--runs", kept, "--knee", *arguments)
+        assert done.exit_code == 0, done.stderr
+        assert (tmp_path / name).read_bytes() == f"Short test [job]: design {number} of 8".encode()
 
 
 @pytest.mark.parametrize(

@@ -225,12 +225,14 @@ def test_nothing_on_a_page_of_the_pdf_is_cut_or_covers_something_else() -> None:
 
 
 def test_the_pdf_is_whole_and_the_same_report_gives_the_same() -> None:
-    content = pdf_file(report())
-    assert content == pdf_file(report())
+    parts = report().sections
+    short = replace(report(), sections=(*parts[:3], replace(parts[4], blocks=parts[4].blocks[:2]), *parts[-2:]))
+    content = pdf_file(short)
+    assert content == pdf_file(short)
     assert content.startswith(b"%PDF-1.4")
     assert content.rstrip().endswith(b"%%EOF")
     assert len(content) < 2_000_000
-    assert len(re.findall(rb"/Type /Page\b", content)) == len(printed())
+    assert len(re.findall(rb"/Type /Page\b", content)) == len(pages(short)) > 1
     starts = [match.end() for match in re.finditer(rb"stream\r?\n", content)]
     streams = [_unpacked(content[start:]) for start in starts]
     # Texts are texts, in brackets, with the distances between their letters; not outlines.

@@ -1,4 +1,4 @@
-"""The motion of a design as a file of its own, in a browser."""
+"""The motion and the report of a design as files of their own, in a browser."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
 from playwright.sync_api import Browser
 
 from slidercrank.model.linkage import Linkage
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.motion.player_page import player_page
+from slidercrank.service.report.design_report import design_report
+from slidercrank.service.report.document import Picture
+from slidercrank.service.report.html import html_file
+from slidercrank.service.report.subject import subject_of
+from slidercrank.service.runs.result import result_of
 from tests.service import fronts
 
 OFFSET, BELOW = Linkage(0.14, 0.31, 0.06), Linkage(0.14, 0.31, -0.06)
@@ -60,3 +66,31 @@ def test_the_page_stands_still_for_who_wants_no_motion(browser: Browser, tmp_pat
     page.wait_for_timeout(200)
     assert page.locator("#crank").get_attribute("transform") == before
     page.close()
+
+
+def test_the_files_are_accessible_and_as_wide_as_the_window(browser: Browser, tmp_path: Path) -> None:
+    found = fronts.front(fronts.FOUR[:2], designs=3)
+    report = design_report(subject_of(found.problem, result_of(found, "kept"), 1, run="kept", versions={}))
+    # Of the figures one will do: axe takes half a minute for all their lines.
+    pictures = [block for section in report.sections for block in section.blocks if isinstance(block, Picture)]
+    drawing = next(picture for picture in pictures if picture.title.startswith("The linkage"))
+    sections = [
+        replace(
+            part, blocks=tuple(block for block in part.blocks if block is drawing or not isinstance(block, Picture))
+        )
+        for part in report.sections
+    ]
+    files = {
+        "report": html_file(replace(report, sections=tuple(part for part in sections if part.blocks))),
+        "motion": player_page(fronts.MACHINE, BELOW, name="Sieve", number=3),
+    }
+    for name, content in files.items():
+        file = tmp_path / f"{name}.html"
+        file.write_bytes(content)
+        page = browser.new_page(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
+        page.goto(file.as_uri())
+        assert Axe().run(page).violations_count == 0, name
+        for width in (1440, 390):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth") == width, name
+        page.close()
