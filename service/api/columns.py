@@ -63,7 +63,7 @@ def list_columns(
     }
     if found.job.finished is not None and request.headers.get("if-none-match") == headers["ETag"]:
         return Response(status_code=304, headers=headers)
-    compressed = "gzip" in accept_encoding
+    compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
     content = _content(found, shown, compressed=compressed)
     if content.startswith(b"\x1f\x8b"):
         headers["Content-Encoding"] = "gzip"
