@@ -25,11 +25,13 @@ from .commands.cases import cases
 from .commands.certify import certify
 from .commands.compare import compare
 from .commands.doctor import doctor
+from .commands.export import export
 from .commands.job import check, schema
 from .commands.like import like
 from .commands.optimise import optimise
 from .commands.queue import cancel, delete, jobs, resume
-from .commands.runs import export, front
+from .commands.report import report
+from .commands.runs import front
 from .commands.screen import give, say
 from .commands.sections import sections
 from .commands.serve import serve
@@ -127,6 +129,7 @@ COMMANDS = (
     schema,
     front,
     export,
+    report,
     cases,
     serve,
     submit,

@@ -17,4 +17,6 @@ def job_record(job: Job) -> dict[str, Any]:
         "evaluations": job.limits.evaluations,
         "memory_bytes": job.limits.memory,
     }
+    if job.progress is not None:
+        record["progress"] = {**job.progress, "front": job.progress.get("front")}
     return record

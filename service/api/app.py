@@ -9,7 +9,23 @@ from starlette.middleware import Middleware
 
 from ..page import router as page
 from ..store import Store
-from . import analysis, designs, events, exports, figures, fronts, health, jobs, schema, what_if
+from . import (
+    analysis,
+    columns,
+    design_files,
+    designs,
+    events,
+    exports,
+    figures,
+    fronts,
+    health,
+    job_files,
+    jobs,
+    preview,
+    quantities,
+    schema,
+    what_if,
+)
 from .event_feed import Feed
 from .metrics import Metrics, Timed
 from .openapi import describe
@@ -21,6 +37,23 @@ from .stored_fronts import StoredFronts
 from .strict_input import StrictInput
 
 PREFIX = "/api/v1"
+_PARTS = (
+    jobs,
+    job_files,
+    preview,
+    events,
+    fronts,
+    designs,
+    columns,
+    analysis,
+    what_if,
+    design_files,
+    figures,
+    exports,
+    schema,
+    quantities,
+    health,
+)
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
 
 
@@ -46,7 +79,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in (jobs, events, fronts, designs, analysis, what_if, figures, exports, schema, health):
+    for part in _PARTS:
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
     describe(app)

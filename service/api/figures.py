@@ -17,12 +17,13 @@ from .turns import DRAWING
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
-def _drawn(settings: SettingsDep) -> None:
+def require_figures(settings: SettingsDep) -> None:
+    """Refuse where the service draws no figures."""
     if not settings.figures:
         raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
 
 
-router = APIRouter(tags=["figures"], dependencies=[Depends(_drawn)], responses=problem_responses(409))
+router = APIRouter(tags=["figures"], dependencies=[Depends(require_figures)], responses=problem_responses(409))
 
 Name = Annotated[
     str,

@@ -29,6 +29,15 @@ class JobLimits(Shown):
     memory_bytes: int | None = Field(description="of its worker")
 
 
+class FrontSoFar(Shown):
+    """Some designs of the front that a search has by now, objectives only."""
+
+    columns: list[str] = Field(description="of the objectives, as the designs will have them")
+    points: list[list[float | None]] = Field(
+        description="at most 64 designs: values by column; of an objective with a target its distance from that"
+    )
+
+
 class JobProgress(Shown):
     """Where a search stands."""
 
@@ -39,6 +48,7 @@ class JobProgress(Shown):
     feasible: int = Field(description="designs that meet every constraint")
     hypervolume: float | None = Field(description="of the front so far; not comparable between jobs")
     seconds: float | None
+    front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
 
 
 class JobSummary(Shown):

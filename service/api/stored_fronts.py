@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
 _MOST_IMAGES = 24  # of a front, 100 kB each
+_MOST_ANSWERS = 8_000_000  # bytes of a front's answers that are kept, and one if it is longer
 
 DesignNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
@@ -41,6 +42,8 @@ class StoredFront:
         self.job = job
         self.result = result
         self._images: OrderedDict[tuple[str, str], bytes] = OrderedDict()
+        self._answers: OrderedDict[tuple[str, str], bytes] = OrderedDict()
+        self._answering = threading.Lock()
         self._read = problem
 
     @cached_property
@@ -77,6 +80,18 @@ class StoredFront:
             self._images[name, kind] = content
         while len(self._images) > _MOST_IMAGES:
             self._images.popitem(last=False)
+
+    def answer(self, name: str, kind: str) -> bytes | None:
+        """Return an answer of many designs that was made lately."""
+        with self._answering:
+            return self._answers.get((name, kind))
+
+    def keep_answer(self, name: str, kind: str, content: bytes) -> None:
+        """Take in an answer that was made, under its name."""
+        with self._answering:
+            self._answers[name, kind] = content
+            while len(self._answers) > 1 and sum(map(len, self._answers.values())) > _MOST_ANSWERS:
+                self._answers.popitem(last=False)
 
     def row(self, number: int) -> Row:
         """Return a design by its number, counted from 1. Raises `NotFound`."""

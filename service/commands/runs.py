@@ -1,16 +1,14 @@
-"""`slidercrank front` and `slidercrank export`: runs that are on the disk."""
+"""`slidercrank front`: runs that are on the disk."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...model.errors import InputError
 from ..runs.finding_runs import find_run
-from ..runs.result import Result, csv_text, json_text
-from ..runs.run_folder import runs_place, write_file
+from ..runs.result import Result, json_text
+from ..runs.run_folder import runs_place
 from ..runs.stored_runs import read_run
 from .optimise import NOTHING_FEASIBLE, Json, Runs, show_result
 from .screen import console, give, say
@@ -109,30 +107,6 @@ def front(
     if not chosen:
         say(f"slidercrank: {none_meets(result, where or [])}")
         raise typer.Exit(NOTHING_FEASIBLE)
-
-
-def export(
-    run: Run,
-    csv: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the designs as CSV; - is standard output.")
-    ] = None,
-    json: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is standard output.")
-    ] = None,
-    runs: Runs = None,
-) -> None:
-    """Write the designs of a run to a file."""
-    if csv is None and json is None:
-        raise InputError("say what to export: --csv FILE, --json FILE, or both")
-    if csv == json == "-":
-        raise InputError("only one of --csv and --json can go to standard output; name a file for the other")
-    result = read_run(find_run(run, runs_place(runs)))
-    for target, text in ((csv, csv_text(result.designs)), (json, json_text(result.record()))):
-        if target == "-":
-            give(text)
-        elif target is not None:
-            write_file(Path(target), text)
-            say(f"{target}: {len(result.designs)} designs")
 
 
 def _count(chosen: list[int], result: Result) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -66,10 +66,15 @@ class Claim:
         with self._lock:
             self._kept.append(record)
 
-    def tell(self, progress: Progress) -> None:
-        """Write where the search stands, together with the records kept since."""
+    def tell(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
+        """Write where the search stands, together with the records kept since.
+
+        front: some designs of the front so far, as JSON has them. Only the latest is kept, with the job: events that
+        each carried one would make a store of many runs grow.
+        """
         data = finite(asdict(progress))
-        self._write({"progress": text_of(data)}, [("progress", data)])
+        standing = data if front is None else {**data, "front": finite(front)}
+        self._write({"progress": text_of(standing)}, [("progress", data)])
 
     def renew(self) -> None:
         """Renew the lease and look whether the job is to be cancelled; writes nothing else."""

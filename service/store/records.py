@@ -54,7 +54,8 @@ class Job:
     its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
     state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
     worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
-    progress: fields of the latest `Progress`, or None. summary: what it found, see `packing.summary_of`, or None.
+    progress: fields of the latest `Progress`, or None; `front` beside them where the search gave one, see `Claim.tell`.
+    summary: what it found, see `packing.summary_of`, or None.
     """
 
     id: int

@@ -11,6 +11,7 @@ import { chooseSystem, system } from "./lib/numbers.js";
 const VIEWS = [
   { match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
   { match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },
+  { match: (parts) => parts[0] === "compare" && parts.length === 1, load: () => import("./views/compare.js") },
   { match: (parts) => parts[0] === "jobs" && parts.length === 2, load: () => import("./views/run.js") },
   { match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, load: () => import("./views/design.js") },
   { match: (parts) => parts[0] === "help" && parts.length <= 2, load: () => import("./views/help.js") },

@@ -31,7 +31,7 @@ def test_every_command_of_the_page_does_what_it_says(store: Store, tmp_path: Pat
     worker = threading.Thread(target=work, args=(store,), kwargs={"stop": stop.is_set})
     with serving(create_app(store, Settings(token=TOKEN))) as address:
         worker.start()
-        script = commands.replace("http://127.0.0.1:8765", address).replace("feeder.csv", str(tmp_path / "feeder.csv"))
+        script = commands.replace("http://127.0.0.1:8765", address).replace("--output ", f"--output {tmp_path}/")
         assert script != commands
         environment = os.environ | {"SLIDERCRANK_TOKEN": TOKEN, "no_proxy": "127.0.0.1"}
         done = subprocess.run(
@@ -44,3 +44,5 @@ def test_every_command_of_the_page_does_what_it_says(store: Store, tmp_path: Pat
     assert store.job(3).name == "Heavier feeder"
     assert (tmp_path / "feeder.csv").read_text().startswith("crank_mm,")
     assert '"state":"done"' in done.stdout
+    for name in ("linkage.dxf", "linkage.svg", "motion.html", "motion.gif", "report.html", "report.pdf"):
+        assert (tmp_path / name).stat().st_size > 5_000, name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -269,3 +270,15 @@ def test_files_keep_their_bytes_and_type(client: httpx.Client, store: Store) -> 
     response = client.get("/jobs/1/files/figure.png")
     assert (response.content, response.headers["content-type"]) == (content, "image/png")
     refused(client.get("/jobs/1/files/nothing.png"), 404)
+
+
+def test_a_running_job_shows_its_front_so_far_and_its_events_do_not(store: Store, client: httpx.Client) -> None:
+    add(store)
+    front = {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, math.inf]]}
+    taken(store).tell(progress(1), front)
+    found = client.get("/jobs/1").json()["progress"]
+    assert found["front"] == {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, None]]}
+    events = client.get("/jobs/1/events").json()["events"]
+    assert [event["data"] for event in events if event["kind"] == "progress"] == [
+        {key: value for key, value in found.items() if key != "front"}
+    ]

@@ -1,7 +1,99 @@
+/** Help: how it works, and every quantity with a sentence, a picture, its formula and where it comes from. */
+
+import { picture } from "../help/picture.js";
+import { keep } from "../lib/address.js";
+import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { unitOf } from "../lib/numbers.js";
 
 export const title = "Help";
 
-export async function show(place) {
-  fill(place, h("h1", {}, title));
+const STEPS = [
+  ["Ask", "Say what the machine must do: speed, stroke, loads, what the dimensions may be, and what is wanted. Begin with a shipped job if one is near.", "#/new", "New run"],
+  ["Watch", "The search runs on its own. The front of best compromises grows while you look; it can be cancelled and goes on later.", "#/", "Runs"],
+  ["Explore", "Narrow the front down to what you can accept, and look at single designs: how they move, what they need, what you would give up for more.", null, null],
+  ["Decide", "Take the design along: a drawing for CAD, its numbers, the motion, a report for the review.", null, null],
+];
+const DOCUMENTS = [
+  ["docs/jobs.md", "job files beyond the basics: friction, motors, choices, wanted motions, robust designs"],
+  ["docs/theory.md", "every equation, derived, with its source"],
+  ["docs/optimisers.md", "how the search works, and when another method helps"],
+  ["docs/own-quantities.md", "quantities of your own as Python functions"],
+  ["docs/service.md", "running the service"],
+  ["docs/api.md", "the API that this page uses"],
+];
+
+/** Show one quantity, or all with a field to search. */
+export async function show(place, { parts, query, signal }) {
+  const { quantities } = await get("quantities", {}, signal);
+  const name = parts[1];
+  if (!name) return overview(place, quantities, query.get("search") ?? "");
+  const found = quantities.find((one) => one.name === name || one.column === name);
+  if (!found) throw new Error(`No quantity is called "${name}"; the help lists them all.`);
+  document.title = `${found.title} · slidercrank`;
+  one(place, found, quantities);
+}
+
+function overview(place, quantities, sought) {
+  const list = h("ul", { class: "quantities" });
+  const none = h("p", { class: "quiet", role: "status" });
+  const search = h("input", { type: "search", id: "help-search", value: sought, autocomplete: "off", placeholder: "torque, error, stroke …" });
+  const draw = () => {
+    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    const found = quantities.filter((quantity) => {
+      const all = [quantity.title, quantity.name, quantity.column, quantity.sentence, quantity.advice].join(" ").toLowerCase();
+      return words.every((word) => all.includes(word));
+    });
+    fill(list, found.map(card));
+    none.textContent = found.length ? `${found.length} of ${quantities.length} quantities` : "No quantity has these words.";
+  };
+  search.addEventListener("input", () => {
+    draw();
+    keep({ search: search.value });
+  });
+  fill(
+    place,
+    h(
+      "div",
+      { class: "help" },
+      h("h1", {}, title),
+      h("section", { "aria-labelledby": "how" }, h("h2", { id: "how" }, "How it works"), h("ol", { class: "steps" }, STEPS.map(([verb, sentence, href, link]) => h("li", { class: "panel" }, h("h3", {}, verb), h("p", {}, sentence), href ? h("p", {}, h("a", { href }, link)) : null)))),
+      h("section", { "aria-labelledby": "all" }, h("h2", { id: "all" }, "Quantities"), h("p", { class: "row" }, h("label", { for: "help-search" }, "Search"), search, none), list),
+      h("section", { "aria-labelledby": "more" }, h("h2", { id: "more" }, "The documentation"), h("p", {}, "These files come with the software:"), h("ul", {}, DOCUMENTS.map(([file, what]) => h("li", {}, h("code", {}, file), ` – ${what}`)))),
+    ),
+  );
+  draw();
+}
+
+function card(quantity) {
+  return h("li", { class: "panel" }, picture(quantity.picture, quantity.title), h("div", {}, h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)), h("p", {}, quantity.sentence)));
+}
+
+function one(place, quantity, quantities) {
+  const unit = unitOf(quantity.unit);
+  const row = (term, text) => [h("dt", {}, term), h("dd", {}, text)];
+  const alike = quantities.filter((other) => other.picture === quantity.picture && other.name !== quantity.name);
+  fill(
+    place,
+    h(
+      "article",
+      { class: "help one" },
+      h("p", {}, h("a", { href: "#/help" }, "All quantities")),
+      h("h1", {}, quantity.title),
+      h("div", { class: "panel figure" }, picture(quantity.picture, quantity.title)),
+      h("p", { class: "lead" }, quantity.sentence),
+      quantity.advice ? h("p", {}, quantity.advice) : null,
+      h(
+        "dl",
+        { class: "terms" },
+        row("formula", h("code", {}, quantity.formula)),
+        row("unit", unit || "none, a ratio"),
+        row("in job files", h("code", {}, quantity.name)),
+        row("in tables and JSON", h("code", {}, quantity.column)),
+        row("derived in", [h("code", {}, "docs/theory.md"), `, section ${quantity.section}`]),
+        row("source", quantity.source),
+      ),
+      alike.length ? h("p", {}, "See also ", alike.map((other, place) => [place ? ", " : "", h("a", { href: `#/help/${other.name}` }, other.title)]), ".") : null,
+    ),
+  );
 }

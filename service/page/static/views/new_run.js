@@ -1,7 +1,201 @@
+/** A new run: the form of a job, checked while it is typed, with a sketch of what it allows. */
+
+import { checker } from "../form/check.js";
+import { keepDraft, kept, newKey } from "../form/draft.js";
+import { showFacts } from "../form/facts.js";
+import { showWrong } from "../form/field.js";
+import { jobFile, presets } from "../form/job_file.js";
+import { at, put } from "../form/path.js";
+import { reader } from "../form/schema.js";
+import { sections } from "../form/sections.js";
+import { sketch } from "../form/sketch.js";
+import { firstJob } from "../form/start.js";
+import { go, keep } from "../lib/address.js";
+import { get, post } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { system } from "../lib/numbers.js";
 
 export const title = "New run";
 
-export async function show(place) {
-  fill(place, h("h1", {}, title));
+/** Show the form: what was typed before, a preset, or a copy of a job. */
+export async function show(place, { query, signal }) {
+  const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal)]);
+  const draft = await first(query, shipped, signal);
+  if (signal.aborted) return;
+  const before = kept();
+  build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, shipped, signal });
+}
+
+/** Return the draft that the address asks for: what was typed in it before comes first. */
+async function first(query, shipped, signal) {
+  const [preset, from] = [query.get("preset"), query.get("from")];
+  const source = preset ? `preset ${preset}` : from ? `job ${from}` : null;
+  const before = kept();
+  if (before && (source === null || before.source === source)) return before;
+  if (from) return begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), source);
+  if (!preset) return begin(firstJob(system()), "");
+  const found = shipped.find(({ name }) => name === preset);
+  if (!found) throw new Error(`No shipped job is called "${preset}".`);
+  return begin(found.job, source);
+}
+
+function begin(job, source) {
+  return { job: structuredClone(job), submission: {}, source, key: newKey() };
+}
+
+/** Return what the address says of where a draft began. */
+function addressOf(source) {
+  const [kind, name] = source.split(" ");
+  return kind === "preset" ? { preset: name } : kind === "job" ? { from: name } : {};
+}
+
+function build(place, { draft, before, schema, quantities, shipped, signal }) {
+  let checked = null; // what the service said of the job as it is; null while it has not
+  let undone = before; // what was typed elsewhere, when the address asks for something else
+  const drawn = sketch(signal);
+  const facts = h("div", {});
+  const status = h("p", { role: "status", class: "status" });
+  const general = h("ul", { class: "error", hidden: true });
+  const refusal = h("p", { class: "error", role: "alert", hidden: true });
+  const start = h("button", { type: "submit", class: "primary" }, "Start the search");
+  const undo = h("button", { type: "button", hidden: undone === null, onclick: () => undone && take(undone) }, "Bring back what was there");
+  const body = h("div", { class: "sections" });
+
+  const form = {
+    ...{ schema, fields: [], quantities: new Map(quantities.map((one) => [one.name, one])), submission: draft.submission },
+    job: draft.job,
+    at: (path) => at(form.job, path),
+    put: (path, value) => {
+      put(form.job, path, value);
+      changed();
+    },
+    submit: (key, value) => {
+      if (value === undefined) delete form.submission[key];
+      else form.submission[key] = value;
+      changed({ check: false });
+    },
+    register: (one) => form.fields.push(one),
+    quantity: (name) => form.quantities.get(name),
+    judging: () => quantities.filter(({ name }) => schema.property(["objectives", name])),
+    why: (name) => ({ sentence: form.quantities.get(name).sentence, name }),
+    redraw,
+  };
+  const file = jobFile(form, (job, source) => take({ ...begin(job, source === null ? draft.source : `file ${source}`), submission: form.submission }, { text: source === null }));
+  const check = checker(({ answer, problem }) => {
+    checked = answer ?? null;
+    if (problem) say(problem.message);
+    else tell(answer);
+  }, signal);
+
+  function changed({ check: again = true } = {}) {
+    draft.key = newKey();
+    keepDraft(draft);
+    file.refresh();
+    refusal.hidden = true;
+    if (!again) return;
+    checked = null;
+    check(form.job);
+  }
+  function redraw(focus = document.activeElement?.id) {
+    const folds = [...body.querySelectorAll("details[open] > summary")].map((one) => one.textContent);
+    fill(body, sections(form));
+    for (const fold of body.querySelectorAll("details")) fold.open = folds.includes(fold.firstChild.textContent);
+    if (focus) document.getElementById(focus)?.focus();
+    if (checked) mark(checked.wrong);
+  }
+  /** Put another draft in place of this one, which can be brought back. */
+  function take(other, { text = false } = {}) {
+    if (!text) undone = structuredClone({ ...draft });
+    Object.assign(draft, structuredClone(other), { key: newKey() });
+    form.job = draft.job;
+    form.submission = draft.submission;
+    undo.hidden = undone === null;
+    keepDraft(draft);
+    keep(addressOf(draft.source));
+    redraw();
+    file.refresh();
+    checked = null;
+    check(form.job, { now: true });
+  }
+  function mark(wrong) {
+    const { elsewhere, first: worst } = showWrong(form.fields, wrong);
+    fill(general, elsewhere.map((sentence) => h("li", {}, sentence)));
+    general.hidden = !elsewhere.length;
+    return worst;
+  }
+  function say(sentence) {
+    status.textContent = sentence;
+  }
+  function tell(answer) {
+    mark(answer.wrong);
+    const count = answer.wrong.length;
+    status.classList.toggle("good", count === 0);
+    if (!answer.checked) say("This job has very many values; starting it checks them.");
+    else say(count === 0 ? "Ready to start." : count === 1 ? "One thing to correct." : `${count} things to correct.`);
+    showFacts(facts, answer);
+    drawn.show(answer.example);
+  }
+
+  async function submit(event) {
+    event.preventDefault();
+    refusal.hidden = true;
+    if (checked?.wrong.length) {
+      const worst = mark(checked.wrong);
+      worst?.controls[0].focus();
+      refuse("Correct what is marked first.");
+      return;
+    }
+    start.disabled = true;
+    keepDraft(draft); // with its key: should the answer be lost, the same is sent again
+    const { priority, ...limits } = form.submission;
+    try {
+      const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits }, { headers: { "Idempotency-Key": draft.key } });
+      keepDraft(null);
+      go(["jobs", String(job.id)]);
+    } catch (error) {
+      start.disabled = false;
+      const lines = error.message.split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
+      const wrong = lines.map((line) => /^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, ""))).filter(Boolean);
+      if (error.status === 422) showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })));
+      refuse(error.message);
+    }
+  }
+  function refuse(sentence) {
+    refusal.textContent = sentence;
+    refusal.hidden = false;
+  }
+
+  const from = h("select", { id: "preset" }, h("option", { value: "" }, "choose …"), shipped.map(({ name, title: text }) => h("option", { value: name }, text)));
+  from.addEventListener("change", () => {
+    const chosen = shipped.find(({ name }) => name === from.value);
+    if (!chosen) return;
+    take(begin(chosen.job, `preset ${chosen.name}`));
+    from.value = "";
+  });
+  const over = h("button", { type: "button" }, "Start over");
+  over.addEventListener("click", () => {
+    take(begin(firstJob(system()), ""));
+    keepDraft(null);
+  });
+
+  const whole = h(
+    "form",
+    { class: "new-run", novalidate: true, autocomplete: "off", onsubmit: submit },
+    h("div", { class: "head" }, h("h1", {}, title), h("div", { class: "row" }, h("label", { for: "preset" }, "Begin with a shipped job"), from, over, undo)),
+    h("div", { class: "both" }, h("div", {}, body, file.node), h("aside", { class: "beside panel", "aria-label": "What this allows" }, h("h2", {}, "What this allows"), drawn.node, facts, general, status, start, refusal)),
+  );
+  whole.addEventListener("dragover", (event) => event.preventDefault());
+  whole.addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files[0]) file.load(event.dataTransfer.files[0]);
+  });
+  fill(place, whole);
+  redraw(null);
+  file.refresh();
+  say("Checking …");
+  check(form.job, { now: true });
+  window.addEventListener("units", () => showFactsAgain(), { signal });
+  function showFactsAgain() {
+    if (checked) showFacts(facts, checked);
+  }
 }

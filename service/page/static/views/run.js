@@ -1,7 +1,82 @@
+import { actions } from "../jobs/actions.js";
+import { downloads } from "../jobs/downloads.js";
+import { outcome } from "../jobs/outcome.js";
+import { badge, ENDED } from "../jobs/states.js";
+import { ago, duration } from "../jobs/times.js";
+import { get, Problem } from "../lib/api.js";
+import { go, read } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 
 export const title = "Run";
 
-export async function show(place) {
-  fill(place, h("h1", {}, title));
+const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
+
+/** A run: while it goes on its progress, afterwards the explorer of its front. */
+export async function show(place, { parts, signal }) {
+  const number = Number(parts[1]);
+  if (!Number.isInteger(number) || number < 1) throw new Problem(404, "A run has a number; choose one of the list.");
+  const head = h("header", { class: "run-head" });
+  const body = h("div", { class: "run-body" });
+  let inner = null; // ends what the body shows
+  const explorer = import("../front/explorer.js"); // comes while the job is asked for
+
+  /** Show a job as it stands; null: somebody deleted it. */
+  async function stand(job) {
+    if (signal.aborted) return;
+    if (job === null) {
+      inner?.abort();
+      fill(place, h("h1", {}, `Run ${number} is not there any more`), h("p", {}, "It was deleted, here or elsewhere."), h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")));
+      return;
+    }
+    document.title = `${job.name} · slidercrank`;
+    const held = head.contains(document.activeElement);
+    drawHead(job);
+    if (held) head.querySelector("button, a")?.focus();
+    const live = !ENDED.includes(job.state);
+    if (live && inner?.live) return;
+    inner?.abort();
+    const own = new AbortController();
+    inner = Object.assign(own, { live });
+    signal.addEventListener("abort", () => own.abort(), { signal: own.signal });
+    if (live) {
+      const { watch } = await import("../jobs/live.js");
+      if (!own.signal.aborted) watch(body, job, { signal: own.signal, changed: stand });
+    } else await ended(job, own.signal);
+  }
+
+  function drawHead(job) {
+    const { summary } = job;
+    const facts = [`run ${job.id}`, summary && `${summary.designs.toLocaleString("en")} designs`, summary && `${summary.evaluations.toLocaleString("en")} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
+    fill(head,
+      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", ago(job.finished ?? job.started ?? job.submitted))),
+      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now))), downloads(job, { designs: Boolean(summary?.designs), signal })));
+  }
+
+  function gone() {
+    go([]);
+  }
+
+  async function ended(job, own) {
+    const said = outcome(job);
+    const place = h("div", { class: "explorer" });
+    fill(body, said, place);
+    if (!job.summary?.designs) {
+      place.remove();
+      return;
+    }
+    const standard = [...SIZES, ...Object.keys(job.summary.best)].join(","); // what the explorer shows unless told otherwise
+    const asked = [get(`jobs/${job.id}/front`, {}, own), get(`jobs/${job.id}/columns`, { columns: standard }, own), explorer];
+    try {
+      const [front, { values }, { explore }] = await Promise.all(asked);
+      await explore(place, { job, front, values, query: read().query, signal: own });
+    } catch (problem) {
+      if (problem.name === "AbortError") return;
+      if (problem.status === 404) await stand(null);
+      else throw problem;
+    }
+  }
+
+  const job = await get(`jobs/${number}`, {}, signal);
+  fill(place, head, body);
+  await stand(job);
 }

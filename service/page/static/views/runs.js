@@ -1,7 +1,120 @@
+import { get } from "../lib/api.js";
+import { keep, link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
+import { STATES, stateWord } from "../jobs/states.js";
+import { runRow } from "../jobs/row.js";
 
 export const title = "Runs";
 
-export async function show(place) {
-  fill(place, h("h1", {}, title));
+const EACH = 2000; // ms between two looks while the page is seen
+const PAGE = 25;
+
+/** The list of runs, kept up to date while it is looked at. */
+export async function show(place, { query, signal }) {
+  const asked = { state: query.get("state") ?? "", name: query.get("name") ?? "", before: query.get("before") ?? "" };
+  const compared = new Set((query.get("jobs") ?? "").split(",").filter(Boolean).map(Number));
+  const rows = new Map(); // number: {text, node}
+  const list = h("ul", { class: "runs" });
+  const said = h("p", { class: "quiet", role: "status" });
+  const pages = h("nav", { class: "row", "aria-label": "Pages" });
+  const comparing = h("div", { class: "row" });
+  let shown = [];
+  let timer = null;
+
+  const changed = (...keys) => {
+    for (const key of keys) delete asked[key];
+    keep({ ...asked, jobs: [...compared].join(",") });
+  };
+  const search = h("form", { class: "row search", role: "search", onsubmit: (event) => event.preventDefault() },
+    h("label", {}, "Name ", h("input", { type: "search", name: "name", value: asked.name, maxlength: 200, oninput: (event) => choose("name", event.target.value) })),
+    h("label", {}, "State ", h("select", { name: "state", onchange: (event) => choose("state", event.target.value) },
+      h("option", { value: "" }, "all"), STATES.map((state) => h("option", { value: state, selected: state === asked.state }, stateWord(state))))),
+    comparing);
+  const choose = (key, value) => {
+    asked[key] = value;
+    asked.before = "";
+    changed();
+    clearTimeout(timer);
+    timer = setTimeout(look, key === "name" ? 200 : 0);
+  };
+  const turn = (before) => {
+    asked.before = before;
+    changed();
+    look().then(() => place.querySelector("h1").scrollIntoView());
+  };
+  const compare = (number, yes) => {
+    if (yes) compared.add(number);
+    else compared.delete(number);
+    changed();
+    showComparing();
+  };
+  const showComparing = () => {
+    const numbers = [...compared].sort((a, b) => a - b);
+    fill(comparing, numbers.length > 1 && h("a", { class: "button primary", href: link(["compare"], { jobs: numbers.join(",") }) }, `Compare ${numbers.length} runs`),
+      numbers.length === 1 && h("span", { class: "quiet" }, "Tick another run to compare"));
+  };
+
+  /** Look once, and again after a while. */
+  async function look() {
+    clearTimeout(timer);
+    const before = asked.before || null;
+    try {
+      const page = await get("jobs", { limit: PAGE, state: asked.state || null, name: asked.name || null, before }, signal);
+      if (before !== (asked.before || null)) return;
+      shown = page.jobs;
+      draw(page);
+    } catch (problem) {
+      if (problem.name === "AbortError") return;
+      said.textContent = problem.message;
+    }
+    if (!signal.aborted) timer = setTimeout(() => (document.hidden ? null : look()), EACH);
+  }
+
+  function draw(page) {
+    const wanted = page.jobs.map((job) => {
+      const text = `${JSON.stringify(job)}${Math.floor(Date.now() / 60_000)}`;
+      const known = rows.get(job.id);
+      if (known?.text === text) return known.node;
+      const held = known?.node.contains(document.activeElement) ? document.activeElement.dataset.act : null;
+      const node = runRow(job, { chosen: compared.has(job.id), compare, changed: look });
+      rows.set(job.id, { text, node, held });
+      return node;
+    });
+    const same = wanted.length === list.children.length && wanted.every((node, index) => list.children[index] === node);
+    if (!same) {
+      const held = page.jobs.map(({ id }) => rows.get(id)).find((row) => row.held);
+      fill(list, wanted);
+      if (held) (held.node.querySelector(`[data-act="${held.held}"]`) ?? held.node.querySelector("a")).focus();
+      for (const row of rows.values()) row.held = null;
+    }
+    for (const number of rows.keys()) if (!page.jobs.some(({ id }) => id === number)) rows.delete(number);
+    const some = asked.name || asked.state || asked.before;
+    const empty = !page.jobs.length && !some;
+    place.classList.toggle("empty", empty);
+    search.hidden = empty;
+    welcome.hidden = !empty;
+    said.textContent = page.jobs.length || empty ? "" : asked.before ? "There are no older runs." : "No run is like this; change the name or the state.";
+    fill(pages,
+      asked.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
+      page.next !== null && h("button", { type: "button", onclick: () => turn(page.next) }, "Older"));
+  }
+
+  const welcome = h("section", { class: "panel welcome", hidden: true },
+    h("h2", {}, "No runs yet"),
+    h("p", {}, "Describe what the mechanism must do and what may vary; the search then finds the designs that are worth having."),
+    h("p", {}, h("a", { class: "button primary", href: "#/new" }, "New run")));
+  await new Promise((ready) => {
+    fill(place, h("div", { class: "row spread" }, h("h1", {}, title), h("a", { class: "button primary", href: "#/new" }, "New run")), search, welcome, list, said, pages);
+    showComparing();
+    look().then(ready);
+  });
+  const seen = () => document.hidden || look();
+  const again = () => {
+    rows.clear();
+    draw({ jobs: shown, next: null });
+    look();
+  };
+  document.addEventListener("visibilitychange", seen, { signal });
+  window.addEventListener("units", again, { signal });
+  signal.addEventListener("abort", () => clearTimeout(timer));
 }

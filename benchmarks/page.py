@@ -1,0 +1,114 @@
+"""How quick the page is with a front of 10,000 designs, and how heavy: `python -m benchmarks.page`.
+
+First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that
+has read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows
+it in lines, scatter and table.
+"""
+
+from __future__ import annotations
+
+import gzip
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from slidercrank.service.store import Store
+from tests.service.api.fixed_front import served
+from tests.service.page.large_front import put_large
+
+from .report import Row, machine, show
+
+DESIGNS = 10_000
+MOST_FIRST = 1000.0  # ms
+MOST_BRUSH = 50.0  # ms
+MOST_WEIGHT = 150.0  # kB
+REPEATS = 5
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+_STATIC = Path(__file__).parents[1] / "service" / "page" / "static"
+
+# Moves the pointer along an axis and back, a tenth of it at a time; a step ends after the frame that it caused.
+_BRUSH = """async (steps) => {
+  const canvas = [...document.querySelectorAll(".lines canvas")].at(-1);
+  const box = canvas.getBoundingClientRect();
+  const x = box.left + box.width * 1.5 / 7;
+  const send = (kind, clientY) =>
+    canvas.dispatchEvent(new PointerEvent(kind, {clientX: x, clientY, button: 0, pointerId: 1, bubbles: true}));
+  canvas.setPointerCapture = () => {};
+  const painted = () => new Promise((done) => requestAnimationFrame(() => {
+    const channel = new MessageChannel();
+    channel.port1.onmessage = done;
+    channel.port2.postMessage(0);
+  }));
+  const times = [];
+  send("pointerdown", box.top + 20);
+  for (let step = 1; step <= steps; step += 1) {
+    await new Promise((done) => setTimeout(done, 30));
+    const begin = performance.now();
+    send("pointermove", box.top + 20 + (box.height - 40) * (1 - Math.abs(2 * step / steps - 1)));
+    await painted();
+    times.push(performance.now() - begin);
+  }
+  send("pointerup", box.top + 20);
+  return times;
+}"""
+# Since the page was asked for, ms, once the explorer was painted.
+_FIRST = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  while (document.querySelectorAll("table.designs tbody tr").length < 2) await frame();
+  await frame();
+  return performance.now();
+}"""
+
+
+def measure() -> list[Row]:
+    """Return first views and brushes, ms, and the weight of the page, kB."""
+    found = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if found is None:
+        raise SystemExit(f"no browser; install one of {', '.join(_BROWSERS)}")
+    with tempfile.TemporaryDirectory() as place, Store(Path(place) / "store.db") as store, sync_playwright() as driver:
+        number = put_large(store, DESIGNS)
+        browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox", "--disable-dev-shm-usage"])
+        cold, warm, brushes = [], [], []
+        for _ in range(REPEATS):
+            with served(store) as address:
+                view = f"{address}/#/jobs/{number}"
+                cold.append(_first_view(browser, view)[0])
+                taken, page = _first_view(browser, view)
+                warm.append(taken)
+                brushes += page.evaluate(_BRUSH, 20)
+                page.context.close()
+        browser.close()
+    return [
+        Row(f"first view of {DESIGNS} designs, service just started, ms", cold, at_most=MOST_FIRST, worst=True),
+        Row(f"first view of {DESIGNS} designs, ms", warm, at_most=MOST_FIRST, worst=True),
+        Row("a brush, median, ms", brushes, at_most=MOST_BRUSH),
+        Row("a brush, worst, ms", brushes, at_most=MOST_BRUSH, worst=True),
+        Row("page without data, compressed, kB", [weight()], at_most=MOST_WEIGHT),
+    ]
+
+
+def _first_view(browser: Browser, view: str) -> tuple[float, Page]:
+    page = browser.new_context(viewport={"width": 1440, "height": 1000}).new_page()
+    page.goto("about:blank")
+    page.goto(view, wait_until="commit")
+    taken: float = page.evaluate(_FIRST)
+    return taken, page
+
+
+def weight() -> float:
+    """Return what all files of the page weigh, each compressed by itself as a server would send it, kB."""
+    files = [path for path in _STATIC.rglob("*") if path.is_file()]
+    return sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) / 1000.0
+
+
+def main() -> None:
+    """Measure and print the figures."""
+    print(machine())
+    show(f"The page with a front of {DESIGNS} designs, headless Chromium, {REPEATS} starts", measure())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,149 @@
+"""Single designs as files: the linkage for CAD, its motion, and the report for a review."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Response
+
+from ..drawings.dxf import dxf_file
+from ..drawings.linkage_drawing import linkage_drawing
+from ..drawings.shapes import Drawing
+from ..drawings.svg import svg_file
+from ..runs.run_folder import slug
+from .figures import require_figures
+from .problems import problem_responses
+from .state import StoreDep
+from .stored_fronts import DesignNumber, FrontDep, StoredFront
+from .turns import DRAWING
+
+if TYPE_CHECKING:
+    from ..report.document import Report
+    from ..store import Store
+
+router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
+
+_SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
+"""Opened by itself a file is a document of this origin: it runs nothing and fetches nothing."""
+_PLAYING = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; sandbox allow-scripts"
+"""The motion runs its own script, but as a document of no origin."""
+
+CrankAngle = Annotated[
+    float,
+    Query(ge=-360.0, le=360.0, allow_inf_nan=False, description="where the linkage is drawn", examples=[60.0]),
+]
+
+
+def _kind(media_type: str) -> dict[str, Any]:
+    return {"response_class": Response, "responses": {200: {"content": {media_type: {}}}}}
+
+
+def _file(
+    found: StoredFront,
+    design: int,
+    ending: str,
+    media_type: str,
+    content: bytes,
+    *,
+    policy: str = _SEALED,
+    label: str = "",
+) -> Response:
+    name = f"{slug(found.result.name)}-{found.job.id}-design-{design}{label}.{ending}"
+    headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Security-Policy": policy}
+    return Response(content, media_type=media_type, headers=headers)
+
+
+def _drawing(found: StoredFront, design: int, crank_angle_deg: float) -> Drawing:
+    of = found.design(design)
+    angle = math.radians(crank_angle_deg)
+    return linkage_drawing(of.mechanism, of.linkage, name=found.result.name, number=design, crank_angle=angle)
+
+
+@router.get("/linkage.dxf", **_kind("image/vnd.dxf"))
+def draw_dxf(found: FrontDep, design: DesignNumber, crank_angle_deg: CrankAngle = 60.0) -> Response:
+    """Give the linkage of a design at true scale for CAD, in millimetres: see docs/drawings.md for its layers."""
+    return _file(found, design, "dxf", "image/vnd.dxf", dxf_file(_drawing(found, design, crank_angle_deg)))
+
+
+@router.get("/linkage.svg", **_kind("image/svg+xml"))
+def draw_linkage(found: FrontDep, design: DesignNumber, crank_angle_deg: CrankAngle = 60.0) -> Response:
+    """Give the same drawing as SVG."""
+    return _file(found, design, "svg", "image/svg+xml", svg_file(_drawing(found, design, crank_angle_deg)))
+
+
+@router.get("/motion.html", **_kind("text/html"))
+def show_motion(found: FrontDep, design: DesignNumber) -> Response:
+    """Give the moving linkage as one HTML file with its own script, which fetches nothing."""
+    from ..motion.player_page import player_page
+
+    of = found.design(design)
+    content = player_page(of.mechanism, of.linkage, name=found.result.name, number=design)
+    return _file(found, design, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
+
+
+@router.get("/motion.gif", dependencies=[Depends(require_figures)], **_kind("image/gif"))
+def animate_linkage(found: FrontDep, design: DesignNumber) -> Response:
+    """Give the moving linkage as an animated GIF of one turn of the crank."""
+    from ..motion.animated_gif import animated_gif
+
+    of = found.design(design)
+    content = _made(
+        found, design, "gif", lambda: animated_gif(of.mechanism, of.linkage, name=found.result.name, number=design)
+    )
+    return _file(found, design, "gif", "image/gif", content, label="-motion")
+
+
+@router.get("/report.html", dependencies=[Depends(require_figures)], **_kind("text/html"))
+def report_design(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+    """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
+    from ..report.html import html_file
+
+    content = _made(found, design, "report", lambda: html_file(_report(found, design, store)))
+    return _file(found, design, "html", "text/html; charset=utf-8", content, label="-report")
+
+
+@router.get("/report.pdf", dependencies=[Depends(require_figures)], **_kind("application/pdf"))
+def print_report(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+    """Give the same report as PDF."""
+    from ..report.pdf import pdf_file
+
+    content = _made(found, design, "pdf", lambda: pdf_file(_report(found, design, store)))
+    return _file(found, design, "pdf", "application/pdf", content, label="-report")
+
+
+def _report(found: StoredFront, design: int, store: Store) -> Report:
+    """Return the report of a design, with what the store keeps beside the result."""
+    from ..report.design_report import design_report
+    from ..report.subject import subject_of
+
+    found.row(design)
+    job = found.job.id
+    kept = set(store.artefacts(job))
+    versions, certificate = (
+        json.loads(store.artefact(job, name).content) if name in kept else None
+        for name in ("versions.json", "certificate.json")
+    )
+    subject = subject_of(
+        found.problem,
+        found.result,
+        design,
+        run=found.job.run,
+        versions=versions or {},
+        certificate=certificate,
+        front=found.front,
+    )
+    return design_report(subject)
+
+
+def _made(found: StoredFront, design: int, kind: str, make: Callable[[], bytes]) -> bytes:
+    """Return what takes a while to draw; what was drawn before is kept with the front."""
+    name = f"design_{design}"
+    content = found.image(name, kind)
+    if content is None:
+        with DRAWING.turn():
+            content = found.image(name, kind) or make()  # by whoever was first
+            found.keep_image([name], kind, content)
+    return content

@@ -1,0 +1,166 @@
+"""A job while it is being written: what is wrong with it, what it allows, and a linkage to look at."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
+
+from .given_jobs import given_problem
+from .schema import Understood
+from .state import SettingsDep
+
+if TYPE_CHECKING:
+    from ...model.linkage import Linkage
+    from ..preview.look import Look
+
+router = APIRouter(tags=["jobs"])
+
+_ANGLES = 72
+Ends = tuple[float, float]
+
+
+class Draft(BaseModel):
+    """A job that may be incomplete."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    job: dict[str, Any] = Field(
+        description="the tables of a job file",
+        examples=[{"variables": {"crank": ["20 mm", "60 mm"], "rod": "100 mm", "offset": "10 mm"}}],
+    )
+
+
+class WrongModel(BaseModel):
+    """Something that is wrong with a job. path: the key, "" for the job as a whole."""
+
+    path: str = Field(examples=["mechanism.slider.mass"])
+    sentence: str = Field(examples=['must be a mass; got "2 mm", which is a length; write it like "0.8 kg"'])
+
+
+class AllowedModel(BaseModel):
+    """What the ranges of crank, rod and offset allow, from samples.
+
+    turning_share: of the designs within the ranges that turn fully. stroke_mm, time_ratio, transmission_angle_deg: from
+    least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
+    feasible_share: of the sampled designs that meet all requirements which were checked; equalities are met exactly.
+    hardest, hardest_share: the requirement that the fewest of the turning designs meet. unchecked: requirements that
+    need more than a moment, or numbers of the machine that are still missing.
+    """
+
+    turning_share: float = Field(examples=[0.83])
+    stroke_mm: Ends | None = Field(examples=[[40.0, 118.0]])
+    time_ratio: Ends | None = Field(examples=[[1.0, 1.6]])
+    transmission_angle_deg: Ends | None = Field(examples=[[2.0, 71.0]])
+    feasible_share: float = Field(examples=[0.4])
+    sampled: int = Field(examples=[512])
+    hardest: str | None = Field(examples=["transmission_angle"])
+    hardest_share: float | None = Field(examples=[0.6])
+    unchecked: list[str] = Field(examples=[["position_error"]])
+    said: list[str] = Field(description="what is asked and cannot be had, in words", examples=[[]])
+
+
+class MotionModel(BaseModel):
+    """The slider over a turn of the crank, evenly spaced from 0 deg."""
+
+    crank_angle_deg: list[float]
+    slider_position_mm: list[float]
+    transmission_angle_deg: list[float]
+
+
+class ExampleModel(BaseModel):
+    """A linkage within the ranges. feasible: whether it meets all requirements that were checked."""
+
+    crank_mm: float = Field(examples=[40.0])
+    rod_mm: float = Field(examples=[100.0])
+    offset_mm: float = Field(examples=[10.0])
+    feasible: bool
+    clockwise: bool
+    slow_stroke: str = Field(examples=["outward"])
+    stroke_mm: float
+    time_ratio: float
+    least_transmission_angle_deg: float
+    motion: MotionModel
+
+
+class PreviewModel(BaseModel):
+    """What can be said of a job while it is being written."""
+
+    wrong: list[WrongModel]
+    checked: bool = Field(description="false for a job of so many values that only its submission checks it")
+    understood: Understood | None = Field(description="what was understood, once nothing is wrong")
+    allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
+    example: ExampleModel | None = Field(description="null where nothing turns fully")
+
+
+@router.post("/preview")
+def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
+    """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
+    from ..commands.summary import summarise
+    from ..preview.look import look_at
+
+    look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
+    return PreviewModel(
+        wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
+        checked=look.checked,
+        understood=None if look.problem is None else Understood(**summarise(look.problem)),
+        allowed=_allowed(look),
+        example=_example(look),
+    )
+
+
+def _allowed(look: Look) -> AllowedModel | None:
+    found = look.possible
+    if found is None:
+        return None
+    return AllowedModel(
+        turning_share=found.turning,
+        stroke_mm=_in(1e3, found.stroke),
+        time_ratio=_in(1.0, found.time_ratio),
+        transmission_angle_deg=_in(180.0 / math.pi, found.transmission_angle),
+        feasible_share=found.feasible,
+        sampled=found.sampled,
+        hardest=found.hardest[0] if found.hardest else None,
+        hardest_share=found.hardest[1] if found.hardest else None,
+        unchecked=look.unchecked,
+        said=look.said,
+    )
+
+
+def _in(factor: float, ends: Ends | None) -> Ends | None:
+    return None if ends is None else (factor * ends[0], factor * ends[1])
+
+
+def _example(look: Look) -> ExampleModel | None:
+    from ...model.linkage import Linkage
+
+    if look.stated is None or look.possible is None or look.possible.example is None:
+        return None
+    machine = look.stated.mechanism
+    linkage = Linkage(*look.possible.example, machine.branch)
+    return ExampleModel(
+        crank_mm=1e3 * float(linkage.crank),
+        rod_mm=1e3 * float(linkage.rod),
+        offset_mm=1e3 * float(linkage.offset),
+        feasible=look.possible.example_feasible,
+        clockwise=machine.speed < 0.0,
+        slow_stroke=str(linkage.slow_stroke(direction=machine.speed or 1.0)),
+        stroke_mm=1e3 * float(linkage.stroke),
+        time_ratio=float(linkage.time_ratio),
+        least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
+        motion=_motion(linkage),
+    )
+
+
+def _motion(linkage: Linkage) -> MotionModel:
+    import numpy as np
+
+    theta = np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES)
+    found = linkage.at(theta)
+    return MotionModel(
+        crank_angle_deg=np.degrees(theta).tolist(),
+        slider_position_mm=(1e3 * found.slider_position).tolist(),
+        transmission_angle_deg=np.degrees(found.transmission_angle).tolist(),
+    )

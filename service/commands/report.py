@@ -1,0 +1,97 @@
+"""`slidercrank report`: a design of a run as a document for a review."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ...model.errors import InputError, RunError
+from ..runs.finding_runs import find_run
+from ..runs.run_folder import runs_place, slug, write_bytes
+from ..runs.stored_runs import problem_of, read_run
+from .design_choice import Design, Knee, Lexicographic, Topsis, Where, chosen_design
+from .optimise import Runs
+from .runs import Run
+from .screen import say, waiting
+
+if TYPE_CHECKING:
+    from ..report.document import Report
+    from ..runs.result import Result
+
+
+def report(
+    run: Run,
+    design: Design = None,
+    knee: Knee = False,
+    topsis: Topsis = None,
+    lexicographic: Lexicographic = None,
+    where: Where = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Where to write it: HTML, or PDF for a name that ends in .pdf.  "
+            "[default: <run>-design-<NO>.html here]",
+        ),
+    ] = None,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write PDF instead of HTML.")] = False,
+    runs: Runs = None,
+) -> None:
+    """Write a report of one design for a review: job, front, design with all its numbers, tolerances, versions.
+
+    HTML is one file without script that a browser shows and prints; nothing in it is fetched from elsewhere.
+    """
+    if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
+        raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
+    folder = find_run(run, runs_place(runs))
+    result = read_run(folder)
+    number = chosen_design(
+        result, run, design=design, knee=knee, topsis=topsis, lexicographic=lexicographic, where=where
+    )
+    pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
+    ending = "pdf" if pdf else "html"
+    file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
+    with waiting("writing the report"):
+        made = _report(folder, result, number)
+        content = _content(made, pdf=pdf)
+    write_bytes(file, content)
+    say(f"report: {file}")
+
+
+def _report(folder: Path, result: Result, number: int) -> Report:
+    from ..report.design_report import design_report
+    from ..report.subject import subject_of
+
+    subject = subject_of(
+        problem_of(folder, result),
+        result,
+        number,
+        run=folder.name,
+        versions=_kept(folder / "versions.json") or {},
+        certificate=_kept(folder / "certificate.json"),
+    )
+    return design_report(subject)
+
+
+def _content(made: Report, *, pdf: bool) -> bytes:
+    if pdf:
+        from ..report.pdf import pdf_file
+
+        return pdf_file(made)
+    from ..report.html import html_file
+
+    return html_file(made)
+
+
+def _kept(file: Path) -> dict[str, Any] | None:
+    """Return what a file of a run says, None if there is none. Raises `RunError` for a damaged one."""
+    if not file.is_file():
+        return None
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RunError(f"{file} is damaged: {error}; run the command that wrote it again") from error
+    return found if isinstance(found, dict) else None

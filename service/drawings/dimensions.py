@@ -1,0 +1,65 @@
+"""Dimensions with what shows them: extension lines, a line with arrows, and the text."""
+
+from __future__ import annotations
+
+import math
+
+from .layers import DIMENSIONS
+from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
+
+_ARROW = 1.2  # length over the height of the text; a sixth as wide to either side
+_GAP, _BEYOND = 0.4, 0.6  # of an extension line, before its point and beyond the dimension line, over that height
+
+
+def dimension(name: str, start: Point, end: Point, through: Point, angle: float, *, height: float) -> Dimension:
+    """Return the dimension of two points along `angle`, deg, its line through a point. height: of the text, mm.
+
+    Where arrows and text do not fit between the points they come from outside, the text beyond the end.
+    """
+    turn = math.radians(angle)
+    along, across = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
+    feet = [_foot(point, through, along) for point in (start, end)]
+    if _dot(feet[1], along) < _dot(feet[0], along):
+        feet.reverse()
+        start, end = end, start
+    length = _dot(_less(feet[1], feet[0]), along)
+    text = f"{length:.7g}"
+    wide, arrow = WIDE * height * len(text), _ARROW * height
+    inside = length > wide + 2.6 * arrow
+    parts: list[Line | Wedge | Label] = []
+    for point, foot in zip((start, end), feet, strict=True):
+        reach = math.dist(point, foot)
+        if reach > _GAP * height:
+            unit = ((foot[0] - point[0]) / reach, (foot[1] - point[1]) / reach)
+            first, last = _at(point, unit, _GAP * height), _at(foot, unit, _BEYOND * height)
+            parts.append(Line(DIMENSIONS, first, last))
+    side = 1.0 if inside else -1.0
+    for foot, out in ((feet[0], side), (feet[1], -side)):
+        base = _at(foot, along, out * arrow)
+        corners = (foot, _at(base, across, arrow / 6.0), _at(base, across, -arrow / 6.0))
+        parts.append(Wedge(DIMENSIONS, corners))
+    if inside:
+        parts.append(Line(DIMENSIONS, *feet))
+        middle, anchor = _at(feet[0], along, 0.5 * length), "middle"
+    else:
+        parts.append(Line(DIMENSIONS, _at(feet[0], along, -2.0 * arrow), _at(feet[1], along, 2.4 * arrow + wide)))
+        middle, anchor = _at(feet[1], along, 2.2 * arrow + 0.5 * wide), "middle"
+    parts.append(Label(DIMENSIONS, text, _at(middle, across, 0.4 * height), height, angle, anchor))  # type: ignore[arg-type]
+    return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts))
+
+
+def _foot(point: Point, through: Point, along: Point) -> Point:
+    """Return the point of the dimension line that is nearest to a point."""
+    return _at(through, along, _dot(_less(point, through), along))
+
+
+def _at(point: Point, unit: Point, length: float) -> Point:
+    return point[0] + length * unit[0], point[1] + length * unit[1]
+
+
+def _less(one: Point, other: Point) -> Point:
+    return one[0] - other[0], one[1] - other[1]
+
+
+def _dot(one: Point, other: Point) -> float:
+    return one[0] * other[0] + one[1] * other[1]

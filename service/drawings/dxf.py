@@ -1,0 +1,123 @@
+"""A drawing as DXF, for CAD: AutoCAD 2000 format, units millimetres, real dimensions."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Any
+
+from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+    from ezdxf.layouts.base import BaseLayout
+
+_VERSION = "R2000"  # read by everything, and the first with units
+_MILLIMETRES = 4
+_STYLE = "SLIDERCRANK"
+# Name, description, pattern over the size of the drawing: total, then dash, gap, dash ...
+_DASHES: dict[Dashes, tuple[str, str, tuple[float, ...]]] = {
+    "continuous": ("CONTINUOUS", "", ()),
+    "dashed": ("DASHED", "Dashed __ __ __ __", (0.016, 0.010, -0.006)),
+    "centre": ("CENTER", "Center ____ _ ____ _", (0.038, 0.024, -0.005, 0.004, -0.005)),
+    "phantom": ("PHANTOM", "Phantom ____ _ _ ____", (0.039, 0.016, -0.005, 0.004, -0.005, 0.004, -0.005)),
+}
+_ANCHORS = {"start": 0, "middle": 1, "end": 2}  # horizontal alignment on the baseline
+
+
+def dxf_file(drawing: Drawing) -> bytes:
+    """Return the drawing as the content of a DXF file; what is not ASCII is escaped, so that any encoding will do."""
+    out = io.StringIO()
+    document(drawing).write(out)
+    return out.getvalue().encode("ascii", errors="dxfreplace")  # of ezdxf: \\U+00F6
+
+
+def document(drawing: Drawing) -> Document:
+    """Return the drawing as a document of ezdxf."""
+    from ezdxf.filemanagement import new
+
+    found = new(_VERSION, units=_MILLIMETRES)
+    left, bottom, right, top = drawing.bounds
+    found.header["$MEASUREMENT"] = 1  # metric line types
+    found.header["$LUNITS"] = 2  # decimal
+    for name, description, pattern in _DASHES.values():
+        if pattern:
+            found.linetypes.add(name, [drawing.size * part for part in pattern], description=description)
+    for layer in drawing.layers:
+        made = found.layers.add(
+            layer.name,
+            color=layer.number,
+            linetype=_DASHES[layer.dashes][0],
+            lineweight=round(100.0 * layer.weight),
+        )
+        made.description = layer.title
+    _dimension_style(found, drawing)
+    space = found.modelspace()
+    for shape in drawing.shapes:
+        _add(found, space, shape)
+    space.reset_extents((left, bottom, 0.0), (right, top, 0.0))
+    space.reset_limits((left, bottom), (right, top))
+    height = 1.05 * max(top - bottom, 0.6 * (right - left))
+    found.set_modelspace_vport(height, (0.5 * (left + right), 0.5 * (bottom + top)))
+    return found
+
+
+def _dimension_style(found: Document, drawing: Drawing) -> None:
+    """Make the style by which CAD draws dimensions anew: as they are drawn here."""
+    height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
+    # As many decimals as make seven digits of the size; DXF knows eight at most.
+    decimals = min(8, max(0, 6 - math.floor(math.log10(drawing.size))))
+    values = {
+        "dimtxt": height, "dimasz": 1.2 * height, "dimexo": 0.4 * height, "dimexe": 0.6 * height,
+        "dimgap": 0.4 * height, "dimscale": 1.0, "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals,
+        "dimzin": 8, "dimdsep": ord("."), "dimlunit": 2,
+    }  # fmt: skip
+    found.dimstyles.new(_STYLE, dxfattribs=values)
+
+
+def _add(found: Document, space: BaseLayout, shape: Shape) -> None:
+    on: dict[str, Any] = {"layer": shape.layer.name}
+    if isinstance(shape, Line):
+        space.add_line(shape.start, shape.end, dxfattribs=on)
+    elif isinstance(shape, Circle):
+        space.add_circle(shape.centre, shape.radius, dxfattribs=on)
+    elif isinstance(shape, Outline):
+        corners = [(x, y, bulge) for (x, y), bulge in zip(shape.corners, shape.bulges, strict=True)]
+        space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=on)
+    elif isinstance(shape, Wedge):
+        space.add_solid(shape.corners, dxfattribs=on)
+    elif isinstance(shape, Label):
+        _label(space, shape, on)
+    else:
+        _dimension(found, space, shape, on)
+
+
+def _label(space: BaseLayout, shape: Label, on: dict[str, Any]) -> None:
+    text = space.add_text(_plain(shape.text), height=shape.height, rotation=shape.angle, dxfattribs=on)
+    text.dxf.insert = shape.at
+    if shape.anchor != "start":
+        text.dxf.halign, text.dxf.align_point = _ANCHORS[shape.anchor], shape.at
+
+
+def _dimension(found: Document, space: BaseLayout, shape: Dimension, on: dict[str, Any]) -> None:
+    """Add a dimension with the picture that it has here: ezdxf's own needs the fonts of the machine for it."""
+    block = found.blocks.new_anonymous_block(type_char="D")
+    for part in shape.parts:
+        _add(found, block, part)
+    label = next(part for part in shape.parts if isinstance(part, Label))
+    made = space.add_linear_dim(
+        base=shape.through,
+        p1=shape.start,
+        p2=shape.end,
+        angle=shape.angle,
+        dimstyle=_STYLE,
+        dxfattribs=on,
+    ).dimension
+    made.dxf.geometry = block.name
+    made.dxf.text_midpoint = label.at
+    made.dxf.actual_measurement = shape.length
+
+
+def _plain(text: str) -> str:
+    """Return a text without what would end its line or be taken for a code."""
+    return " ".join(text.replace("%%", "% %").split()).replace("^", "^ ")

@@ -1,0 +1,103 @@
+"""A linkage as a drawing: in one position, its dead centres, its paths and its dimensions."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from . import layers as on
+from .dimensions import dimension
+from .parts import Proportions, Sizes, extent, moving, pins_at, proportions, scenery, sizes_of
+from .shapes import Drawing, Label, Line, Point, Shape
+
+if TYPE_CHECKING:
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+CRANK_ANGLE = math.radians(60.0)
+"""Where a linkage is drawn unless asked otherwise."""
+_TEXT = 0.022  # height of dimensions, of the drawing's size
+
+
+def linkage_drawing(
+    mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None, crank_angle: float = CRANK_ANGLE
+) -> Drawing:
+    """Return one fully turning linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
+
+    Pivots, paths, dead centres and dimensions are exact. Links that the machine describes by their section have their
+    true width; other widths, pins and slider are for show, in proportion. name, number: of run and design, for the
+    title. crank_angle: where it is drawn, rad. Raises `AssemblyError` for a linkage that does not turn fully.
+    """
+    sizes = sizes_of(linkage)
+    shown = proportions(mechanism, sizes)
+    left, low, right, high = extent(sizes, shown)
+    size = max(right - left, high - low)
+    pin, slider = pins_at(linkage, crank_angle)
+    shapes: list[Shape] = [
+        *scenery(linkage, sizes, shown, below=pin[1] >= 0.0),
+        *moving(pin, slider, shown),
+        Line(on.SKELETON, (0.0, 0.0), pin),
+        Line(on.SKELETON, pin, slider),
+        *_dimensions(pin, slider, sizes, left=left, shown=shown, height=_TEXT * size),
+    ]
+    title = f"{name}, design {number}" if number is not None else name
+    notes = _notes(linkage, crank_angle, shown)
+    y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
+    shapes.append(Label(on.NOTES, title, (left, y), 1.2 * _TEXT * size))
+    shapes += [
+        Label(on.NOTES, note, (left, y - (1.5 * line + 0.3) * _TEXT * size), 0.75 * _TEXT * size)
+        for line, note in enumerate(notes, 1)
+    ]
+    return Drawing(on.LAYERS, tuple(shapes), size, title, notes)
+
+
+def _dimensions(
+    pin: Point, slider: Point, sizes: Sizes, *, left: float, shown: Proportions, height: float
+) -> list[Shape]:
+    """Return the dimensions of crank and rod beside them, of the offset at the left, of the stroke beyond the rest."""
+    e = sizes.offset
+    side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
+    rod = (slider[0] - pin[0], slider[1] - pin[1])
+    # Crank and rod on the outside of the bend between them.
+    bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0
+    y = side * (max(sizes.crank + 0.5 * shown.crank, side * e + 0.72 * shown.block) + 3.0 * height)
+    found: list[Shape] = [
+        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * shown.crank + 2.2 * height), height),
+        _aligned("rod", pin, slider, bend * (0.5 * shown.rod + 2.2 * height), height),
+        dimension("stroke", sizes.inner, sizes.outer, (sizes.inner[0], y), 0.0, height=height),
+    ]
+    if e:
+        x = left - 3.0 * height
+        found.append(dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, height=height))
+    return found
+
+
+def _aligned(name: str, start: Point, end: Point, away: float, height: float) -> Shape:
+    """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
+    x, y = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(x, y)
+    through = (start[0] - away * y / length, start[1] + away * x / length)
+    angle = math.degrees(math.atan2(y, x))
+    angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
+    return dimension(name, start, end, through, angle, height=height)
+
+
+def _notes(linkage: Linkage, angle: float, shown: Proportions) -> tuple[str, ...]:
+    lengths = [
+        f"{name} {1e3 * float(value):.7g} mm"
+        for name, value in (
+            ("crank", linkage.crank),
+            ("rod", linkage.rod),
+            ("offset", linkage.offset),
+            ("stroke", linkage.stroke),
+        )
+    ]
+    inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
+    widths = "Widths of links are those of the job; slider and pins are for show."
+    return (
+        f"{', '.join(lengths)}; {linkage.branch} branch.",
+        f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
+        f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
+        "True scale in millimetres; pivots are exact.",
+        widths if shown.own else "Widths of links, slider and pins are for show.",
+    )

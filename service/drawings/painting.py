@@ -1,0 +1,108 @@
+"""Shapes of a drawing on axes of matplotlib, and a whole drawing as a figure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle as Disc
+from matplotlib.patches import Polygon
+
+from ..figures.style import LINK, new_figure, place
+from . import layers as on
+from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
+
+_DASHES: dict[Dashes, object] = {
+    "continuous": "-",
+    "dashed": (0, (4, 2.5)),
+    "centre": (0, (9, 2, 1.5, 2)),
+    "phantom": (0, (8, 2, 1.5, 2, 1.5, 2)),
+}
+_FILLED = {on.CRANK.name: LINK, on.ROD.name: LINK, on.SLIDER.name: "#f4f4f4", on.PINS.name: "#ffffff"}
+_POINTS = 2.6  # line width, points, of a weight of one
+_CAPITALS = 0.729  # height of capitals over the size of the font, DejaVu Sans
+_WIDTH, _TALLEST = 9.0, 6.4  # inches
+_ALIGNED = {"start": "left", "middle": "center", "end": "right"}
+
+
+def drawing_figure(drawing: Drawing) -> Figure:
+    """Return a drawing as a figure, the same scale in both directions."""
+    left, bottom, right, top = drawing.bounds
+    scale = min(_WIDTH / (right - left), _TALLEST / (top - bottom)) * 0.97  # inches a mm
+    wide, tall = scale * (right - left) / 0.97, scale * (top - bottom) / 0.97
+    figure = new_figure(wide, tall)
+    axes = place(figure, 0.0, 0.0, wide, tall)
+    axes.axis("off")
+    for limit, middle, inches in (
+        (axes.set_xlim, 0.5 * (left + right), wide),
+        (axes.set_ylim, 0.5 * (bottom + top), tall),
+    ):
+        limit(middle - 0.5 * inches / scale, middle + 0.5 * inches / scale)
+    paint(axes, [shape for shape in drawing.shapes if not isinstance(shape, Label | Dimension)])
+    for shape in drawing.shapes:
+        if isinstance(shape, Dimension):
+            paint(axes, shape.parts)
+    labels = [
+        *drawing.shapes,
+        *(part for shape in drawing.shapes if isinstance(shape, Dimension) for part in shape.parts),
+    ]
+    for label in labels:
+        if isinstance(label, Label):
+            axes.text(
+                *label.at,
+                label.text,
+                fontsize=72.0 * scale * label.height / _CAPITALS,
+                color=label.layer.ink,
+                rotation=label.angle,
+                rotation_mode="anchor",
+                ha=_ALIGNED[label.anchor],
+                va="baseline",
+                parse_math=False,
+                zorder=9.0,
+            )
+    return figure
+
+
+def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
+    """Draw lines, circles, outlines and wedges, later ones above earlier ones; return what was drawn."""
+    found: list[Artist] = []
+    for order, shape in enumerate(shapes):
+        style: dict[str, Any] = {
+            "linewidth": _POINTS * shape.layer.weight,
+            "linestyle": _DASHES[shape.layer.dashes],
+            "zorder": 2.0 + 0.001 * order + (2.0 if shape.layer.name in _FILLED else 0.0),
+        }
+        fill = _FILLED.get(shape.layer.name, "none")
+        if isinstance(shape, Line):
+            x, y = zip(shape.start, shape.end, strict=True)
+            found.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
+        elif isinstance(shape, Circle):
+            disc = Disc(shape.centre, shape.radius, facecolor=fill, edgecolor=shape.layer.ink, **style)
+            found.append(axes.add_patch(disc))
+        elif isinstance(shape, Outline):
+            corners = [point for side in pairs(shape) for point in _along(*side)]
+            polygon = Polygon(corners, facecolor=fill, edgecolor=shape.layer.ink, **style)
+            found.append(axes.add_patch(polygon))
+        elif isinstance(shape, Wedge):
+            found.append(axes.add_patch(Polygon(shape.corners, facecolor=shape.layer.ink, zorder=style["zorder"])))
+    return found
+
+
+def _along(start: Point, end: Point, bulge: float) -> list[Point]:
+    """Return points along a side, its end left out."""
+    if not bulge:
+        return [start]
+    # The centre of an arc of the angle 4 atan(bulge) lies to the left of the chord's middle.
+    chord = (end[0] - start[0], end[1] - start[1])
+    aside = (1.0 - bulge * bulge) / (4.0 * bulge)
+    centre = (0.5 * (start[0] + end[0]) - aside * chord[1], 0.5 * (start[1] + end[1]) + aside * chord[0])
+    radius = math.dist(start, centre)
+    first = math.atan2(start[1] - centre[1], start[0] - centre[0])
+    angles = first + np.linspace(0.0, 4.0 * math.atan(bulge), 24, endpoint=False)
+    return [(centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)) for angle in angles]

@@ -1,0 +1,159 @@
+"""What a drawing consists of: lines, circles, outlines, labels and dimensions on layers, in millimetres, y upward."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+Point = tuple[float, float]
+Dashes = Literal["continuous", "dashed", "centre", "phantom"]
+Anchor = Literal["start", "middle", "end"]
+
+WIDE = 0.85
+"""Width of a character over the height of capitals, about, of the wider fonts that are usual."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer. title: what it holds. ink: #rrggbb. number: its colour in CAD. weight: of a line, mm on paper."""
+
+    name: str
+    title: str
+    dashes: Dashes
+    ink: str
+    number: int
+    weight: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight line."""
+
+    layer: Layer
+    start: Point
+    end: Point
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circle."""
+
+    layer: Layer
+    centre: Point
+    radius: float
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A closed outline. bulges: of the side that begins at each corner, 0 is straight, 1 a half turn to the left."""
+
+    layer: Layer
+    corners: tuple[Point, ...]
+    bulges: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Wedge:
+    """A filled triangle."""
+
+    layer: Layer
+    corners: tuple[Point, Point, Point]
+
+
+@dataclass(frozen=True)
+class Label:
+    """A line of text that stands on a point. height: of capitals. angle: of the line of text, deg."""
+
+    layer: Layer
+    text: str
+    at: Point
+    height: float
+    angle: float = 0.0
+    anchor: Anchor = "start"
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """The distance of two points along a direction, with what shows it.
+
+    name: of the length. angle: of the dimension line, deg. through: a point of that line. parts: its lines, arrows and
+    text; CAD draws them anew when a point is moved.
+    """
+
+    layer: Layer
+    name: str
+    start: Point
+    end: Point
+    through: Point
+    angle: float
+    text: str
+    height: float
+    parts: tuple[Line | Wedge | Label, ...] = field(repr=False)
+
+    @property
+    def length(self) -> float:
+        """What it measures, mm."""
+        along = (math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle)))
+        return abs((self.end[0] - self.start[0]) * along[0] + (self.end[1] - self.start[1]) * along[1])
+
+
+Shape = Line | Circle | Outline | Wedge | Label | Dimension
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A drawing. size: a length that line types and texts are proportioned by, mm. notes: what it says of itself."""
+
+    layers: tuple[Layer, ...]
+    shapes: tuple[Shape, ...]
+    size: float
+    title: str
+    notes: tuple[str, ...]
+
+    def on(self, name: str) -> list[Shape]:
+        """Return what is on a layer."""
+        return [shape for shape in self.shapes if shape.layer.name == name]
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top of everything."""
+        x, y = zip(*(point for shape in self.shapes for point in _reach(shape)), strict=True)
+        return min(x), min(y), max(x), max(y)
+
+
+def pairs(outline: Outline) -> Iterator[tuple[Point, Point, float]]:
+    """Yield the sides of an outline: from, to, bulge."""
+    corners = outline.corners
+    yield from zip(corners, (*corners[1:], corners[0]), outline.bulges, strict=True)
+
+
+def _reach(shape: Shape) -> Iterable[Point]:
+    if isinstance(shape, Line):
+        return shape.start, shape.end
+    if isinstance(shape, Circle):
+        (x, y), r = shape.centre, shape.radius
+        return (x - r, y - r), (x + r, y + r)
+    if isinstance(shape, Outline):
+        return [point for side in pairs(shape) for point in _ends(*side)]
+    if isinstance(shape, Wedge):
+        return shape.corners
+    if isinstance(shape, Dimension):
+        return [point for part in shape.parts for point in _reach(part)]
+    long, turn = WIDE * shape.height * len(shape.text), math.radians(shape.angle)
+    back = {"start": 0.0, "middle": 0.5, "end": 1.0}[shape.anchor] * long
+    corners = [(u - back, v) for u in (0.0, long) for v in (-0.3 * shape.height, shape.height)]
+    return [
+        (shape.at[0] + u * math.cos(turn) - v * math.sin(turn), shape.at[1] + u * math.sin(turn) + v * math.cos(turn))
+        for u, v in corners
+    ]
+
+
+def _ends(start: Point, end: Point, bulge: float) -> tuple[Point, ...]:
+    """Return corners of a box around a side; for an arc that of its half circle or less."""
+    if not bulge:
+        return start, end
+    half = 0.5 * math.dist(start, end)
+    x, y = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    return (x - half, y - half), (x + half, y + half)

@@ -1,0 +1,111 @@
+"""A drawing as SVG: a file of its own, at true scale when printed at 100 %, a group for each layer."""
+
+from __future__ import annotations
+
+import math
+from xml.sax.saxutils import escape, quoteattr
+
+from .shapes import Circle, Dashes, Dimension, Drawing, Label, Layer, Line, Outline, Point, Shape, Wedge, pairs
+
+_MARGIN = 0.03  # of the drawing's size
+_LINE = 0.004  # width of a line of weight 0.5, of that size
+_DASHES: dict[Dashes, tuple[float, ...]] = {
+    "continuous": (),
+    "dashed": (0.010, 0.006),
+    "centre": (0.024, 0.005, 0.004, 0.005),
+    "phantom": (0.016, 0.005, 0.004, 0.005, 0.004, 0.005),
+}
+
+
+def svg_file(drawing: Drawing) -> bytes:
+    """Return the drawing as the content of an SVG file."""
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{svg_text(drawing)}'.encode()
+
+
+def svg_text(drawing: Drawing) -> str:
+    """Return the drawing as an SVG element; lengths in mm."""
+    left, bottom, right, top = drawing.bounds
+    margin = _MARGIN * drawing.size
+    left, bottom, right, top = left - margin, bottom - margin, right + margin, top + margin
+    width, height = _number(right - left), _number(top - bottom)
+    frame = f"{_number(left)} {_number(-top)} {width} {height}"
+    lines = [
+        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
+        f'width="{width}mm" height="{height}mm" viewBox="{frame}" font-family="Arial, Helvetica, sans-serif">',
+        f"<title>{escape(drawing.title)}</title>",
+        f"<desc>{escape(' '.join(drawing.notes))}</desc>",
+        f'<rect x="{_number(left)}" y="{_number(-top)}" width="{width}" height="{height}" fill="#ffffff"/>',
+    ]
+    for layer in drawing.layers:
+        lines.append(group(layer, drawing.size))
+        lines += [f"  {line}" for shape in drawing.on(layer.name) for line in elements(shape)]
+        lines.append("</g>")
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def group(layer: Layer, size: float) -> str:
+    """Return the start of the group of a layer. size: of the drawing."""
+    attributes = {
+        "id": layer.name,
+        "inkscape:groupmode": "layer",
+        "inkscape:label": layer.name,
+        "fill": "none",
+        "stroke": layer.ink,
+        "stroke-width": _number(2.0 * layer.weight * _LINE * size),
+        "stroke-linejoin": "round",
+    }
+    if _DASHES[layer.dashes]:
+        attributes["stroke-dasharray"] = " ".join(_number(part * size) for part in _DASHES[layer.dashes])
+    return f"<g {' '.join(f'{name}={quoteattr(value)}' for name, value in attributes.items())}>"
+
+
+def elements(shape: Shape) -> list[str]:
+    """Return the elements that show a shape."""
+    if isinstance(shape, Line):
+        return [f'<path d="M{_point(shape.start)}L{_point(shape.end)}"/>']
+    if isinstance(shape, Circle):
+        x, y = shape.centre
+        return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
+    if isinstance(shape, Outline):
+        return [f'<path d="{_outline(shape)}"/>']
+    if isinstance(shape, Wedge):
+        corners = "L".join(_point(corner) for corner in shape.corners)
+        return [f'<path d="M{corners}Z" fill="{shape.layer.ink}" stroke="none"/>']
+    if isinstance(shape, Label):
+        return [_label(shape)]
+    if isinstance(shape, Dimension):
+        inner = [f"  {line}" for part in shape.parts for line in elements(part)]
+        return [f'<g id="{shape.name}">', *inner, "</g>"]
+    raise AssertionError(shape)
+
+
+def _outline(shape: Outline) -> str:
+    parts = [f"M{_point(shape.corners[0])}"]
+    for start, end, bulge in pairs(shape):
+        if not bulge:
+            parts.append(f"L{_point(end)}")
+            continue
+        # The angle of an arc is 4 atan(bulge); y points downward here, so that left becomes right.
+        radius = 0.5 * math.dist(start, end) / math.sin(2.0 * math.atan(abs(bulge)))
+        parts.append(f"A{_number(radius)} {_number(radius)} 0 0 {int(bulge < 0.0)} {_point(end)}")
+    return "".join(parts) + "Z"
+
+
+def _label(shape: Label) -> str:
+    x, y = _number(shape.at[0]), _number(-shape.at[1])
+    turned = f' transform="rotate({_number(-shape.angle)} {x} {y})"' if shape.angle else ""
+    # Capitals are 0.716 of the size of the font.
+    size = _number(shape.height / 0.716)
+    return (
+        f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{shape.anchor}" fill="{shape.layer.ink}" '
+        f'stroke="none"{turned}>{escape(shape.text)}</text>'
+    )
+
+
+def _point(point: Point) -> str:
+    return f"{_number(point[0])},{_number(-point[1])}"
+
+
+def _number(value: float) -> str:
+    """Return a number as precise as it is."""
+    return repr(value + 0.0).removesuffix(".0")

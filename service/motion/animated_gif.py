@@ -1,0 +1,96 @@
+"""The moving linkage as an animated GIF: one turn of the crank, over and over."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..drawings.painting import paint
+from ..drawings.parts import extent, moving, pins_at, proportions, scenery, sizes_of
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
+
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+FRAMES, MILLISECONDS = 60, 60
+"""Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
+_WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
+_COLOURS = 32
+_WHITE = 246  # of 255; the fill of the slider is just below
+
+
+def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None) -> bytes:
+    """Return one fully turning linkage as an animated GIF, which turns as the machine does.
+
+    name, number: of run and design. Raises `AssemblyError` for a linkage that does not turn fully.
+    """
+    frames = _frames(mechanism, linkage, f"{name}, design {number}" if number is not None else name)
+    out = io.BytesIO()
+    options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
+    frames[0].save(out, format="GIF", save_all=True, disposal=1, **options)
+    return out.getvalue()
+
+
+def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]:
+    import numpy as np
+    from PIL import Image
+
+    from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
+
+    sizes = sizes_of(linkage)
+    look = proportions(mechanism, sizes)
+    left, low, right, high = extent(sizes, look)
+    margin = 0.03 * max(right - left, high - low)
+    wide, tall = right - left + 2.0 * margin, high - low + 2.0 * margin
+    height = min(_TALLEST, _WIDTH * tall / wide)
+    figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
+    figure.set_dpi(_DOTS)
+    axes = place(figure, 0.0, _FOOT, _WIDTH, height)
+    axes.axis("off")
+    scale = max(wide / _WIDTH, tall / height)  # mm an inch, the same in both directions
+    for limit, middle, inches in (
+        (axes.set_xlim, 0.5 * (left + right), _WIDTH),
+        (axes.set_ylim, 0.5 * (low + high), height),
+    ):
+        limit(middle - 0.5 * scale * inches, middle + 0.5 * scale * inches)
+    write(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
+    write(figure, 0.15, 0.12, "dead centres dashed", fontsize=SMALL, color=MUTED)
+    paint(axes, scenery(linkage, sizes, look, below=True))
+    reading = figure.text(1.0 - 0.15 / _WIDTH, 0.12 / (height + _HEAD + _FOOT), "", fontsize=TEXT, ha="right")
+    turn = -1.0 if mechanism.speed < 0.0 else 1.0
+    canvas = figure.canvas
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[attr-defined]
+    found: list[Picture] = []
+    palette = None
+    for step in range(FRAMES):
+        angle = turn * 2.0 * math.pi * step / FRAMES
+        pin, slider = pins_at(linkage, angle)
+        degrees = round(math.degrees(angle)) % 360
+        reading.set_text(f"crank angle {degrees}°, slider at {slider[0]:.5g} mm".replace("-", "−"))
+        canvas.restore_region(still)  # type: ignore[attr-defined]
+        for artist in (reading, *paint(axes, moving(pin, slider, look))):
+            figure.draw_artist(artist)
+            if artist is not reading:
+                artist.remove()
+        picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[attr-defined]
+        # One palette for all, so that what stands still does not flicker.
+        palette = palette or _palette(picture)
+        found.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
+    return found
+
+
+def _palette(picture: Picture) -> Picture:
+    """Return the colours of a picture, those near to white as white."""
+    from PIL import Image
+
+    colours = picture.quantize(_COLOURS).getpalette() or []
+    for place in range(0, len(colours), 3):
+        if min(colours[place : place + 3]) > _WHITE:
+            colours[place : place + 3] = [255, 255, 255]
+    found = Image.new("P", (1, 1))
+    found.putpalette(colours)
+    return found

@@ -1,0 +1,140 @@
+"""The moving linkage as one HTML file: drawing, curves and script in it, nothing fetched."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING, Any
+
+from ..designs.cycle_table import CurveColumn, cycle_table
+from ..drawings import layers as on
+from ..drawings.parts import bar, block, extent, proportions, scenery, sizes_of
+from ..drawings.shapes import Circle, Layer, Shape
+from ..drawings.svg import elements, group
+from ..figures.style import unit_text
+from .curve_strip import curve_strip
+
+if TYPE_CHECKING:
+    from ...model.linkage import Linkage
+    from ...model.mechanism import Mechanism
+
+ANGLES = 360
+_PLAYER = Path(__file__).parent / "player"
+_READOUT = (
+    "slider_position_mm",
+    "slider_velocity",
+    "slider_acceleration",
+    "transmission_angle_deg",
+    "torque_Nm",
+)
+"""Curves that are read out, and their strips, by how their keys begin."""
+_STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.FRAME)
+
+
+@dataclass(frozen=True)
+class Moving:
+    """What moves: its shapes in coordinates of its own."""
+
+    name: str
+    layer: Layer
+    shapes: tuple[Shape, ...]
+
+
+def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None) -> bytes:
+    """Return one fully turning linkage as an HTML file that plays its motion.
+
+    The script turns the crank and looks up everything else, one degree apart, in curves that are in the file. name,
+    number: of run and design. Raises `AssemblyError` for a linkage that does not turn fully.
+    """
+    curves = cycle_table(mechanism, linkage, angles=ANGLES)
+    shown = [column for key in _READOUT for column in curves if column.key.startswith(key)]
+    title = f"{name}, design {number}" if number is not None else name
+    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
+    template = Template((_PLAYER / "player.html").read_text(encoding="utf-8"))
+    page = template.substitute(
+        title=escape(title),
+        summary=escape(_summary(mechanism, linkage)),
+        style=(_PLAYER / "player.css").read_text(encoding="utf-8"),
+        script=(_PLAYER / "player.js").read_text(encoding="utf-8"),
+        data=_data(mechanism, linkage, shown),
+        drawing=_drawing(mechanism, linkage, title),
+        strips="\n".join(curve_strip(column, inner, outer) for column in shown),
+        readout="\n".join(_row(column) for column in shown),
+    )
+    return page.encode()
+
+
+def _summary(mechanism: Mechanism, linkage: Linkage) -> str:
+    lengths = ", ".join(
+        f"{name} {1e3 * float(value):.6g} mm"
+        for name, value in (
+            ("crank", linkage.crank),
+            ("rod", linkage.rod),
+            ("offset", linkage.offset),
+            ("stroke", linkage.stroke),
+        )
+    )
+    rpm = mechanism.speed * 30.0 / math.pi
+    turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
+    return f"{lengths}; {linkage.branch} branch; {turning}"
+
+
+def _data(mechanism: Mechanism, linkage: Linkage, shown: list[CurveColumn]) -> str:
+    """Return what the script looks up, as JSON that may stand in HTML."""
+    import numpy as np
+
+    turn = linkage.at(np.arange(ANGLES) * (2.0 * math.pi / ANGLES))
+    rod = np.degrees(np.unwrap(turn.rod_angle))
+    record: dict[str, Any] = {
+        "crank": 1e3 * float(linkage.crank),
+        "offset": 1e3 * float(linkage.offset),
+        "slider": [round(1e3 * float(x), 9) for x in turn.slider_position],
+        "rod": [round(float(angle), 7) for angle in rod],
+        "direction": -1 if mechanism.speed < 0.0 else 1,
+        "turnsPerSecond": abs(mechanism.speed) / (2.0 * math.pi),
+        "curves": {
+            column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
+            for column in shown
+        },
+    }
+    return json.dumps(record, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+def _drawing(mechanism: Mechanism, linkage: Linkage, title: str) -> str:
+    sizes = sizes_of(linkage)
+    look = proportions(mechanism, sizes)
+    left, low, right, high = extent(sizes, look)
+    size = max(right - left, high - low)
+    margin = 0.04 * size
+    frame = f"{left - margin:.9g} {-high - margin:.9g} {right - left + 2 * margin:.9g} {high - low + 2 * margin:.9g}"
+    still = scenery(linkage, sizes, look, below=True)
+    pin = (0.0, 0.0)
+    parts = (
+        Moving("slider", on.SLIDER, (block(on.SLIDER, pin, look.block),)),
+        Moving("rod", on.ROD, (bar(on.ROD, pin, (sizes.rod, 0.0), look.rod),)),
+        Moving("crank", on.CRANK, (bar(on.CRANK, pin, (sizes.crank, 0.0), look.crank),)),
+        Moving("pivot", on.PINS, (Circle(on.PINS, pin, look.pin),)),
+        Moving("crank-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),
+        Moving("slider-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),
+    )
+    lines = [f'<svg id="drawing" viewBox="{frame}" role="img" aria-label="{escape(title, quote=True)}, moving">']
+    for layer in _STILL:
+        lines.append(group(layer, size))
+        lines += [line for shape in still if shape.layer is layer for line in elements(shape)]
+        lines.append("</g>")
+    for part in parts:
+        lines.append(group(part.layer, size).replace(f'id="{part.layer.name}"', f'id="{part.name}" class="part"', 1))
+        lines += [line for shape in part.shapes for line in elements(shape)]
+        lines.append("</g>")
+    return "\n".join([*lines, "</svg>"])
+
+
+def _row(column: CurveColumn) -> str:
+    return (
+        f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
+        f"<span>{escape(unit_text(column.unit))}</span></dd></div>"
+    )

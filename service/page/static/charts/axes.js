@@ -1,0 +1,40 @@
+/** The frame of a chart on canvas: grid, numbers, headings. */
+
+import { headed } from "../front/columns.js";
+
+/** Draw axes {at, ticks: [[value, text]], column} around an area. */
+export function drawAxes(context, { x, y, area, width, height, ink }) {
+  const [right, bottom] = [width - area.right, height - area.bottom];
+  context.font = "12px system-ui, sans-serif";
+  context.strokeStyle = ink.line;
+  context.fillStyle = ink.quiet;
+  context.lineWidth = 1;
+  context.globalAlpha = 0.7;
+  context.beginPath();
+  for (const [value] of x.ticks) {
+    context.moveTo(x.at(value), area.top);
+    context.lineTo(x.at(value), bottom);
+  }
+  for (const [value] of y.ticks) {
+    context.moveTo(area.left, y.at(value));
+    context.lineTo(right, y.at(value));
+  }
+  context.stroke();
+  context.globalAlpha = 1;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  for (const [value, text] of x.ticks) context.fillText(text, x.at(value), bottom + 6);
+  context.fillStyle = ink.text;
+  context.fillText(headed(x.column), (area.left + right) / 2, bottom + 24, right - area.left);
+  context.fillStyle = ink.quiet;
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  for (const [value, text] of y.ticks) context.fillText(text, area.left - 6, y.at(value), area.left - 22);
+  context.save();
+  context.translate(11, (area.top + bottom) / 2);
+  context.rotate(-Math.PI / 2);
+  context.textAlign = "center";
+  context.fillStyle = ink.text;
+  context.fillText(headed(y.column), 0, 0, bottom - area.top);
+  context.restore();
+}

@@ -1,0 +1,80 @@
+/** Canvas layers, and the colours that values have on them. */
+
+import { h } from "../lib/dom.js";
+
+/** Return layers over each other: {place, resize(width, height), contexts}; lengths are pixels of the page. */
+export function layers(count, label) {
+  const canvases = Array.from({ length: count }, () => h("canvas", { "aria-hidden": "true" }));
+  const place = h("div", { class: "layers", role: "img", "aria-label": label }, canvases);
+  const contexts = canvases.map((canvas) => canvas.getContext("2d"));
+  const fine = Math.min(2, window.devicePixelRatio || 1);
+  return {
+    place,
+    contexts,
+    top: canvases.at(-1),
+    /** Give all layers a size and clear them. plain: the layers that count pixels of the page, not of the screen. */
+    resize(width, height, plain = []) {
+      place.style.height = `${height}px`;
+      canvases.forEach((canvas, index) => {
+        const factor = plain.includes(index) ? 1 : fine;
+        canvas.width = Math.round(width * factor);
+        canvas.height = Math.round(height * factor);
+        contexts[index].setTransform(factor, 0, 0, factor, 0, 0);
+      });
+    },
+    /** Clear a layer. */
+    clear(index) {
+      const context = contexts[index];
+      context.save();
+      context.setTransform(1, 0, 0, 1, 0, 0);
+      context.clearRect(0, 0, canvases[index].width, canvases[index].height);
+      context.restore();
+    },
+  };
+}
+
+/**
+ * Draw squares of 3 pixels at places, in colours[of[i]], those that `mask` has; all of them without one. They take the place of
+ * everything on the layer, whose pixels are those of the page.
+ */
+export function squares(context, across, up, mask, of, colours) {
+  const { width, height } = context.canvas;
+  const image = new ImageData(width, height);
+  const pixels = new Uint32Array(image.data.buffer);
+  const inks = Uint32Array.from(colours, (colour) => {
+    const [red, green, blue] = rgb(colour);
+    return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+  });
+  for (let row = 0; row < across.length; row += 1) {
+    if (mask && !mask[row]) continue;
+    const [x, y] = [Math.round(across[row]) - 1, Math.round(up[row]) - 1];
+    if (!(x >= 0 && y >= 0 && x < width - 2 && y < height - 2)) continue;
+    const ink = inks[of[row]];
+    for (let place = y * width + x, line = 0; line < 3; line += 1, place += width) pixels[place] = pixels[place + 1] = pixels[place + 2] = ink;
+  }
+  context.putImageData(image, 0, 0);
+}
+
+/** Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp. */
+export function rgb(colour) {
+  if (colour.startsWith("rgb")) return colour.match(/\d+/g).map(Number);
+  const digits = parseInt(colour.slice(1), 16);
+  return [digits >> 16, (digits >> 8) & 255, digits & 255];
+}
+
+/** Return `count` colours from low to high: from one to another colour of the style, through a third. */
+export function ramp(ink, count) {
+  const stops = [rgb(ink["series-1"]), rgb(ink["series-4"]), rgb(ink["series-2"])];
+  return Array.from({ length: count }, (_, index) => {
+    const at = (index / Math.max(1, count - 1)) * (stops.length - 1);
+    const left = Math.min(stops.length - 2, Math.floor(at));
+    const share = at - left;
+    const mixed = stops[left].map((part, channel) => Math.round(part + share * (stops[left + 1][channel] - part)));
+    return `rgb(${mixed.join(" ")})`;
+  });
+}
+
+/** Return the colours of words: those of the series, again from the first after the last. */
+export function palette(ink, count) {
+  return Array.from({ length: count }, (_, index) => ink[`series-${1 + (index % 6)}`]);
+}

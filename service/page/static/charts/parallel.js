@@ -1,0 +1,254 @@
+/** Parallel coordinates on canvas: every design a line, every axis a quantity; dragging on an axis sets limits. */
+
+import { inShown } from "../lib/numbers.js";
+import { Density } from "./density.js";
+import { layers, rgb } from "./paint.js";
+import { colours, scale } from "./scale.js";
+
+const ROOM = 12; // pixels above and below the axes
+const NEAR = 22; // pixels from an axis within which a drag is about it
+const EDGE = 7; // pixels from an end of a limit within which a drag moves that end
+const FEW = 500; // lines that are drawn one by one; more of them as a density
+const [BACK, FRONT, OVER] = [0, 1, 2];
+
+/**
+ * Return {place, draw(what)}. `chart` gives what is drawn: data, limits, axes() [{key, flipped}], marks() [{row, colour}], and
+ * takes what the reader does: limit(key, limit), point(row or null), open(row).
+ */
+export function parallel(chart) {
+  const stack = layers(3, "Parallel coordinates. The fields below set the same limits as dragging on an axis.");
+  const { place, contexts } = stack;
+  let view = null;
+  let dragged = null;
+
+  /** Lay out: where the axes are, and where every design is on them. */
+  function lay() {
+    const width = Math.max(1, Math.round(place.clientWidth));
+    const height = Math.max(200, Math.min(360, Math.round(window.innerHeight * 0.42)));
+    const { data } = chart;
+    const axes = chart.axes().filter(({ key }) => data.has(key));
+    const across = axes.map((_, index) => ((index + 0.5) * width) / Math.max(1, axes.length));
+    const scales = axes.map(({ key, flipped }) => {
+      const { low, high } = data.range(key);
+      const ends = flipped ? [ROOM, height - ROOM] : [height - ROOM, ROOM];
+      return scale(low, high, ...ends);
+    });
+    const heights = new Int16Array(data.count * axes.length).fill(-1);
+    axes.forEach(({ key }, axis) => {
+      const numbers = data.numbers(key);
+      const zero = scales[axis].at(0);
+      const factor = scales[axis].at(1) - zero;
+      for (let row = 0; row < numbers.length; row += 1) {
+        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(zero + factor * numbers[row]);
+      }
+    });
+    const many = data.count > FEW;
+    stack.resize(width, height, many ? [BACK, FRONT] : []);
+    view = { width, height, axes, across, scales, heights, many, all: null, backed: false, density: null, drawn: null, ink: colours() };
+    if (many) {
+      view.all = new Density(width, height, across, heights);
+      for (let row = 0; row < data.count; row += 1) view.all.add(row, 1);
+    } else {
+      lines(contexts[BACK], (row) => row >= 0, view.ink.line, 1);
+    }
+  }
+
+  /** Draw all designs behind the chosen ones, once, and not before some are left out. */
+  function drawBack() {
+    if (!view.many || view.backed || chart.limits.chosen === chart.data.count) return;
+    view.backed = true;
+    view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
+  }
+
+  function lines(context, wanted, colour, width, alpha = 1) {
+    const { axes, across, heights } = view;
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.globalAlpha = alpha;
+    for (let row = 0; row < chart.data.count; row += 1) if (wanted(row)) line(context, row, axes.length, across, heights);
+    context.globalAlpha = 1;
+  }
+
+  /** Draw the chosen ones. Of many, only those are touched that changed, unless most did. */
+  function drawChosen() {
+    const { mask, chosen } = chart.limits;
+    drawBack();
+    if (!view.many) {
+      stack.clear(FRONT);
+      lines(contexts[FRONT], (row) => mask[row], view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
+      return;
+    }
+    if (!view.density) {
+      view.density = new Density(view.width, view.height, view.across, view.heights);
+      view.density.counts.set(view.all.counts);
+      view.drawn = new Uint8Array(mask.length).fill(1);
+    }
+    const before = view.drawn;
+    let changed = 0;
+    for (let row = 0; row < mask.length; row += 1) changed += mask[row] !== before[row];
+    if (changed <= chosen) {
+      for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) view.density.add(row, mask[row] ? 1 : -1);
+    } else {
+      view.density.clear();
+      for (let row = 0; row < mask.length; row += 1) if (mask[row]) view.density.add(row, 1);
+    }
+    view.drawn = mask.slice();
+    view.density.paint(contexts[FRONT], rgb(view.ink.accent), strength(chosen));
+  }
+
+  /** Draw axes, limits and marked designs. */
+  function drawOver() {
+    stack.clear(OVER);
+    const context = contexts[OVER];
+    const { ink, axes, across, scales, heights, height } = view;
+    context.font = "12px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    axes.forEach(({ key }, axis) => {
+      const x = across[axis];
+      const words = chart.data.words(key);
+      context.strokeStyle = ink.text;
+      context.lineWidth = 1;
+      context.beginPath();
+      context.moveTo(x, ROOM);
+      context.lineTo(x, height - ROOM);
+      context.stroke();
+      drawLimit(context, axis, chart.limits.of.get(key));
+      const unit = chart.data.column(key).unit;
+      for (const [value, label] of words ? words.map((word, index) => [index, word]) : ticks(chart.data.range(key), unit)) {
+        const y = scales[axis].at(value);
+        context.lineWidth = 3;
+        context.strokeStyle = ink.panel;
+        context.strokeText(label, x + 7, y);
+        context.fillStyle = ink.text;
+        context.fillText(label, x + 7, y);
+        context.fillRect(x - 3, y - 0.5, 6, 1);
+      }
+    });
+    for (const { row, colour, width = 2.5 } of chart.marks()) {
+      context.strokeStyle = colour;
+      context.lineWidth = width;
+      line(context, row, axes.length, across, heights);
+    }
+  }
+
+  function drawLimit(context, axis, limit) {
+    if (!limit) return;
+    const { ink, across } = view;
+    for (const [top, bottom] of spans(axis, limit)) {
+      context.fillStyle = ink.mark;
+      context.globalAlpha = 0.3;
+      context.fillRect(across[axis] - 7, top, 14, bottom - top);
+      context.globalAlpha = 1;
+      context.fillRect(across[axis] - 9, top - 1, 18, 2.5);
+      context.fillRect(across[axis] - 9, bottom - 1, 18, 2.5);
+    }
+  }
+
+  /** Return the pixels [top, bottom] that a limit lets through. */
+  function spans(axis, limit) {
+    const { at, low, high } = view.scales[axis];
+    const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
+    if (limit.words) {
+      const words = chart.data.words(view.axes[axis].key) ?? [];
+      return limit.words.filter((word) => words.includes(word)).map((word) => [at(words.indexOf(word)) - 9, at(words.indexOf(word)) + 9]);
+    }
+    const inside = (value, end) => at(Math.min(high, Math.max(low, value ?? end)));
+    return [sorted(inside(limit.low, low), inside(limit.high, high))];
+  }
+
+  function axisAt(event) {
+    const box = stack.top.getBoundingClientRect();
+    const x = event.clientX - box.left;
+    const y = Math.min(view.height - ROOM, Math.max(ROOM, event.clientY - box.top));
+    const axis = view.across.findIndex((at) => Math.abs(at - x) <= NEAR);
+    return { axis, x, y };
+  }
+
+  function begin(event) {
+    if (!view || event.button !== 0) return;
+    const { axis, y } = axisAt(event);
+    if (axis < 0) return;
+    event.preventDefault();
+    stack.top.setPointerCapture(event.pointerId);
+    const limit = chart.limits.of.get(view.axes[axis].key);
+    const [span] = limit && !limit.words ? spans(axis, limit) : [];
+    dragged = { axis, from: y, span: null, moved: false };
+    if (span && Math.abs(y - span[0]) <= EDGE) dragged.from = span[1];
+    else if (span && Math.abs(y - span[1]) <= EDGE) dragged.from = span[0];
+    else if (span && y > span[0] && y < span[1]) dragged = { ...dragged, from: y, span };
+  }
+
+  function move(event) {
+    if (!view) return;
+    if (!dragged) {
+      stack.top.style.cursor = axisAt(event).axis >= 0 ? "ns-resize" : "default";
+      return;
+    }
+    const pending = axisAt(event).y;
+    if (!dragged.moved && Math.abs(pending - dragged.from) < 3) return;
+    dragged.moved = true;
+    let ends = [dragged.from, pending];
+    if (dragged.span) {
+      const by = Math.min(view.height - ROOM - dragged.span[1], Math.max(ROOM - dragged.span[0], pending - dragged.from));
+      ends = dragged.span.map((end) => end + by);
+    }
+    const { key } = view.axes[dragged.axis];
+    const { value, low, high } = view.scales[dragged.axis];
+    const [first, second] = ends.map(value).sort((a, b) => a - b);
+    const words = chart.data.words(key);
+    if (words) {
+      chart.limit(key, { words: words.filter((_, index) => index >= first - 0.3 && index <= second + 0.3) });
+      return;
+    }
+    const step = (high - low) / 500;
+    const tidy = (number) => Number(number.toPrecision(Math.max(3, 1 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / step)))));
+    chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= high - step ? null : tidy(second) });
+  }
+
+  const end = () => {
+    dragged = null;
+  };
+  const clear = (event) => {
+    const { axis } = axisAt(event);
+    if (axis >= 0) chart.limit(view.axes[axis].key, null);
+  };
+  stack.top.addEventListener("pointerdown", begin);
+  stack.top.addEventListener("pointermove", move);
+  stack.top.addEventListener("pointerup", end);
+  stack.top.addEventListener("pointercancel", end);
+  stack.top.addEventListener("dblclick", clear);
+
+  return {
+    place,
+    /** Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks". */
+    draw(what) {
+      if (what === "all" || !view) lay();
+      if (what !== "marks") drawChosen();
+      drawOver();
+    },
+  };
+}
+
+function line(context, row, axes, across, heights) {
+  context.beginPath();
+  let down = false;
+  for (let axis = 0; axis < axes; axis += 1) {
+    const y = heights[row * axes + axis];
+    if (y < 0) down = false;
+    else if (down) context.lineTo(across[axis], y);
+    else context.moveTo(across[axis], y);
+    down = y >= 0;
+  }
+  context.stroke();
+}
+
+/** Return how much colour one of so many lines has. */
+function strength(count) {
+  return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
+}
+
+function ticks({ low, high }, unit) {
+  const shown = scale(inShown(low, unit), inShown(high, unit), 0, 1, 4);
+  const factor = inShown(1, unit);
+  return shown.ticks.map((tick) => [tick / factor, shown.text(tick)]);
+}

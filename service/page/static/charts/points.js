@@ -1,0 +1,45 @@
+/** A scatter as SVG, for some hundreds of points: a front that grows, fronts over each other. */
+
+import { svg } from "../lib/dom.js";
+import { inShown } from "../lib/numbers.js";
+import { headed } from "../front/columns.js";
+import { range, scale } from "./scale.js";
+
+const [WIDTH, HEIGHT] = [560, 340];
+const AREA = { left: 64, right: 14, top: 12, bottom: 46 };
+const SHAPES = [
+  (x, y) => svg("circle", { cx: x, cy: y, r: 3.6 }),
+  (x, y) => svg("rect", { x: x - 3.2, y: y - 3.2, width: 6.4, height: 6.4 }),
+  (x, y) => svg("path", { d: `M${x} ${y - 4.4} ${x + 4.2} ${y + 3.2} ${x - 4.2} ${y + 3.2}Z` }),
+  (x, y) => svg("path", { d: `M${x} ${y - 4.8} ${x + 4.8} ${y} ${x} ${y + 4.8} ${x - 4.8} ${y}Z` }),
+];
+
+/** Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape. */
+export function points(series, x, y, label) {
+  const places = series.flatMap((one) => one.points);
+  const axis = (index, column, start, end) => {
+    const values = places.map((point) => inShown(point[index], column.unit));
+    const { low, high } = range(values);
+    return scale(low, high, start, end);
+  };
+  const across = axis(0, x, AREA.left, WIDTH - AREA.right);
+  const up = axis(1, y, HEIGHT - AREA.bottom, AREA.top);
+  const bottom = HEIGHT - AREA.bottom;
+  const middle = (AREA.top + bottom) / 2;
+  return svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
+    across.ticks.map((tick) => [svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }), svg("text", { x: across.at(tick), y: bottom + 18, "text-anchor": "middle" }, across.text(tick))]),
+    up.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick))]),
+    svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, headed(x)),
+    svg("text", { class: "title", x: 14, y: middle, transform: `rotate(-90 14 ${middle})`, "text-anchor": "middle" }, headed(y)),
+    series.map((one, index) => svg("g", { class: `series-${1 + (index % 6)}` }, one.points.filter((point) => point.every(Number.isFinite))
+      .map(([a, b]) => SHAPES[index % SHAPES.length](round(across.at(inShown(a, x.unit))), round(up.at(inShown(b, y.unit))))))));
+}
+
+/** Return the sign of a series for a legend. */
+export function sign(index) {
+  return svg("svg", { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" }, svg("g", { class: `series-${1 + (index % 6)}` }, SHAPES[index % SHAPES.length](6, 6)));
+}
+
+function round(pixel) {
+  return Math.round(10 * pixel) / 10;
+}

@@ -1,0 +1,221 @@
+/** Two quantities against each other on canvas, coloured by a third. */
+
+import { inShown } from "../lib/numbers.js";
+import { drawAxes } from "./axes.js";
+import { drawLasso, thinned } from "./lasso.js";
+import { layers, palette, ramp, squares } from "./paint.js";
+import { colours, range, scale } from "./scale.js";
+
+const NEAR = 10; // pixels within which a design is pointed at
+const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
+const SHADES = 24;
+const [BACK, FRONT, OVER] = [0, 1, 2];
+const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
+
+/**
+ * Return {place, draw(what), colours()}. `chart` gives what is drawn: data, limits, x(), y(), colour() (keys), marks()
+ * [{row, colour, name}], pointed() (a row or null), and takes what the reader does: box(x, y) with limits, lasso(line)
+ * with corners in the units of the columns, point(row or null), open(row), select(row).
+ */
+export function scatter(chart) {
+  const stack = layers(3, "Scatter of two quantities. The table below has the same designs.");
+  const { place, contexts, top } = stack;
+  let view = null;
+  let box = null;
+  let line = null; // drawn by hand, in pixels
+  let free = false; // whether a drag draws a line, not a box
+
+  function lay() {
+    const width = Math.max(1, Math.round(place.clientWidth));
+    const height = Math.max(260, Math.min(460, Math.round(width * 0.72)));
+    const { data } = chart;
+    const [x, y] = [axis(chart.x(), AREA.left, width - AREA.right, 6), axis(chart.y(), height - AREA.bottom, AREA.top, 6)];
+    const across = data.numbers(chart.x()).map(x.at);
+    const up = data.numbers(chart.y()).map(y.at);
+    const many = data.count > FEW;
+    stack.resize(width, height, many ? [BACK, FRONT] : []);
+    view = { width, height, x, y, across, up, many, ink: colours(), shades: shades() };
+    const context = contexts[BACK];
+    // Squares replace what is there, so they come first.
+    if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
+    drawAxes(context, { x, y, area: AREA, width, height, ink: view.ink });
+    context.fillStyle = view.ink.line;
+    if (!many) for (let row = 0; row < data.count; row += 1) dot(context, row);
+  }
+
+  function axis(key, start, end, count) {
+    const { data } = chart;
+    const column = data.column(key);
+    const words = data.words(key);
+    const { low, high } = words ? { low: -0.5, high: words.length - 0.5 } : range(data.numbers(key));
+    const drawn = scale(low, high, start, end);
+    const factor = inShown(1, column.unit);
+    const shown = scale(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
+    const ticks = words ? words.map((word, index) => [index, word]) : shown.ticks.map((tick) => [tick / factor, shown.text(tick)]);
+    return { ...drawn, column, ticks };
+  }
+
+  /** Return the shade of every design as a place in `colours`. */
+  function shades() {
+    const { data } = chart;
+    const key = chart.colour();
+    const ink = colours();
+    if (!key) return { of: new Uint8Array(data.count), colours: [ink.accent] };
+    const numbers = data.numbers(key);
+    const words = data.words(key);
+    if (words) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
+    const { low, high } = data.range(key);
+    const of = new Uint8Array(numbers.length);
+    for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
+    return { of, colours: ramp(ink, SHADES) };
+  }
+
+  function dot(context, row) {
+    context.beginPath();
+    context.arc(view.across[row], view.up[row], 3.5, 0, 7);
+    context.fill();
+  }
+
+  function drawChosen() {
+    const context = contexts[FRONT];
+    const { of, colours: inks } = view.shades;
+    const { mask } = chart.limits;
+    if (view.many) {
+      squares(context, view.across, view.up, mask, of, inks);
+      return;
+    }
+    stack.clear(FRONT);
+    for (let row = 0; row < mask.length; row += 1) {
+      if (!mask[row]) continue;
+      context.fillStyle = inks[of[row]];
+      dot(context, row);
+    }
+  }
+
+  function drawOver() {
+    stack.clear(OVER);
+    const context = contexts[OVER];
+    const { across, up, ink } = view;
+    const written = [];
+    for (const { row, colour, name } of chart.marks()) {
+      context.strokeStyle = colour;
+      context.lineWidth = 2.5;
+      context.beginPath();
+      context.arc(across[row], up[row], 8, 0, 7);
+      context.stroke();
+      if (name) write(context, name, across[row], up[row], ink, written);
+    }
+    if (box) {
+      context.fillStyle = ink.mark;
+      context.globalAlpha = 0.18;
+      context.fillRect(box.x, box.y, box.right - box.x, box.bottom - box.y);
+      context.globalAlpha = 1;
+    }
+    const { lasso } = chart.limits;
+    const drawn = lasso && lasso.x === chart.x() && lasso.y === chart.y() ? lasso.line.map(([a, b]) => [view.x.at(a), view.y.at(b)]) : null;
+    if (line ?? drawn) drawLasso(context, line ?? drawn, ink);
+  }
+
+  /** Write a name beside a design, unless others are `written` there. */
+  function write(context, name, x, y, ink, written) {
+    context.font = "12px system-ui, sans-serif";
+    const left = x > view.width * 0.7;
+    const { width } = context.measureText(name);
+    const start = left ? x - 9 - width : x + 9;
+    if (written.some((other) => start < other.end && start + width > other.start && Math.abs(y - other.y) < 15)) return;
+    written.push({ start, end: start + width, y });
+    context.textAlign = left ? "right" : "left";
+    context.textBaseline = "bottom";
+    context.lineWidth = 3;
+    context.strokeStyle = ink.panel;
+    context.strokeText(name, x + (left ? -9 : 9), y - 5);
+    context.fillStyle = ink.text;
+    context.fillText(name, x + (left ? -9 : 9), y - 5);
+  }
+
+  function at(event) {
+    const { left, top: above } = top.getBoundingClientRect();
+    return { x: event.clientX - left, y: event.clientY - above };
+  }
+
+  /** Return the design that is pointed at, a chosen one, or null. */
+  function under({ x, y }) {
+    const { across, up } = view;
+    const { mask } = chart.limits;
+    let nearest = null;
+    let least = NEAR * NEAR;
+    for (let row = 0; row < mask.length; row += 1) {
+      if (!mask[row]) continue;
+      const distance = (across[row] - x) ** 2 + (up[row] - y) ** 2;
+      if (distance < least) [nearest, least] = [row, distance];
+    }
+    return nearest;
+  }
+
+  let from = null;
+  top.addEventListener("pointerdown", (event) => {
+    if (!view || event.button !== 0) return;
+    from = at(event);
+    top.setPointerCapture(event.pointerId);
+  });
+  top.addEventListener("pointermove", (event) => {
+    if (!view) return;
+    const here = at(event);
+    if (!from) {
+      const row = under(here);
+      top.style.cursor = row === null ? "crosshair" : "pointer";
+      chart.point(row);
+      return;
+    }
+    if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return;
+    if (free) {
+      line = [...(line ?? [[from.x, from.y]]), [here.x, here.y]];
+      if (line.length > 2) chart.lasso(thinned(line).map(([x, y]) => [view.x.value(x), view.y.value(y)]));
+      return;
+    }
+    box = { x: Math.min(from.x, here.x), right: Math.max(from.x, here.x), y: Math.min(from.y, here.y), bottom: Math.max(from.y, here.y) };
+    chart.box(limitOf(chart.x(), view.x, box.x, box.right), limitOf(chart.y(), view.y, box.bottom, box.y));
+  });
+  const end = (event) => {
+    if (!from) return;
+    const drawn = box ?? line;
+    [from, box, line] = [null, null, null];
+    if (drawn) drawOver();
+    else if (event.type === "pointerup") {
+      const row = under(at(event));
+      if (row !== null) (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
+    }
+  };
+  top.addEventListener("pointerup", end);
+  top.addEventListener("pointercancel", end);
+  top.addEventListener("pointerleave", () => from || chart.point(null));
+
+  function limitOf(key, drawn, first, second) {
+    const [low, high] = [drawn.value(first), drawn.value(second)];
+    const words = chart.data.words(key);
+    if (words) return { words: words.filter((_, index) => index >= low && index <= high) };
+    const step = (drawn.high - drawn.low) / 500;
+    const places = Math.max(0, Math.ceil(-Math.log10(step)));
+    const tidy = (value) => Number(value.toFixed(Math.min(20, places)));
+    const ends = chart.data.range(key);
+    return { low: low <= ends.low ? null : tidy(low), high: high >= ends.high ? null : tidy(high) };
+  }
+
+  return {
+    place,
+    /** Draw: "all" after a change of quantities, size or colours; "chosen" after one of limits; "marks". */
+    draw(what) {
+      if (what === "all" || !view) lay();
+      if (what !== "marks") drawChosen();
+      if (what !== "chosen" || box || line || chart.limits.lasso) drawOver();
+    },
+    /** Choose what a drag draws: a line by hand, or a box. */
+    byHand: (yes) => {
+      free = yes;
+    },
+    /** Return the colours of the legend, low to high. */
+    colours: () => view.shades.colours,
+    /** Return where a design is, in pixels of the page within the place. */
+    where: (row) => (view ? { x: view.across[row], y: view.up[row] } : null),
+  };
+}

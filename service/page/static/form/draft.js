@@ -1,0 +1,29 @@
+/** What was typed, kept in this tab until the run is started or started over. */
+
+const KEY = "new-run";
+
+/** Return the draft {job, submission, source, key}; null if there is none. */
+export function kept() {
+  try {
+    const found = JSON.parse(sessionStorage.getItem(KEY));
+    return found && typeof found.job === "object" ? found : null;
+  } catch {
+    return null;
+  }
+}
+
+/** Keep a draft; null forgets it. */
+export function keepDraft(draft) {
+  try {
+    if (draft === null) sessionStorage.removeItem(KEY);
+    else sessionStorage.setItem(KEY, JSON.stringify(draft));
+  } catch {
+    // A browser that keeps nothing: the form works until it is left.
+  }
+}
+
+/** Return a new key of a submission: the same form sent twice is one job. */
+export function newKey() {
+  const bytes = crypto.getRandomValues(new Uint8Array(16)); // randomUUID is there on https and localhost only
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}

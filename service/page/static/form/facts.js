@@ -1,0 +1,45 @@
+/** What the ranges allow, beside the form, in the reader's units. */
+
+import { fill, h } from "../lib/dom.js";
+import { text, withUnit } from "../lib/numbers.js";
+
+/** Fill a place with what a preview says. */
+export function showFacts(place, { allowed, example, understood }) {
+  if (!allowed) {
+    fill(place, h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."));
+    return;
+  }
+  const row = (title, value, note = null) => [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
+  fill(
+    place,
+    h(
+      "dl",
+      { class: "terms" },
+      row("turns fully", share(allowed.turning_share), "of the ranges"),
+      row("strokes", between(allowed.stroke_mm, "mm")),
+      row("time ratios", between(allowed.time_ratio, "")),
+      row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
+      row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
+      example ? row("slow stroke", example.slow_stroke) : null,
+    ),
+    allowed.unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${allowed.unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
+    allowed.said.map((sentence) => h("p", { class: "warning" }, sentence)),
+    understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
+  );
+}
+
+function understanding(understood) {
+  const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Rules", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
+  return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, line)))]);
+}
+
+function share(value) {
+  if (value > 0 && value < 0.01) return "under 1 %";
+  return value > 0.99 && value < 1 ? "over 99 %" : `${Math.round(100 * value)} %`;
+}
+
+function between(ends, unit) {
+  if (!ends) return "none";
+  const [low, high] = ends.map((end) => (unit === "deg" ? Math.round(10 * end) / 10 : end));
+  return text(low, unit, 3) === text(high, unit, 3) ? withUnit(low, unit, 3) : `${text(low, unit, 3)} to ${withUnit(high, unit, 3)}`;
+}

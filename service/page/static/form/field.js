@@ -1,0 +1,87 @@
+/** A field of the form: label, control, explanation and what is wrong with it, tied together for everybody. */
+
+import { h } from "../lib/dom.js";
+import { idOf, written } from "./path.js";
+
+/**
+ * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
+ * page of its own. The field is registered with the form, which tells it what is wrong.
+ */
+export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
+  const id = idOf(path, "c");
+  controls[0].id ||= id;
+  const error = h("p", { class: "error", id: `${id}-error`, hidden: true });
+  const explained = explanation(`${id}-why`, label, why);
+  const node = h(
+    "div",
+    { class: wide ? "field wide" : "field" },
+    h("div", { class: "field-label" }, labelled ? h("label", { for: controls[0].id }, label) : h("span", {}, label), explained?.button),
+    h("div", { class: "field-controls" }, controls),
+    explained?.text,
+    error,
+  );
+  if (register) form.register({ path, key: written(path), node, controls: controls.filter((one) => !one.classList.contains("unit")), error });
+  return node;
+}
+
+/** Return a button "?" and the sentence that it shows and hides; null without a sentence. */
+export function explanation(id, label, why) {
+  const { sentence, name } = typeof why === "string" ? { sentence: why, name: null } : why ?? {};
+  if (!sentence) return null;
+  const text = h("p", { class: "why", id, hidden: true }, capital(sentence), name ? [" ", h("a", { href: `#/help/${name}` }, `More about ${label}`)] : null);
+  const button = h("button", { type: "button", class: "ask", "aria-label": `What is ${label}?`, "aria-expanded": "false", "aria-controls": id }, "?");
+  button.addEventListener("click", () => {
+    text.hidden = !text.hidden;
+    button.setAttribute("aria-expanded", String(!text.hidden));
+  });
+  text.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    button.click();
+    button.focus();
+  });
+  return { button, text };
+}
+
+/** Show on fields what is wrong; return the sentences that belong to no field. */
+export function showWrong(fields, wrong) {
+  for (const one of fields) say(one, []);
+  const told = new Map();
+  const elsewhere = [];
+  for (const { path, sentence } of wrong) {
+    const found = path === "" ? null : nearest(fields, path);
+    if (!found) elsewhere.push(path ? `${path}: ${sentence}` : sentence);
+    else told.set(found, [...(told.get(found) ?? []), found.key === path ? sentence : `${rest(found.key, path)}: ${sentence}`]);
+  }
+  for (const [one, sentences] of told) say(one, sentences);
+  return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
+}
+
+function say(one, sentences) {
+  const bad = sentences.length > 0;
+  one.error.hidden = !bad;
+  one.error.textContent = sentences.map(capital).join(" ");
+  for (const control of one.controls) {
+    if (bad) {
+      control.setAttribute("aria-invalid", "true");
+      control.setAttribute("aria-describedby", one.error.id);
+    } else {
+      control.removeAttribute("aria-invalid");
+      control.removeAttribute("aria-describedby");
+    }
+  }
+  if (bad) for (let fold = one.node.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+}
+
+function nearest(fields, path) {
+  const within = (outer, inner) => inner === outer || inner.startsWith(`${outer}.`) || inner.startsWith(`${outer} #`);
+  const above = fields.filter((one) => within(one.key, path)).sort((a, b) => b.key.length - a.key.length);
+  return above[0] ?? fields.find((one) => within(path, one.key)) ?? null;
+}
+
+function rest(outer, path) {
+  return path.startsWith(outer) ? path.slice(outer.length).replace(/^\./, "") : path;
+}
+
+function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

@@ -1,0 +1,108 @@
+/** The job as a file: its text beside the form, in step with it; taken in from a file, given out as one. */
+
+import { address, get, post, Problem } from "../lib/api.js";
+import { h } from "../lib/dom.js";
+import { say, sayProblem } from "../lib/notices.js";
+
+const WAIT = 300; // ms after the last letter until the text is taken into the form
+
+/** Return {node, refresh}: the part of the form that has the job as a text. taken(job, source) is called with a job from a text or a file. */
+export function jobFile(form, taken) {
+  const wrong = h("p", { class: "error", id: "job-text-error", hidden: true });
+  const text = h("textarea", { id: "job-text", rows: 16, spellcheck: "false", "aria-describedby": "job-text-error" });
+  let timer = null;
+  text.addEventListener("input", () => {
+    clearTimeout(timer);
+    timer = setTimeout(read, WAIT);
+  });
+  function read() {
+    let job = null;
+    let problem = "";
+    try {
+      job = JSON.parse(text.value);
+      if (job === null || typeof job !== "object" || Array.isArray(job)) problem = "A job is a JSON object; put it in braces.";
+    } catch (error) {
+      problem = `This is no valid JSON yet: ${error.message}`;
+    }
+    wrong.textContent = problem;
+    wrong.hidden = !problem;
+    if (problem) text.setAttribute("aria-invalid", "true");
+    else text.removeAttribute("aria-invalid");
+    if (!problem) taken(job, null);
+  }
+
+  const file = h("input", { type: "file", id: "job-import", accept: ".toml,.json,application/json,application/toml", class: "hidden", tabindex: "-1", "aria-label": "Job file to import" });
+  file.addEventListener("change", () => {
+    if (file.files[0]) load(file.files[0]);
+    file.value = "";
+  });
+  async function load(given) {
+    try {
+      taken(await jobOf(given), given.name);
+      say(`${given.name} is in the form.`);
+    } catch (error) {
+      sayProblem(error);
+    }
+  }
+
+  const save = async (kind) => {
+    try {
+      const content = kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job);
+      download(content, kind === "json" ? "application/json" : "application/toml", `${slug(form.job.name)}.${kind}`);
+    } catch (error) {
+      sayProblem(error);
+    }
+  };
+  const node = h(
+    "section",
+    { class: "panel", "aria-labelledby": "s-file" },
+    h("h2", { id: "s-file" }, "Job file"),
+    h("p", { class: "row" }, h("button", { type: "button", onclick: () => file.click() }, "Import a file …"), h("button", { type: "button", onclick: () => save("toml") }, "Download TOML"), h("button", { type: "button", onclick: () => save("json") }, "Download JSON"), file, h("span", { class: "quiet" }, "or drop a .toml or .json file on the page")),
+    h("details", { class: "more" }, h("summary", {}, "The job as text"), h("p", { class: "quiet" }, "In step with the form; parts that the form has no fields for are written here."), h("label", { class: "hidden", for: "job-text" }, "Job as JSON"), text, wrong),
+  );
+  return {
+    node,
+    load,
+    refresh: () => {
+      if (document.activeElement === text) return;
+      text.value = JSON.stringify(form.job, null, 2);
+      wrong.hidden = true;
+      text.removeAttribute("aria-invalid");
+    },
+  };
+}
+
+async function jobOf(file) {
+  if (file.size > 1e6) throw new Problem(0, "A job file has at most 1 MB; is it the right file?");
+  const content = await file.text();
+  if (!/\.json$/i.test(file.name)) return (await post("parse", content, { headers: { "Content-Type": "application/toml" } })).job;
+  let job = null;
+  try {
+    job = JSON.parse(content);
+  } catch (error) {
+    throw new Problem(0, `${file.name} is no valid JSON: ${error.message}`);
+  }
+  if (job === null || typeof job !== "object" || Array.isArray(job)) throw new Problem(0, "A job is a JSON object; put it in braces.");
+  return job;
+}
+
+async function toml(job) {
+  const response = await fetch(address("toml"), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
+  if (!response.ok) throw new Problem(response.status, (await response.json()).detail);
+  return response.text();
+}
+
+function download(content, type, name) {
+  const link = h("a", { href: URL.createObjectURL(new Blob([content], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function slug(name) {
+  return String(name ?? "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "job";
+}
+
+/** Return the shipped jobs. */
+export async function presets(signal) {
+  return (await get("presets", {}, signal)).presets;
+}

@@ -1,0 +1,35 @@
+/** What a link weighs: nothing, by its mass, or by its section. */
+
+import { h } from "../lib/dom.js";
+import { byschema } from "./controls.js";
+import { field } from "./field.js";
+import { idOf } from "./path.js";
+
+const WAYS = {
+  none: { title: "without mass", first: undefined, keys: [], more: [] },
+  mass: { title: "by its mass", first: { mass: "0.5 kg" }, keys: ["mass"], more: ["inertia", "centre", "centre_across"] },
+  section: {
+    title: "bar of rectangular section",
+    first: { width: "30 mm", depth: "20 mm", density: "7800 kg/m^3" },
+    keys: ["width", "depth", "density"],
+    more: [],
+  },
+};
+
+/** Return the fields of crank or rod. */
+export function link(form, path, label) {
+  const given = form.at(path);
+  const way = given === undefined ? "none" : given && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";
+  const select = h("select", { id: idOf(path, "c") }, Object.entries(WAYS).map(([key, { title }]) => h("option", { value: key, selected: key === way }, title)));
+  select.addEventListener("change", () => {
+    form.put(path, structuredClone(WAYS[select.value].first));
+    form.redraw();
+  });
+  const { keys, more } = WAYS[way];
+  const fields = (names) => names.map((key) => byschema(form, [...path, key], { label: `${label}, ${key.replace("_", " ")}`, required: true }));
+  return [
+    field(form, path, `mass of the ${label}`, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),
+    fields(keys),
+    more.length ? h("details", { class: "more" }, h("summary", {}, `Mass centre and inertia of the ${label}`), h("div", { class: "fields" }, fields(more))) : null,
+  ];
+}

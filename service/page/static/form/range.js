@@ -1,0 +1,47 @@
+/** Where a dimension may lie: from one length to another, fixed, or one of several. */
+
+import { h } from "../lib/dom.js";
+import { numberInput, unitSelect } from "./controls.js";
+import { field } from "./field.js";
+import { idOf } from "./path.js";
+import { convert, join, split } from "./units.js";
+
+const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["choices", "one of"]];
+
+/** Return the field of the range of crank, rod or offset; why: {sentence, name}. */
+export function range(form, path, { label, why }) {
+  const given = form.at(path);
+  const mode = Array.isArray(given) ? "range" : given !== null && typeof given === "object" ? "choices" : given === undefined ? "range" : "fixed";
+  const ends = mode === "range" ? [given?.[0], given?.[1]] : mode === "fixed" ? [given] : given.choices ?? [];
+  const parts = ends.map((end) => split(end, "length"));
+  const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, "length").unit;
+  const numbers = parts.map((one) => convert(one.number, one.unit, unit, "length"));
+  const select = h("select", { id: idOf(path, "c"), class: "mode" }, MODES.map(([value, text]) => h("option", { value, selected: value === mode }, text)));
+  const units = unitSelect(label, "length", unit, false, idOf(path, "u"));
+  const inputs =
+    mode === "choices"
+      ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, lengths to choose from, separated by commas` })]
+      : numbers.map((value, place) => numberInput(idOf(path, place), value, mode === "fixed" ? `${label}, fixed at` : `${label}, ${place ? "to" : "from"}`));
+  const typed = () => (mode === "choices" ? inputs[0].value.split(",") : inputs.map((one) => one.value));
+  const write = (to = mode) => {
+    const values = typed().map((text) => join(text, units.value));
+    const first = values.find((one) => one !== undefined);
+    if (to === "range") form.put(path, first === undefined ? undefined : [values[0] ?? "", values.at(-1) ?? ""]);
+    else if (to === "fixed") form.put(path, first);
+    else form.put(path, { choices: values.filter((one) => one !== undefined) });
+  };
+  inputs.forEach((input) => input.addEventListener("input", () => write()));
+  units.addEventListener("change", () => {
+    const to = typed().map((text) => convert(text.trim(), units.dataset.from, units.value, "length"));
+    if (mode === "choices") inputs[0].value = to.join(", ");
+    else inputs.forEach((input, place) => (input.value = to[place]));
+    units.dataset.from = units.value;
+    write();
+  });
+  select.addEventListener("change", () => {
+    write(select.value);
+    form.redraw();
+  });
+  const between = mode === "range" ? [inputs[0], h("span", { class: "to" }, "to"), inputs[1]] : inputs;
+  return field(form, path, label, [select, ...between, units], why);
+}

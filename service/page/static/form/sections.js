@@ -1,0 +1,126 @@
+/** The sections of the form, in the order in which an engineer thinks. */
+
+import { h } from "../lib/dom.js";
+import { byschema, choice, quantity } from "./controls.js";
+import { link } from "./link.js";
+import { loads } from "./load.js";
+import { objective } from "./objective.js";
+import { range } from "./range.js";
+import { requirement } from "./requirement.js";
+import { solving } from "./solving.js";
+import { speed } from "./speed.js";
+
+const MOTION = ["stroke", "time_ratio"];
+const RULES = ["rod_to_offset", "rod_to_crank"];
+const USUAL = ["transmission_angle", "peak_torque"];
+const WANTED = ["time_ratio", "peak_torque", "transmission_angle", "position_error", "footprint"];
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance"]);
+
+/** Return the sections for a job, ready to be put into the form. */
+export function sections(form) {
+  form.fields.length = 0;
+  return [
+    section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
+    section("Motion", fields(speed(form), requirements(form, MOTION)), more("Acceleration of the crank, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "branch"]))),
+    section(
+      "Dimensions",
+      h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
+      h("h3", {}, "Rules of proportion"),
+      fields(requirements(form, RULES)),
+    ),
+    section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
+    section("Requirements", fields(requirements(form, USUAL), requirements(form, others(form))), adding(form)),
+    section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form)),
+    section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
+    section("Search", solving(form), more("Robust designs", robust(form)), more("Loose joint, for the simulation of its impacts", byschema(form, ["clearance"], { label: "clearance" }))),
+    kept(form),
+  ].filter(Boolean);
+}
+
+function section(title, ...content) {
+  const id = `s-${title.toLowerCase().replaceAll(" ", "-")}`;
+  return h("section", { class: "panel", "aria-labelledby": id }, h("h2", { id }, title), content);
+}
+
+function fields(...content) {
+  return h("div", { class: "fields" }, content);
+}
+
+function more(title, ...content) {
+  return h("details", { class: "more" }, h("summary", {}, title), h("div", { class: "fields" }, content));
+}
+
+function requirements(form, names) {
+  return names.map((name) => requirement(form, form.quantity(name)));
+}
+
+/** Return the quantities beside the usual ones that the job has requirements on. */
+function others(form) {
+  const usual = new Set([...MOTION, ...RULES, ...USUAL]);
+  return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));
+}
+
+function adding(form) {
+  const taken = new Set([...MOTION, ...RULES, ...USUAL, ...Object.keys(form.at(["constraints"]) ?? {})]);
+  const left = form.judging().filter(({ name }) => !taken.has(name));
+  const select = h("select", { id: "add-requirement" }, h("option", { value: "" }, "choose a quantity …"), left.map(({ name, title }) => h("option", { value: name }, title)));
+  select.addEventListener("change", () => {
+    if (!select.value) return;
+    const name = select.value;
+    form.put(["constraints", name], { max: "" });
+    form.redraw(`f-constraints-${name}-max`);
+  });
+  return h("p", { class: "row" }, h("label", { for: "add-requirement" }, "Another requirement"), select);
+}
+
+function masses(form) {
+  const slider = { kind: "mass", label: "slider mass", why: form.schema.property(["mechanism", "slider", "mass"]).description };
+  return [
+    link(form, ["mechanism", "crank"], "crank"),
+    link(form, ["mechanism", "rod"], "rod"),
+    quantity(form, ["mechanism", "slider", "mass"], slider),
+    byschema(form, ["mechanism", "gravity"]),
+    byschema(form, ["mechanism", "gravity_direction"]),
+  ];
+}
+
+function pins(form) {
+  return ["crank_pivot", "crank_pin", "slider_pin"].map((name) => byschema(form, ["friction", name]));
+}
+
+function wishes(form) {
+  const given = Object.keys(form.at(["objectives"]) ?? {});
+  const main = new Set([...WANTED, ...given]);
+  const all = form.judging();
+  return [
+    h("div", { class: "fields" }, all.filter(({ name }) => main.has(name)).map((one) => objective(form, one))),
+    h("details", { class: "more" }, h("summary", {}, "More quantities"), h("div", { class: "fields" }, all.filter(({ name }) => !main.has(name)).map((one) => objective(form, one)))),
+  ];
+}
+
+function tolerances(form) {
+  const dimension = (key) => byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
+  return [
+    h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
+    more("Clearances, and where the position matters", byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
+  ];
+}
+
+function robust(form) {
+  const on = form.at(["robust"]) !== undefined;
+  const select = choice(
+    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => form.put(["robust"], value ? { kind: "percentile" } : undefined), register: () => {} },
+    ["robust", "on"],
+    { options: ["yes"], label: "within the tolerances", fallback: "no", why: "Objectives and requirements as they are within the tolerances, instead of at the nominal dimensions.", changed: () => form.redraw() },
+  );
+  return [select, on ? byschema(form, ["robust"], { label: "robust" }) : null];
+}
+
+/** Return which parts of the job have no fields. */
+function kept(form) {
+  const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
+  const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));
+  const names = [...parts, ...varying.map((key) => `variables.${key}`)];
+  if (!names.length) return null;
+  return section("Other parts of the job", h("p", {}, `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`));
+}

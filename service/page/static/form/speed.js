@@ -1,0 +1,41 @@
+/** The speed of the crank and the way in which it turns: one value of the job, whose sign is the direction. */
+
+import { h } from "../lib/dom.js";
+import { numberInput, unitSelect } from "./controls.js";
+import { field } from "./field.js";
+import { idOf } from "./path.js";
+import { convert, join, split } from "./units.js";
+
+const PATH = ["mechanism", "speed"];
+
+/** Return the fields of speed and direction. */
+export function speed(form) {
+  const { number, unit } = split(form.at(PATH), "angular speed");
+  const backwards = number.startsWith("-");
+  const input = numberInput(idOf(PATH, "c"), number.replace(/^[+-]/, ""));
+  const units = unitSelect("crank speed", "angular speed", unit, false, idOf(PATH, "u"));
+  const way = h(
+    "select",
+    { id: idOf(PATH, "way") },
+    [["", "counter-clockwise"], ["-", "clockwise"]].map(([sign, text]) => h("option", { value: sign, selected: (sign === "-") === backwards }, text)),
+  );
+  const write = () => {
+    const typed = input.value.trim();
+    if (/^[-−]/.test(typed)) {
+      way.value = "-"; // as typed, so that nothing is turned round twice
+      input.value = typed.slice(1);
+    }
+    form.put(PATH, input.value.trim() === "" ? undefined : join(way.value + input.value.trim(), units.value));
+  };
+  input.addEventListener("input", write);
+  way.addEventListener("change", write);
+  units.addEventListener("change", () => {
+    input.value = convert(input.value, units.dataset.from, units.value, "angular speed");
+    units.dataset.from = units.value;
+    write();
+  });
+  return [
+    field(form, PATH, "crank speed", [input, units], "The speed at which the crank turns; it is taken as steady."),
+    field(form, [...PATH, "direction"], "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
+  ];
+}

@@ -1,0 +1,96 @@
+/** Above and below every axis: its name, its place among the others, and its limits as fields. */
+
+import { fill, h } from "../lib/dom.js";
+import { fromShown, text } from "../lib/numbers.js";
+import { headed, helpLink } from "./columns.js";
+
+const MOST_WORDS = 8; // as ticks; the rest stays in the table
+
+/** Return {above, below, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits. */
+export function axisFields(explorer) {
+  const above = h("div", { class: "axis-heads" });
+  const below = h("div", { class: "axis-limits" });
+  let fields = [];
+
+  function draw() {
+    const { axes } = explorer.chosen;
+    for (const place of [above, below]) place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
+    fill(above, axes.map((axis, index) => head(axis, index, axes.length)));
+    fields = axes.map(({ key }) => field(key));
+    fill(below, fields.map(({ node }) => node));
+    limits();
+  }
+
+  function head({ key, flipped }, index, count) {
+    const column = explorer.data.column(key);
+    const act = (sign, label, doing, disabled = false) =>
+      h("button", { type: "button", class: "small", title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: (event) => {
+        const { act: held } = event.currentTarget.dataset;
+        doing();
+        above.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+      } }, sign);
+    return h("div", { class: "axis-head" },
+      h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
+      h("div", { class: "axis-acts" },
+        act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
+        act(flipped ? "↑" : "↓", "Flip", () => explorer.flipAxis(index)),
+        act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
+        act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
+  }
+
+  function field(key) {
+    const column = explorer.data.column(key);
+    const words = explorer.data.words(key);
+    if (words) return ofWords(key, column, words.slice(0, MOST_WORDS));
+    const { low, high } = explorer.data.range(key);
+    const input = (side, placeholder, label) =>
+      h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder: text(placeholder, column.unit, 4), "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
+    const least = input("min", low, "At least");
+    const most = input("max", high, "At most");
+    function take() {
+      const [from, to] = [least, most].map((node) => number(node, column.unit));
+      const bad = from === undefined || to === undefined;
+      if (!bad) explorer.limit(key, { low: from, high: to });
+    }
+    return {
+      key,
+      node: h("div", { class: "axis-limit", role: "group", "aria-label": `Limits of ${column.title}` }, most, least),
+      show(limit) {
+        for (const [node, value] of [[least, limit?.low], [most, limit?.high]]) {
+          if (document.activeElement === node && node.value.trim() && number(node, column.unit) === value) continue;
+          node.value = value === null || value === undefined ? "" : text(value, column.unit, 6);
+          node.removeAttribute("aria-invalid");
+        }
+      },
+    };
+  }
+
+  function ofWords(key, column, words) {
+    const ticks = words.map((word) => h("input", { type: "checkbox", value: word, "data-limit": `is.${key}`, onchange: () => {
+      const wanted = ticks.filter(({ checked }) => checked).map(({ value }) => value);
+      explorer.limit(key, wanted.length === words.length ? null : { words: wanted });
+    } }));
+    return {
+      key,
+      node: h("div", { class: "axis-limit", role: "group", "aria-label": `Only ${column.title}` }, ticks.map((tick) => h("label", {}, tick, ` ${tick.value}`))),
+      show(limit) {
+        for (const tick of ticks) tick.checked = !limit?.words || limit.words.includes(tick.value);
+      },
+    };
+  }
+
+  function limits() {
+    for (const { key, show } of fields) show(explorer.limits.of.get(key));
+  }
+  return { above, below, draw, limits };
+}
+
+/** Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none. */
+function number(node, unit) {
+  const written = node.value.trim().replace("−", "-").replace(",", ".");
+  const value = written === "" ? null : fromShown(Number(written), unit);
+  const fine = value === null || Number.isFinite(value);
+  if (fine) node.removeAttribute("aria-invalid");
+  else node.setAttribute("aria-invalid", "true");
+  return fine ? value : undefined;
+}

@@ -1,0 +1,84 @@
+/** What is chosen in the explorer of a front, to and from the address. */
+
+const MOST = 3; // designs side by side
+
+/** Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights. */
+export function choicesFrom(query, front) {
+  const keys = front.columns.map(({ key }) => key);
+  const known = (key) => keys.includes(key);
+  const objectives = front.objectives.map(({ column }) => column);
+  const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
+  const labels = keys.filter((key) => key.startsWith("choice_"));
+  const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
+  const one = (name, otherwise) => (known(query.get(name)) ? query.get(name) : otherwise);
+  const axes = list("axes").map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") })).filter(({ key }) => known(key));
+  const standard = [...sizes, ...labels, ...objectives];
+  const columns = list("columns").filter(known);
+  const sort = (query.get("sort") ?? "").replace(/^-/, "");
+  const weights = (query.get("weights") ?? "").split(",").map(Number);
+  return {
+    axes: axes.length ? axes : standard.map((key) => ({ key, flipped: false })),
+    limits: limitsFrom(query, known),
+    lasso: lassoFrom(query, known),
+    x: one("x", objectives[0] ?? keys[0]),
+    y: one("y", objectives[1] ?? sizes[0] ?? keys[0]),
+    colour: query.get("colour") === "none" ? "" : one("colour", objectives[2] ?? ""),
+    columns: columns.length ? columns : [...objectives, ...labels, ...sizes],
+    sort: known(sort) ? sort : "",
+    reverse: (query.get("sort") ?? "").startsWith("-"),
+    page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
+    selected: list("selected").map(Number).filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count).slice(0, MOST),
+    weights: weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10) ? weights : null,
+    standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes].join(",") },
+  };
+}
+
+function limitsFrom(query, known) {
+  const limits = new Map();
+  for (const [name, text] of query) {
+    const [, side, key] = /^(min|max|is)\.(.+)$/.exec(name) ?? [];
+    if (!side || !known(key)) continue;
+    if (side === "is") limits.set(key, { words: text.split("|") });
+    else if (text !== "" && Number.isFinite(Number(text))) {
+      limits.set(key, { low: null, high: null, ...limits.get(key), [side === "min" ? "low" : "high"]: Number(text) });
+    }
+  }
+  return limits;
+}
+
+function lassoFrom(query, known) {
+  const [x, y, ...corners] = (query.get("lasso") ?? "").split(",");
+  const numbers = corners.map(Number);
+  if (!known(x) || !known(y) || numbers.length < 6 || numbers.length % 2 || !numbers.every(Number.isFinite)) return null;
+  return { x, y, line: Array.from({ length: numbers.length / 2 }, (_, index) => [numbers[2 * index], numbers[2 * index + 1]]) };
+}
+
+/** Return the query of an address; what is as it would be anyway is left out. */
+export function queryOf(chosen, lasso) {
+  const { standard } = chosen;
+  const unless = (value, usual) => (value === usual ? "" : value);
+  const query = {
+    axes: unless(chosen.axes.map(({ key, flipped }) => `${flipped ? "-" : ""}${key}`).join(","), standard.axes),
+    x: unless(chosen.x, standard.x),
+    y: unless(chosen.y, standard.y),
+    colour: unless(chosen.colour, standard.colour) || (chosen.colour === "" && standard.colour ? "none" : ""),
+    columns: unless(chosen.columns.join(","), standard.columns),
+    sort: chosen.sort ? `${chosen.reverse ? "-" : ""}${chosen.sort}` : "",
+    page: chosen.page > 1 ? chosen.page : "",
+    selected: chosen.selected.join(","),
+    weights: chosen.weights?.join(",") ?? "",
+    lasso: lasso ? [lasso.x, lasso.y, ...lasso.line.flat().map((number) => Number(number.toPrecision(5)))].join(",") : "",
+  };
+  for (const [key, limit] of chosen.limits) {
+    if (limit.words) query[`is.${key}`] = limit.words.join("|");
+    if (limit.low !== undefined && limit.low !== null) query[`min.${key}`] = limit.low;
+    if (limit.high !== undefined && limit.high !== null) query[`max.${key}`] = limit.high;
+  }
+  return query;
+}
+
+/** Return the selected designs with one more, or one less; the first goes when there are too many. */
+export function toggled(selected, number) {
+  if (selected.includes(number)) return selected.filter((one) => one !== number);
+  return [...selected, number].slice(-MOST);
+}

@@ -1,0 +1,31 @@
+/** Which quantities are shown: a list of ticks that opens. */
+
+import { h } from "../lib/dom.js";
+
+/** Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order. */
+export function chooser(heading, columns, chosen, choose) {
+  const ticks = columns.map(({ key, title, unit }) => {
+    const tick = h("input", { type: "checkbox", value: key, onchange: () => {
+      const before = chosen().filter((one) => one !== key);
+      choose(tick.checked ? [...before, key] : before);
+      if (!chosen().includes(key)) tick.checked = false;
+    } });
+    return { tick, label: h("label", {}, tick, ` ${title}${unit ? `, ${unit}` : ""}`) };
+  });
+  const find = h("input", { type: "search", "aria-label": `Find a quantity for ${heading.toLowerCase()}`, placeholder: "Find", oninput: () => {
+    const wanted = find.value.trim().toLowerCase();
+    for (const { label } of ticks) label.hidden = !label.textContent.toLowerCase().includes(wanted);
+  } });
+  const node = h("details", { class: "chooser", ontoggle: () => {
+    for (const { tick } of ticks) tick.checked = chosen().includes(tick.value);
+  } }, h("summary", { class: "button" }, heading), h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)));
+  node.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !node.open) return;
+    node.open = false;
+    node.querySelector("summary").focus();
+  });
+  node.addEventListener("focusout", (event) => {
+    if (event.relatedTarget && !node.contains(event.relatedTarget)) node.open = false;
+  });
+  return node;
+}

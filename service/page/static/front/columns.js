@@ -1,0 +1,34 @@
+/** What the columns of a table of designs are called where the service does not say it beside them. */
+
+import { link } from "../lib/address.js";
+import { unitOf, withUnit } from "../lib/numbers.js";
+
+// How a key ends, and the unit that this means; the longer endings first.
+const ENDINGS = [
+  ["_m_s3", "m/s^3"], ["_m_s2", "m/s^2"], ["_m_s", "m/s"], ["_kg_m2", "kg m^2"], ["_kg_m3", "kg/m^3"], ["_kg", "kg"],
+  ["_rad_s2", "rad/s^2"], ["_rpm", "rpm"], ["_Ns_per_m", "N s/m"], ["_N_per_m", "N/m"], ["_m2", "m^2"], ["_Nm", "N m"],
+  ["_mm", "mm"], ["_deg", "deg"], ["_N", "N"], ["_W", "W"], ["_MPa", "MPa"],
+];
+
+/** Return {key, title, unit} of a key such as "peak_torque_Nm". */
+export function columnOf(key) {
+  const [ending, unit] = ENDINGS.find(([ending]) => key.endsWith(ending)) ?? ["", ""];
+  return { key, title: key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
+}
+
+/** Return the link to what a column means; the slack of a quantity is explained with it. */
+export function helpLink(key) {
+  return link(["help", key.replace(/^slack_/, "")]);
+}
+
+/** Return a value of a column with its title and unit: "peak torque 3.12 N m". */
+export function named(key, value, digits = 4) {
+  const { title, unit } = columnOf(key);
+  return `${title} ${withUnit(value, unit, digits)}`;
+}
+
+/** Return a title with the unit that the reader chose, on one line. */
+export function headed(column) {
+  const unit = unitOf(column.unit);
+  return unit ? `${column.title}, ${unit}` : column.title;
+}

@@ -1,0 +1,255 @@
+/** The explorer of a front: parallel coordinates, scatter, table and marks of the same designs, linked. */
+
+import { parallel } from "../charts/parallel.js";
+import { scatter } from "../charts/scatter.js";
+import { colours } from "../charts/scale.js";
+import { keep, link } from "../lib/address.js";
+import { h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
+import { axisFields } from "./axes.js";
+import { chooser } from "./chooser.js";
+import { choicesFrom, queryOf, toggled } from "./choices.js";
+import { FrontData } from "./data.js";
+import { Limits } from "./limits.js";
+import { marksPanel } from "./marks.js";
+import { scatterPanel } from "./scatter_panel.js";
+import { selectedBar } from "./selected.js";
+import { designTable } from "./table.js";
+
+const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
+const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
+const ORDER = ["marks", "table", "chosen", "all"];
+
+/** Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. */
+export async function explore(place, { job, front, values, query, signal }) {
+  const explorer = new Explorer(job, front, query, signal);
+  explorer.data.take(values);
+  await explorer.data.need(explorer.wanted());
+  if (!signal.aborted) explorer.build(place);
+  return explorer;
+}
+
+class Explorer {
+  constructor(job, front, query, signal) {
+    this.job = job;
+    this.front = front;
+    this.signal = signal;
+    this.data = new FrontData(job.id, front, signal);
+    this.chosen = choicesFrom(query, front);
+    this.limits = new Limits(this.data, this.chosen.limits, this.chosen.lasso);
+    this.pointed = null;
+    this.picked = null; // by weights
+    this.waiting = null;
+    this.frame = 0;
+  }
+
+  /** Return the columns that are shown or limited. */
+  wanted() {
+    const { axes, x, y, colour, columns, sort } = this.chosen;
+    const { lasso } = this.limits;
+    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys(), lasso?.x, lasso?.y].filter(Boolean);
+  }
+
+  build(place) {
+    const { data, chosen } = this;
+    this.count = h("p", { class: "count", role: "status" });
+    this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
+    this.fields = axisFields(this);
+    this.lines = parallel({
+      data, limits: this.limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
+    });
+    const dots = {
+      data, limits: this.limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"),
+      point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
+      box: (x, y) => {
+        this.limits.set(chosen.x, x);
+        this.limit(chosen.y, y);
+      },
+      lasso: (line) => this.surround(line),
+    };
+    this.dots = scatter(dots);
+    this.scatterPanel = scatterPanel(this, this.dots);
+    this.table = designTable(this);
+    this.marksPanel = marksPanel(this);
+    this.selected = selectedBar(this);
+    const columns = data.columns;
+    place.replaceChildren(
+      h("section", { class: "panel", "aria-labelledby": "lines-title" },
+        h("div", { class: "row spread" }, h("h2", { id: "lines-title" }, "All designs"), this.count,
+          h("div", { class: "row" }, this.clearing, chooser("Axes", columns, () => chosen.axes.map(({ key }) => key), (keys) => this.chooseAxes(keys)))),
+        h("p", { class: "quiet hint" }, "Drag along an axis to keep a part of it; double click to let go. The fields below do the same."),
+        h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
+      h("div", { class: "explorer-columns" }, this.scatterPanel.place, this.marksPanel.place),
+      h("section", { class: "panel", "aria-labelledby": "table-title" },
+        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
+          chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
+        this.table.place));
+    this.place = place;
+    const again = () => this.update("all");
+    const sizes = new ResizeObserver(() => this.width !== place.clientWidth && again());
+    sizes.observe(place);
+    this.signal.addEventListener("abort", () => {
+      sizes.disconnect();
+      clearTimeout(this.settling);
+      clearTimeout(this.tabling);
+      cancelAnimationFrame(this.frame);
+    });
+    for (const name of ["units", "scheme"]) window.addEventListener(name, again, { signal: this.signal });
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again, { signal: this.signal });
+    this.draw("all");
+  }
+
+  /** Take over choices and draw what they change: "marks", "table", "chosen" (designs) or "all". */
+  async change(choices, what) {
+    Object.assign(this.chosen, choices);
+    try {
+      await this.data.need(this.wanted());
+    } catch (problem) {
+      sayProblem(problem);
+      return;
+    }
+    this.update(what);
+  }
+
+  /** Set a limit, null to let go. */
+  limit(key, limit) {
+    this.limits.set(key, limit);
+    this.chosen.page = 1;
+    if (this.data.has(key)) this.update("chosen");
+    else this.change({}, "chosen");
+  }
+
+  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. */
+  surround(line) {
+    this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
+    this.chosen.page = 1;
+    this.update("chosen");
+  }
+
+  clear() {
+    this.limits.clear();
+    this.change({ page: 1 }, "chosen");
+    this.update("marks"); // a line around designs is drawn with them
+  }
+
+  /** Draw in the next frame; several changes within a frame are drawn once. */
+  update(what) {
+    if (ORDER.indexOf(what) > ORDER.indexOf(this.waiting)) this.waiting = what;
+    if (this.frame || this.signal.aborted) return;
+    this.frame = requestAnimationFrame(() => {
+      const { waiting } = this;
+      [this.frame, this.waiting] = [0, null];
+      this.draw(waiting);
+      clearTimeout(this.settling);
+      this.settling = setTimeout(() => keep(queryOf(this.chosen, this.limits.lasso)), SETTLED);
+    });
+  }
+
+  draw(what) {
+    if (what === "all" || what === "chosen") {
+      this.limits.apply();
+      const { chosen } = this.limits;
+      this.count.textContent = `${chosen.toLocaleString("en")} of ${this.data.count.toLocaleString("en")} designs chosen`;
+      this.clearing.disabled = this.limits.open;
+    }
+    if (what === "all") {
+      this.width = this.place.clientWidth;
+      this.ink = colours();
+      this.fields.draw();
+      this.scatterPanel.draw();
+    } else if (what === "chosen") this.fields.limits();
+    if (what !== "table") {
+      this.lines.draw(what);
+      this.dots.draw(what);
+      this.scatterPanel.point();
+    }
+    if (what === "all") this.scatterPanel.legend();
+    if (what === "marks") this.table.mark();
+    else this.drawTable(what === "chosen");
+    this.marksPanel.draw(what);
+    this.selected.draw();
+  }
+
+  /** Draw the table, soon where it may wait and was drawn a moment ago. */
+  drawTable(waits) {
+    clearTimeout(this.tabling);
+    const passed = performance.now() - (this.tabled ?? -Infinity);
+    if (waits && passed < OFTEN) {
+      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - passed);
+      return;
+    }
+    this.tabled = performance.now();
+    this.table.draw();
+  }
+
+  /** Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones. */
+  marks(kind) {
+    const { ink } = this;
+    const found = [];
+    if (kind === "dots") for (const [row, names] of this.names()) found.push({ row, colour: ink.text, name: names[0] });
+    else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
+    if (this.picked !== null) found.push({ row: this.picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
+    for (const number of this.chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
+    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5 });
+    return found;
+  }
+
+  /** Return the names of marked designs by their row: knee, best in an objective, by weights. */
+  names() {
+    const names = new Map();
+    const add = (row, name) => names.set(row, [...(names.get(row) ?? []), name]);
+    if (this.front.knee !== null) add(this.front.knee, "knee");
+    for (const [quantity, row] of Object.entries(this.front.extremes)) {
+      const title = this.data.objectives.find((objective) => objective.quantity === quantity)?.title ?? quantity;
+      add(row, `best ${title}`);
+    }
+    return names;
+  }
+
+  point(row) {
+    if (row === this.pointed) return;
+    this.pointed = row;
+    this.update("marks");
+  }
+
+  open(row) {
+    keep(queryOf(this.chosen, this.limits.lasso)); // so that the way back leads here
+    location.hash = this.hrefOf(row);
+  }
+
+  /** Return the link of a design, beside the selected ones if it is one of them. */
+  hrefOf(row) {
+    return link(["jobs", this.job.id, "designs", row + 1]);
+  }
+
+  select(row) {
+    this.chosen.selected = toggled(this.chosen.selected, row + 1);
+    this.update("marks");
+  }
+
+  sortBy(key) {
+    const { sort, reverse } = this.chosen;
+    const best = this.data.sense(key) === "maximise";
+    this.change({ sort: key, reverse: sort === key ? !reverse : best, page: 1 }, "table");
+  }
+
+  setAxes(axes) {
+    this.change({ axes }, "all");
+  }
+
+  chooseAxes(keys) {
+    if (!keys.length) return;
+    const { axes } = this.chosen;
+    this.setAxes(keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }));
+  }
+
+  moveAxis(index, by) {
+    const axes = [...this.chosen.axes];
+    axes.splice(index + by, 0, ...axes.splice(index, 1));
+    this.setAxes(axes);
+  }
+
+  flipAxis(index) {
+    this.setAxes(this.chosen.axes.map((axis, other) => (other === index ? { ...axis, flipped: !axis.flipped } : axis)));
+  }
+}

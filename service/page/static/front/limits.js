@@ -1,0 +1,78 @@
+/** Limits on quantities, and which designs are within all of them. */
+
+import { inside } from "../charts/lasso.js";
+
+const NEAR = 1e-9; // relative: a design on a limit is within it, also where the limit was rounded on its way through a unit
+
+/**
+ * Limits by column: {low, high}, each a number or null, for numbers; {words: [...]} for words. Beside them a line drawn around
+ * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
+ */
+export class Limits {
+  constructor(data, given = new Map(), lasso = null) {
+    this.data = data;
+    this.of = given;
+    this.lasso = lasso;
+    this.mask = new Uint8Array(data.count);
+    this.chosen = 0;
+  }
+
+  /** Set the limit of a column, or take it away with null. */
+  set(key, limit) {
+    const open = !limit || (limit.words ? limit.words.length === 0 : limit.low === null && limit.high === null);
+    if (open) this.of.delete(key);
+    else this.of.set(key, limit);
+  }
+
+  /** Find the designs within all limits; columns that are not here yet do not count. */
+  apply() {
+    const { mask, data } = this;
+    mask.fill(1);
+    for (const [key, limit] of this.of) {
+      if (!data.has(key)) continue;
+      const numbers = data.numbers(key);
+      if (limit.words) {
+        const allowed = new Set(limit.words.map((word) => data.words(key)?.indexOf(word)));
+        for (let row = 0; row < mask.length; row += 1) if (!allowed.has(numbers[row])) mask[row] = 0;
+      } else {
+        const low = limit.low === null ? -Infinity : limit.low - NEAR * Math.abs(limit.low);
+        const high = limit.high === null ? Infinity : limit.high + NEAR * Math.abs(limit.high);
+        // Written so that a design without a value is outside.
+        for (let row = 0; row < mask.length; row += 1) if (!(numbers[row] >= low && numbers[row] <= high)) mask[row] = 0;
+      }
+    }
+    if (this.lasso && data.has(this.lasso.x) && data.has(this.lasso.y)) {
+      const [across, up] = [data.numbers(this.lasso.x), data.numbers(this.lasso.y)];
+      for (let row = 0; row < mask.length; row += 1) if (mask[row] && !inside(this.lasso.line, across[row], up[row])) mask[row] = 0;
+    }
+    let chosen = 0;
+    for (let row = 0; row < mask.length; row += 1) chosen += mask[row];
+    this.chosen = chosen;
+  }
+
+  /** Whether there is none. */
+  get open() {
+    return !this.of.size && !this.lasso;
+  }
+
+  /** Let all of them go. */
+  clear() {
+    this.of.clear();
+    this.lasso = null;
+  }
+
+  /** Return the limits as conditions of the API, which knows no line around designs. */
+  conditions() {
+    const found = [];
+    for (const [key, limit] of this.of) {
+      if (limit.words) {
+        const others = (this.data.words(key) ?? []).filter((word) => !limit.words.includes(word));
+        found.push(...others.map((word) => `${key} != ${word}`));
+      } else {
+        if (limit.low !== null) found.push(`${key} >= ${limit.low}`);
+        if (limit.high !== null) found.push(`${key} <= ${limit.high}`);
+      }
+    }
+    return found;
+  }
+}

@@ -1,0 +1,95 @@
+/** What is worth a look in a front: the extremes, the knee with its trade-offs, and what weights choose. */
+
+import { get } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
+import { withUnit } from "../lib/numbers.js";
+
+const PAUSE = 150; // ms after a slider moved
+
+/** Return {place, draw(what)} of the marks of an explorer. */
+export function marksPanel(explorer) {
+  const { data, front, chosen } = explorer;
+  const list = h("ul", { class: "marks" });
+  const picked = h("p", { role: "status" });
+  const sliders = data.objectives.map((objective, index) => slider(objective, index));
+  const off = h("button", { type: "button", onclick: () => weigh(null) }, "Without weights");
+  const several = data.objectives.length > 1;
+  const place = h("section", { class: "panel", "aria-labelledby": "marks-title" },
+    h("h2", { id: "marks-title" }, "Worth a look"),
+    list,
+    front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), h("ul", { class: "trade-offs" }, front.trade_offs.map((sentence) => h("li", {}, sentence)))],
+    several && [h("h3", {}, "Weigh the objectives"),
+      h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
+      h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
+  let timer = null;
+  let asked = "";
+  explorer.signal.addEventListener("abort", () => clearTimeout(timer));
+
+  function slider({ title }, index) {
+    const value = h("output", { class: "number" });
+    const input = h("input", { type: "range", min: 0, max: 10, step: 1, name: `weight-${index}`, oninput: () => {
+      const weights = chosen.weights ? [...chosen.weights] : data.objectives.map(() => 1);
+      weights[index] = Number(input.value);
+      weigh(weights);
+    } });
+    return { input, value, node: h("label", {}, h("span", {}, title), input, value) };
+  }
+
+  function weigh(weights) {
+    explorer.change({ weights }, "marks");
+  }
+
+  /** Ask which design the weights choose, unless that was asked already. */
+  function ask() {
+    clearTimeout(timer);
+    const { weights } = chosen;
+    if (!weights || weights.every((weight) => weight === 0)) {
+      asked = "";
+      if (explorer.picked !== null) {
+        explorer.picked = null;
+        explorer.update("marks");
+      }
+      picked.textContent = weights ? "Give one of them a weight." : "";
+      return;
+    }
+    const topsis = data.objectives.map(({ quantity }, index) => `${quantity}=${weights[index]}`).join(", ");
+    const where = explorer.limits.conditions();
+    const question = JSON.stringify([topsis, where]);
+    if (question === asked) return;
+    timer = setTimeout(async () => {
+      asked = question;
+      try {
+        const { number } = await get(`jobs/${explorer.job.id}/pick`, { topsis, where }, explorer.signal);
+        if (asked !== question) return;
+        explorer.picked = number - 1;
+        fill(picked, "These weights choose ", h("a", { href: explorer.hrefOf(number - 1) }, `design ${number}`), ".");
+      } catch (problem) {
+        if (asked !== question || problem.name === "AbortError") return;
+        explorer.picked = null;
+        if (problem.status === 404) picked.textContent = "No design is within all limits.";
+        else sayProblem(problem);
+      }
+      explorer.update("marks");
+    }, PAUSE);
+  }
+
+  function item(row, name) {
+    const of = data.objectives.map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4)).join(" · ");
+    return h("li", { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
+      h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.point(row), onblur: () => explorer.point(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of));
+  }
+
+  async function draw(what) {
+    sliders.forEach(({ input, value }, index) => {
+      input.value = chosen.weights?.[index] ?? 1;
+      value.textContent = chosen.weights ? chosen.weights[index] : "–";
+    });
+    off.hidden = !chosen.weights;
+    ask();
+    if (what !== "all") return;
+    await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
+    fill(list, [...explorer.names()].map(([row, names]) => item(row, names.join(", "))));
+  }
+  return { place, draw };
+}

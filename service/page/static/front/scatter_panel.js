@@ -1,0 +1,70 @@
+/** The scatter with what it shows: which quantities, the legend of its colours, the design that is pointed at. */
+
+import { fill, h } from "../lib/dom.js";
+import { text, withUnit } from "../lib/numbers.js";
+import { headed } from "./columns.js";
+
+/** Return {place, draw(), legend(), point()} around the scatter of an explorer. */
+export function scatterPanel(explorer, dots) {
+  const { data, chosen } = explorer;
+  const pick = (label, name, none) =>
+    h("label", {}, `${label} `, h("select", { name, onchange: (event) => explorer.change({ [name]: event.target.value }, "all") },
+      none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title))));
+  const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.target.value === "line") },
+    h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
+  const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
+  const key = h("div", { class: "legend" });
+  const tip = h("div", { class: "tip panel", hidden: true });
+  const place = h("section", { class: "panel", "aria-labelledby": "scatter-title" },
+    h("h2", { id: "scatter-title" }, "Trade-offs"),
+    h("div", { class: "row picks" }, picks, drag),
+    h("div", { class: "dots" }, dots.place, tip),
+    key,
+    h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
+
+  function draw() {
+    for (const one of picks) {
+      const select = one.querySelector("select");
+      select.value = chosen[select.name];
+    }
+  }
+
+  function legend() {
+    if (!chosen.colour) {
+      fill(key);
+      return;
+    }
+    const column = data.column(chosen.colour);
+    const words = data.words(chosen.colour);
+    const inks = dots.colours();
+    const patch = (ink, wide) => {
+      const node = h("span", { class: wide ? "shade" : "patch" });
+      node.style.background = ink;
+      return node;
+    };
+    if (words) {
+      fill(key, h("span", {}, `${column.title}:`), words.map((word, index) => h("span", {}, patch(inks[index % inks.length]), ` ${word}`)));
+      return;
+    }
+    const { low, high } = data.range(chosen.colour);
+    fill(key, h("span", {}, headed(column)), h("span", {}, text(low, column.unit, 4)), h("span", { class: "shades" }, inks.map((ink) => patch(ink, true))), h("span", {}, text(high, column.unit, 4)));
+  }
+
+  /** Say which design is pointed at. */
+  function point() {
+    const row = explorer.pointed;
+    tip.hidden = row === null;
+    if (row === null) return;
+    const shown = [...new Set([chosen.x, chosen.y, chosen.colour, ...data.objectives.map(({ column }) => column)])].filter((one) => one && data.has(one));
+    fill(tip, h("strong", {}, `Design ${row + 1}`), h("dl", {}, shown.map((one) => {
+      const column = data.column(one);
+      return [h("dt", {}, column.title), h("dd", { class: "number" }, withUnit(data.cell(one, row), column.unit))];
+    })));
+    const at = dots.where(row);
+    const left = at.x > dots.place.clientWidth / 2;
+    tip.style.left = left ? "auto" : `${at.x + 14}px`;
+    tip.style.right = left ? `${dots.place.clientWidth - at.x + 14}px` : "auto";
+    tip.style.top = `${Math.max(0, at.y - 20)}px`;
+  }
+  return { place, draw, legend, point };
+}

@@ -1,0 +1,23 @@
+/** The designs that are selected, and the way to see them side by side. */
+
+import { link } from "../lib/address.js";
+import { fill, h } from "../lib/dom.js";
+
+/** Return {place, draw()} for the selected designs of an explorer. */
+export function selectedBar(explorer) {
+  const place = h("div", { class: "row selected-designs" });
+  let shown = null;
+
+  function draw() {
+    const { selected } = explorer.chosen;
+    if (shown === selected.join()) return;
+    shown = selected.join();
+    const [first, ...others] = selected;
+    fill(place,
+      selected.length === 0 && h("span", { class: "quiet" }, "Tick two or three designs to see them side by side"),
+      selected.length === 1 && h("span", { class: "quiet" }, `Design ${first} is selected; tick another one`),
+      selected.length > 1 && h("a", { class: "button primary", href: link(["jobs", explorer.job.id, "designs", first], { beside: others.join(",") }) }, `Designs ${selected.join(", ")} side by side`),
+      selected.length > 0 && h("button", { type: "button", onclick: () => explorer.change({ selected: [] }, "marks") }, "Select none"));
+  }
+  return { place, draw };
+}

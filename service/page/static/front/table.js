@@ -1,0 +1,117 @@
+/** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
+
+import { fill, h } from "../lib/dom.js";
+import { inShown, text } from "../lib/numbers.js";
+import { headed, helpLink } from "./columns.js";
+
+const PAGE = 20;
+
+/** Return {place, draw()} of the table of an explorer. */
+export function designTable(explorer) {
+  const head = h("thead");
+  const body = h("tbody");
+  const caption = h("caption", { class: "hidden" }, "The chosen designs");
+  const pages = h("nav", { class: "row pages", "aria-label": "Pages of designs" });
+  const place = h("div", {}, h("div", { class: "scroll" }, h("table", { class: "designs" }, caption, head, body)), pages);
+  body.addEventListener("keydown", keys);
+
+  function rows() {
+    const { chosen, data, limits } = explorer;
+    const { mask } = limits;
+    const found = new Uint32Array(limits.chosen);
+    let count = 0;
+    if (!chosen.sort || !data.has(chosen.sort)) {
+      for (let row = 0; row < mask.length; row += 1) if (mask[row]) found[count++] = row;
+      return found;
+    }
+    const numbers = data.numbers(chosen.sort);
+    for (const row of data.order(chosen.sort)) if (mask[row]) found[count++] = row;
+    let defined = count;
+    while (defined > 0 && Number.isNaN(numbers[found[defined - 1]])) defined -= 1; // these stay last, whichever way
+    if (chosen.reverse) found.subarray(0, defined).reverse();
+    return found;
+  }
+
+  function draw() {
+    const { chosen, data, limits } = explorer;
+    const found = rows();
+    const last = Math.max(1, Math.ceil(found.length / PAGE));
+    const page = Math.min(chosen.page, last);
+    const columns = chosen.columns.filter((key) => data.has(key));
+    const held = document.activeElement?.closest?.("th, td, nav") && place.contains(document.activeElement) ? document.activeElement.dataset.act : null;
+    fill(head, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "hidden" }, "Selected")), h("th", { scope: "col" }, "design"), columns.map(heading)));
+    const names = explorer.names();
+    fill(body, [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)));
+    if (!found.length) fill(body, h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")));
+    const turn = (sign, label, to, disabled) => h("button", { type: "button", "aria-label": label, "data-act": label, disabled, onclick: () => explorer.change({ page: to }, "table") }, sign);
+    const first = (page - 1) * PAGE;
+    fill(pages,
+      turn("«", "First page", 1, page === 1), turn("‹", "Previous page", page - 1, page === 1),
+      h("span", {}, found.length ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${limits.chosen.toLocaleString("en")}` : "0"),
+      turn("›", "Next page", page + 1, page === last), turn("»", "Last page", last, page === last));
+    if (held) place.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+    mark();
+  }
+
+  function heading(key) {
+    const column = explorer.data.column(key);
+    const { sort, reverse } = explorer.chosen;
+    const sorted = sort === key ? (reverse ? "descending" : "ascending") : "none";
+    const words = explorer.data.words(key);
+    return h("th", { scope: "col", class: words ? null : "number", "aria-sort": sorted },
+      h("button", { type: "button", class: "sort", "data-act": `sort-${key}`, title: `Sort by ${column.title}`, onclick: () => explorer.sortBy(key) },
+        headed(column), h("span", { "aria-hidden": "true" }, { ascending: " ▲", descending: " ▼", none: "" }[sorted])),
+      h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"));
+  }
+
+  function line(row, columns, names) {
+    const { data, chosen } = explorer;
+    const number = row + 1;
+    return h("tr", { "data-row": row, onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
+      h("td", {}, h("input", { type: "checkbox", "data-act": `select-${row}`, checked: chosen.selected.includes(number), "aria-label": `Select design ${number}`, onchange: () => explorer.select(row) })),
+      h("td", {},
+        h("a", { href: explorer.hrefOf(row), "data-act": `open-${row}`, onfocus: () => explorer.point(row), onblur: () => explorer.point(null) }, `${number}`),
+        (names.get(row) ?? []).map((name) => h("span", { class: "mark-name" }, name))),
+      columns.map((key) => {
+        const value = data.cell(key, row);
+        return h("td", { class: data.words(key) ? null : "number" }, aligned(value, data.column(key).unit, data.range(key)));
+      }));
+  }
+
+  /** Arrows go from row to row, Enter opens, the space bar selects. */
+  function keys(event) {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const row = event.target.closest("tr");
+    if (event.key === " " && event.target.matches("a")) {
+      event.preventDefault();
+      explorer.select(Number(row.dataset.row));
+    }
+    if (!step || !row) return;
+    event.preventDefault();
+    const other = step > 0 ? row.nextElementSibling : row.previousElementSibling;
+    other?.querySelector("a")?.focus();
+  }
+
+  /** Show which designs are selected and which is pointed at. */
+  function mark() {
+    for (const row of body.children) {
+      const design = Number(row.dataset.row);
+      const selected = explorer.chosen.selected.includes(design + 1);
+      row.classList.toggle("selected", selected);
+      row.classList.toggle("pointed", explorer.pointed === design);
+      const tick = row.querySelector("input");
+      if (tick) tick.checked = selected;
+    }
+  }
+
+  return { place, draw, mark };
+}
+
+/** Return a value with as many places as all of its column have, so that the points are in line; others as they are. */
+function aligned(value, unit, { low, high }) {
+  const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));
+  if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6)) return text(value, unit, 5);
+  const places = Math.max(0, 4 - Math.floor(Math.log10(greatest)));
+  const shown = inShown(value, unit).toFixed(places);
+  return Number(shown) === 0 && value !== 0 ? text(value, unit, 3) : shown.replace("-", "−");
+}

@@ -1,0 +1,68 @@
+/** What can be done with a job: cancel, resume, clone, delete. */
+
+import { post, remove } from "../lib/api.js";
+import { link } from "../lib/address.js";
+import { h } from "../lib/dom.js";
+import { say, sayProblem } from "../lib/notices.js";
+import { ENDED } from "./states.js";
+
+/**
+ * Return the buttons of a job. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
+ * whoever deleted it.
+ */
+export function actions(job, changed) {
+  const of = `run ${job.id}, ${job.name}`;
+  const act = (label, path, told) =>
+    h("button", { type: "button", "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
+      const now = await post(`jobs/${job.id}/${path}`);
+      say(told);
+      changed(now);
+    }) }, label);
+  const gone = async (event) => {
+    const button = event.currentTarget;
+    if (!(await confirmed(`Delete run ${job.id}?`, `“${job.name}” and everything it found will be gone for good.`, "Delete"))) return;
+    await run(button, async () => {
+      await remove(`jobs/${job.id}`);
+      say(`Run ${job.id} was deleted.`);
+      changed(null);
+    });
+  };
+  const run = async (button, doing) => {
+    button.disabled = true;
+    try {
+      await doing();
+    } catch (problem) {
+      if (problem.status === 404) {
+        say(`Run ${job.id} is not there any more: somebody deleted it.`);
+        changed(null);
+      } else sayProblem(problem);
+    } finally {
+      button.disabled = false;
+    }
+  };
+  const ended = ENDED.includes(job.state);
+  return [
+    !ended && !job.cancel_asked && act("Cancel", "cancel", `Run ${job.id} ends with what it has found.`),
+    ["cancelled", "failed"].includes(job.state) && act("Resume", "resume", `Run ${job.id} goes on.`),
+    h("a", { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${of}` }, "Clone"),
+    ended && h("button", { type: "button", class: "danger", "data-act": "delete", "aria-label": `Delete ${of}`, onclick: gone }, "Delete"),
+  ].filter(Boolean);
+}
+
+/** Ask whether something is meant; the promise gives the answer. */
+export function confirmed(question, consequence, yes) {
+  return new Promise((answer) => {
+    const dialog = h("dialog", { "aria-labelledby": "question" },
+      h("h2", { id: "question" }, question),
+      h("p", {}, consequence),
+      h("form", { method: "dialog", class: "row" },
+        h("button", { value: "no", autofocus: true }, "Keep it"),
+        h("button", { value: "yes", class: "danger" }, yes)));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      answer(dialog.returnValue === "yes");
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}

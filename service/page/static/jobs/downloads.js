@@ -1,0 +1,50 @@
+/** What can be taken away of a run. */
+
+import { address, get } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+
+const FRONT = [["export.csv", "Designs as CSV"], ["export.json", "Front as JSON"], ["export.parquet", "Designs as Parquet"]];
+
+/** Return a list of files behind a button; those that have to be asked for are asked for when it opens. */
+export function downloads(job, { designs, signal }) {
+  const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
+  const files = h("ul");
+  const figures = h("ul");
+  const list = h("div", { class: "chooser-list panel" },
+    designs && [h("h2", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => file(path, name)))],
+    h("h2", {}, "Files of the job"), files,
+    designs && [h("h2", {}, "Figures"), figures]);
+  let asked = false;
+  const node = h("details", { class: "chooser", ontoggle: async () => {
+    if (!node.open || asked) return;
+    asked = true;
+    await Promise.all([listFiles(), designs && listFigures()]);
+  } }, h("summary", { class: "button" }, "Download"), list);
+
+  async function listFiles() {
+    try {
+      const found = await get(`jobs/${job.id}/files`, {}, signal);
+      fill(files, found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)));
+    } catch (problem) {
+      fill(files, h("li", {}, problem.message));
+    }
+  }
+
+  async function listFigures() {
+    fill(figures, h("li", { class: "quiet" }, "Looking …"));
+    try {
+      const found = await get(`jobs/${job.id}/figures`, {}, signal);
+      const as = (name, kind) => h("a", { href: address(`jobs/${job.id}/figures/${name}.${kind}`), download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
+      fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
+    } catch (problem) {
+      fill(figures, h("li", {}, problem.message));
+    }
+  }
+
+  node.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !node.open) return;
+    node.open = false;
+    node.querySelector("summary").focus();
+  });
+  return node;
+}

@@ -1,0 +1,147 @@
+/** A run while it goes on: where it stands, how it grows, what was said. */
+
+import { history } from "../charts/history.js";
+import { points } from "../charts/points.js";
+import { columnOf } from "../front/columns.js";
+import { get } from "../lib/api.js";
+import { follow } from "../lib/events.js";
+import { fill, h } from "../lib/dom.js";
+import { stateWord } from "./states.js";
+import { clock, duration } from "./times.js";
+
+const OFTEN = 700; // ms between two looks at the job for its front
+const AGAIN = 2000; // ms until the next try where the service does not answer
+const PAST = 400; // events before now that are shown
+const LOG = 200; // lines
+
+/**
+ * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
+ * is gone.
+ */
+export function watch(place, job, { signal, changed }) {
+  const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
+  const figures = h("dl", { class: "figures" });
+  const lost = h("p", { class: "lost", role: "status", hidden: true }, "The connection to the service was lost. The page goes on when it is back.");
+  const curve = h("div");
+  const front = h("div");
+  const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
+  const axes = { x: 0, y: 1 };
+  const pickers = h("div", { class: "row picks" });
+  const rounds = [];
+  let latest = null;
+  let timer = null;
+  let over = false;
+  let asking = false;
+
+  fill(place,
+    lost,
+    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), bar, figures),
+    h("div", { class: "columns" },
+      h("section", { class: "panel", "aria-labelledby": "so-far-title" }, h("h2", { id: "so-far-title" }, "Front so far"), pickers, front),
+      h("section", { class: "panel", "aria-labelledby": "history-title" }, h("h2", { id: "history-title" }, "Hypervolume of the front"), curve)),
+    h("section", { class: "panel", "aria-labelledby": "log-title" }, h("h2", { id: "log-title" }, "Log"), log));
+
+  function told(event) {
+    if (event.kind === "progress") {
+      rounds.push(event.data);
+      stand(event.data);
+      soon();
+    } else if (event.kind === "state") {
+      note(event.at, `${stateWord(event.data.state)}${event.data.reason ? `: ${event.data.reason}` : ""}`);
+      if (event.number > job.events || event.data.state !== job.state) soon(0);
+    } else note(event.at, event.data.text);
+  }
+
+  function note(at, sentence) {
+    log.prepend(h("li", {}, h("span", { class: "quiet number" }, clock(at)), ` ${sentence}`));
+    while (log.children.length > LOG) log.lastChild.remove();
+  }
+
+  function stand(data) {
+    bar.max = data.rounds;
+    bar.value = data.round;
+    const left = data.round > 1 && data.round < data.rounds ? (data.seconds / data.round) * (data.rounds - data.round) : null;
+    const shown = [
+      ["stage", data.stage],
+      ["round", `${data.round} of ${data.rounds}`],
+      ["evaluated", data.evaluations.toLocaleString("en")],
+      ["feasible", data.feasible.toLocaleString("en")],
+      ["hypervolume", data.hypervolume === null ? "–" : data.hypervolume.toFixed(4)],
+      ["so far", duration(data.seconds ?? 0)],
+      ["left", left === null ? "–" : `about ${duration(left)}`],
+    ];
+    fill(figures, shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
+    fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", data.rounds));
+  }
+
+  /** Look at the job soon: its front so far, and its state. */
+  function soon(wait = OFTEN) {
+    if (timer !== null && wait > 0) return;
+    clearTimeout(timer);
+    timer = setTimeout(look, wait);
+  }
+
+  async function look() {
+    timer = null;
+    if (asking || over || signal.aborted) return;
+    asking = true;
+    try {
+      const now = await get(`jobs/${job.id}`, {}, signal);
+      lost.hidden = true;
+      if (now.progress?.front) drawFront(now.progress.front);
+      if (now.state !== job.state || now.cancel_asked !== job.cancel_asked) {
+        job = now;
+        changed(now);
+      }
+    } catch (problem) {
+      if (problem.status === 404) end(null);
+      else if (problem.name !== "AbortError") {
+        lost.hidden = false;
+        soon(AGAIN);
+      }
+    } finally {
+      asking = false;
+    }
+  }
+
+  function drawFront(found) {
+    latest = found;
+    const columns = found.columns.map(columnOf);
+    if (columns.length > 2 && !pickers.childElementCount) {
+      const pick = (label, name) => h("label", {}, `${label} `, h("select", { onchange: (event) => {
+        axes[name] = Number(event.target.value);
+        drawFront(latest);
+      } }, columns.map(({ title }, index) => h("option", { value: index, selected: index === axes[name] }, title))));
+      fill(pickers, pick("Across", "x"), pick("Up", "y"));
+    }
+    if (columns.length < 2) {
+      fill(front, h("p", {}, `Best ${columns[0].title} so far: ${found.points[0]?.[0] ?? "–"} ${columns[0].unit}`));
+      return;
+    }
+    const shown = found.points.map((point) => [point[axes.x], point[axes.y]]);
+    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`));
+  }
+
+  function end(now) {
+    over = true;
+    stop();
+    changed(now);
+  }
+
+  const connected = (yes) => {
+    lost.hidden = yes;
+    soon(yes ? OFTEN : 0); // whether the service is away, or only the job
+  };
+  const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
+  signal.addEventListener("abort", () => clearTimeout(timer));
+  fill(front, h("p", { class: "quiet" }, job.state === "queued" ? "Waits for a worker." : "Nothing yet."));
+  if (job.progress) {
+    stand(job.progress);
+    if (job.progress.front) drawFront(job.progress.front);
+  } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
+  return () => {
+    over = true;
+    clearTimeout(timer);
+    stop();
+  };
+}

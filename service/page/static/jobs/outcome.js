@@ -1,0 +1,27 @@
+/** What became of a run that gave no whole front, and what to do about it. */
+
+import { link } from "../lib/address.js";
+import { h } from "../lib/dom.js";
+
+/** Return what to say of a job that has ended otherwise than done; null of one that is done. */
+export function outcome(job) {
+  const again = h("a", { class: "button", href: link(["new"], { from: job.id }) }, "Change the job");
+  const found = job.summary?.designs ?? 0;
+  if (job.state === "infeasible") {
+    return said("No design meets all requirements", job.reason, ["Relax one of them, or widen a range, and search again. ", again]);
+  }
+  if (job.state === "failed") {
+    return said("The run stopped with an error", job.reason, ["Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ", again]);
+  }
+  if (job.state === "cancelled" && found) {
+    return said("The run was cancelled", `What it had found by then is below; a longer search finds better designs. ${job.reason}`, ["Resume it, above, to go on from where it was."]);
+  }
+  if (job.state === "cancelled") {
+    return said("The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);
+  }
+  return null;
+}
+
+function said(heading, reason, remedy) {
+  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, reason), h("p", {}, remedy));
+}

@@ -1,0 +1,45 @@
+/** A run in the list. */
+
+import { thumbnail } from "../charts/thumbnail.js";
+import { named } from "../front/columns.js";
+import { link } from "../lib/address.js";
+import { h } from "../lib/dom.js";
+import { actions } from "./actions.js";
+import { badge } from "./states.js";
+import { ago } from "./times.js";
+
+/** Return a run as an item of the list. compare(number, yes): it is ticked or not; changed(): something was done with it. */
+export function runRow(job, { chosen, compare, changed }) {
+  const { summary, progress } = job;
+  const points = summary?.points.length ? summary.points : progress?.front?.points.map((point) => point.slice(0, 2)) ?? [];
+  return h("li", { class: "panel run" },
+    h("label", { class: "tick" },
+      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !summary?.designs && !chosen, onchange: (event) => compare(job.id, event.target.checked) }),
+      h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`)),
+    h("div", { class: "what" },
+      h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
+      h("div", { class: "quiet" }, `run ${job.id} · `, ago(job.finished ?? job.started ?? job.submitted)),
+      badge(job)),
+    points.length ? thumbnail(points, `the front: ${points.length} designs`) : h("span", { class: "thumbnail" }),
+    h("div", { class: "found" }, standing(job)),
+    h("div", { class: "row acts" }, actions(job, changed)));
+}
+
+/** Return how far a job is, or what it found. */
+function standing(job) {
+  if (job.summary?.designs) {
+    const { designs, best } = job.summary;
+    return [
+      h("div", {}, `${designs.toLocaleString("en")} designs`),
+      h("div", { class: "quiet" }, "best: ", Object.entries(best).map(([key, value]) => named(key, value)).join(" · ")),
+    ];
+  }
+  if (job.state === "running" && job.progress) {
+    const { stage, round, rounds, feasible } = job.progress;
+    return [
+      h("progress", { max: rounds, value: round, "aria-label": `run ${job.id}: round ${round} of ${rounds}` }),
+      h("div", { class: "quiet" }, `${stage}, round ${round} of ${rounds} · ${feasible.toLocaleString("en")} feasible designs`),
+    ];
+  }
+  return h("div", { class: "quiet" }, job.reason || (job.state === "queued" ? "waits for a worker" : ""));
+}

@@ -1,0 +1,99 @@
+import { points, sign } from "../charts/points.js";
+import { FrontData } from "../front/data.js";
+import { badge } from "../jobs/states.js";
+import { keep, link } from "../lib/address.js";
+import { get } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { text, withUnit } from "../lib/numbers.js";
+import { headed, helpLink } from "../front/columns.js";
+
+export const title = "Compare runs";
+
+const MOST = 6;
+const SHOWN = 300; // designs of each run in the picture
+
+/** Fronts of several runs over each other, and their best values side by side. */
+export async function show(place, { query, signal }) {
+  const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter((number) => Number.isInteger(number) && number > 0);
+  if (asked.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
+  const missing = [];
+  const runs = (await Promise.all(asked.slice(0, MOST).map(async (number) => {
+    try {
+      const [job, front] = await Promise.all([get(`jobs/${number}`, {}, signal), get(`jobs/${number}/front`, {}, signal)]);
+      if (front.count) return { job, front, data: new FrontData(number, front, signal) };
+      missing.push(`Run ${number} has no designs.`);
+    } catch (problem) {
+      if (problem.name === "AbortError") throw problem;
+      missing.push(problem.status === 404 ? `Run ${number} is not there any more.` : problem.message);
+    }
+    return null;
+  }))).filter(Boolean);
+  if (asked.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
+
+  const objectives = new Map(runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])));
+  const shared = runs.length ? [...objectives.keys()].filter((key) => runs.every(({ data }) => data.column(key))) : [];
+  const axes = { x: shared.includes(query.get("x")) ? query.get("x") : shared[0], y: shared.includes(query.get("y")) ? query.get("y") : shared[1] };
+  const picture = h("div");
+  const table = h("div", { class: "scroll" });
+
+  function drawPicture() {
+    const [x, y] = [axes.x, axes.y].map((key) => objectives.get(key));
+    const series = runs.map(({ data, job }) => ({ name: job.name, points: spread(data.count).map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]) }));
+    fill(picture, points(series, x, y, `The fronts of ${runs.length} runs`));
+  }
+
+  function drawTable() {
+    const best = (key, sense, target) => runs.map(({ front, data }) => {
+      const own = front.objectives.find((objective) => objective.column === key);
+      if (own) return data.cell(key, front.extremes[own.quantity]);
+      const { low, high } = data.range(key);
+      return target === undefined ? (sense === "maximise" ? high : low) : null;
+    });
+    const rows = [...objectives.values()].filter(({ column }) => runs.every(({ data }) => data.column(column))).map(({ column, sense, target }) => {
+      const values = best(column, sense, target);
+      const rank = (value) => (typeof value !== "number" ? Infinity : target !== undefined && target !== null ? Math.abs(value - target) : sense === "maximise" ? -value : value);
+      const least = Math.min(...values.map(rank));
+      const unit = objectives.get(column).unit;
+      return h("tr", {},
+        h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(objectives.get(column))}`)),
+        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), rank(value) === least && values.some((other) => rank(other) > least) ? h("strong", { class: "best" }, " best") : null)));
+    });
+    const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
+    fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
+      h("thead", {}, h("tr", {}, h("td", {}), runs.map(({ job }, index) => h("th", { scope: "col", class: "number" }, sign(index), " ", h("a", { href: link(["jobs", job.id]) }, job.name), h("div", { class: "quiet" }, `run ${job.id}`))))),
+      h("tbody", {}, plain("state", ({ job }) => badge(job)), rows,
+        plain("designs", ({ front }) => front.count.toLocaleString("en")),
+        plain("evaluated", ({ front }) => front.evaluations.toLocaleString("en")),
+        plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
+        plain("seed", ({ front }) => String(front.seed)))));
+  }
+
+  const pick = (label, name) => h("label", {}, `${label} `, h("select", { name, onchange: (event) => {
+    axes[name] = event.target.value;
+    keep({ jobs: asked.join(","), ...axes });
+    drawPicture();
+  } }, shared.map((key) => h("option", { value: key, selected: key === axes[name] }, objectives.get(key).title))));
+
+  await Promise.all(runs.map(({ data }) => data.need([...objectives.keys()].filter((key) => data.column(key)))));
+  if (signal.aborted) return;
+  fill(place, h("h1", {}, title),
+    missing.map((sentence) => h("p", { class: "error" }, sentence)),
+    runs.length < 2 ? h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")) : h("div", { class: "columns compare" },
+      h("section", { class: "panel", "aria-labelledby": "fronts-title" }, h("h2", { id: "fronts-title" }, "Fronts"),
+        shared.length > 1 ? [h("div", { class: "row picks" }, pick("Across", "x"), pick("Up", "y")), picture,
+          h("div", { class: "legend" }, runs.map(({ job }, index) => h("span", {}, sign(index), ` ${job.name} (run ${job.id})`)))] : h("p", {}, "These runs share fewer than two objectives, so their fronts have no picture in common.")),
+      h("section", { class: "panel", "aria-labelledby": "best-title" }, h("h2", { id: "best-title" }, "Side by side"), table)));
+  const draw = () => {
+    if (runs.length < 2) return;
+    if (shared.length > 1) drawPicture();
+    drawTable();
+  };
+  draw();
+  window.addEventListener("units", draw, { signal });
+}
+
+/** Return at most `SHOWN` rows, evenly spread. */
+function spread(count) {
+  const shown = Math.min(count, SHOWN);
+  return Array.from({ length: shown }, (_, index) => Math.floor((index * (count - 1)) / Math.max(1, shown - 1)));
+}

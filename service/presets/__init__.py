@@ -1,0 +1,1 @@
+"""The shipped jobs, as a form can start from them."""

@@ -1,0 +1,219 @@
+"""What the ranges of a job allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
+
+A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
+samples lie where the search looks. Extremes are those of the samples: within a few per mille of the true ones.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from .moment import within
+from .stated import is_closed
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...optimise.problem import Constraint, Problem
+
+    Array = NDArray[np.float64]
+
+Ends = tuple[float, float]
+
+_SAMPLES = 512
+_BATCH = 64
+_MOMENT = 0.06  # s, for the designs of quantities that take a cycle
+_PATIENCE = 0.12  # s, until these are left out
+_CLOSE = 1e-6
+"""Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Possible:
+    """What the ranges allow. turning: share of the designs in the box that turn fully.
+
+    stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold;
+    None where no sample meets these. feasible: share of the `sampled` designs that meet every requirement that was
+    checked. hardest: the requirement that the fewest designs meet which turn fully, and that share. example: crank, rod
+    and offset, m, near the middle of what is feasible, else the nearest to it; None if nothing turns. unchecked:
+    requirements that would have taken longer than a moment.
+    """
+
+    turning: float
+    stroke: Ends | None
+    time_ratio: Ends | None
+    transmission_angle: Ends | None
+    feasible: float
+    sampled: int
+    hardest: tuple[str, float] | None
+    example: tuple[float, float, float] | None
+    example_feasible: bool
+    unchecked: tuple[str, ...]
+
+
+def possible(problem: Problem) -> Possible:
+    """Return what the ranges of a problem of `stated.geometry` allow."""
+    import numpy as np
+
+    from ...optimise.evaluation import FEASIBLE
+
+    free = replace(problem, constraints=())
+    box = _designs(free, _SAMPLES)
+    turning = _turns(box)
+    light, costly = _light(problem)
+    screened = within(_PATIENCE, lambda: _screened(problem)) if costly else None
+    found, violation = _screened(light) if screened is None else screened
+    feasible = violation <= FEASIBLE
+    example, nearest = None, np.flatnonzero(np.isfinite(violation))
+    if len(nearest):
+        best = np.flatnonzero(feasible) if feasible.any() else nearest[[int(np.argmin(violation[nearest]))]]
+        example = _middle(found[best])
+    elif turning.any():
+        example = _middle(box[turning])
+    return Possible(
+        turning=float(turning.mean()),
+        stroke=_reach(problem, "stroke"),
+        time_ratio=_reach(problem, "time_ratio"),
+        transmission_angle=_reach(problem, "transmission_angle"),
+        feasible=float(feasible.mean()) if len(feasible) else 0.0,
+        sampled=len(feasible),
+        hardest=_hardest(problem, box[turning]),
+        example=example,
+        example_feasible=bool(feasible.any()),
+        unchecked=costly if screened is None else (),
+    )
+
+
+def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
+    """Return the problem with the requirements on the dimensions alone, and the names of the others."""
+    from ...model.mechanism import Mechanism
+    from ...optimise.evaluation import constraints_of
+
+    machine = Mechanism(speed=problem.mechanism.speed, branch=problem.mechanism.branch)
+    closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
+    costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
+    return replace(problem, mechanism=machine, constraints=closed), costly
+
+
+def _designs(problem: Problem, count: int) -> Array:
+    """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
+    import numpy as np
+
+    from ...optimise.elimination import sheets
+    from ...optimise.sampling import first_samples
+
+    parts = []
+    for index, sheet in enumerate(sheets(problem)):
+        parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, :3])
+    return np.concatenate(parts)
+
+
+def _turns(designs: Array) -> NDArray[np.bool_]:
+    import numpy as np
+
+    crank, rod, offset = designs.T
+    with np.errstate(invalid="ignore"):
+        return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
+
+
+def _screened(problem: Problem) -> tuple[Array, Array]:
+    """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
+    import numpy as np
+
+    from ...optimise.elimination import sheets
+    from ...optimise.evaluation import Evaluator
+    from ...optimise.sampling import first_samples
+
+    end = time.monotonic() + _MOMENT
+    designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
+    for index, sheet in enumerate(sheets(problem)):
+        evaluator = Evaluator(problem, sheet)
+        points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
+        for begin in range(0, len(points), _BATCH):
+            found, _, violation = evaluator.screen(points[begin : begin + _BATCH])
+            designs.append(found[:, :3])
+            violations.append(violation)
+            if time.monotonic() > end:
+                break
+    return np.concatenate(designs), np.concatenate(violations)
+
+
+def _reach(problem: Problem, name: str) -> Ends | None:
+    """Return the ends of a closed form while the other requirements on the dimensions hold."""
+    import numpy as np
+
+    from ...objectives.registry import QUANTITIES
+
+    others = tuple(c for c in problem.constraints if is_closed(c.quantity) and c.quantity != name)
+    values = []
+    for constraints in (others, *_at_the_edge(others)):
+        designs = _designs(replace(problem, constraints=constraints), _SAMPLES)
+        designs = designs[_turns(designs) & _inside(problem, designs)]
+        for constraint in others:
+            own = QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values
+            designs = designs[_meets(constraint, own)]
+        values.append(QUANTITIES[name].evaluate(problem.mechanism, designs).values)
+    all_values = np.concatenate(values)
+    return (float(all_values.min()), float(all_values.max())) if len(all_values) else None
+
+
+def _at_the_edge(constraints: tuple[Constraint, ...]) -> Iterator[tuple[Constraint, ...]]:
+    """Yield the requirements with one of them at one of its bounds: extremes lie where one is met just so."""
+    for place, constraint in enumerate(constraints):
+        for end in (constraint.lower, constraint.upper):
+            if end is not None and not constraint.equality:
+                edge = replace(constraint, lower=end, upper=end)
+                yield (*constraints[:place], edge, *constraints[place + 1 :])
+
+
+def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
+    """Whether dimensions that were computed from equalities lie in their ranges."""
+    import numpy as np
+
+    good = np.ones(len(designs), dtype=bool)
+    for column, name in enumerate(("crank", "rod", "offset")):
+        ends = getattr(problem, name)
+        slack = _CLOSE * max(abs(ends.lower), abs(ends.upper))
+        with np.errstate(invalid="ignore"):
+            good &= (designs[:, column] >= ends.lower - slack) & (designs[:, column] <= ends.upper + slack)
+    return good
+
+
+def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
+    import numpy as np
+
+    good = np.isfinite(values)
+    if constraint.lower is not None:
+        good &= values >= constraint.lower - _CLOSE * abs(constraint.lower)
+    if constraint.upper is not None:
+        good &= values <= constraint.upper + _CLOSE * abs(constraint.upper)
+    return np.asarray(good)
+
+
+def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
+    """Return the requirement on the dimensions, equalities aside, that the fewest designs meet, and their share."""
+    from ...objectives.registry import QUANTITIES
+
+    shares = {
+        constraint.quantity: float(
+            _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
+        )
+        for constraint in problem.constraints
+        if is_closed(constraint.quantity) and not constraint.equality and len(designs)
+    }
+    return min(shares.items(), key=lambda item: item[1]) if shares else None
+
+
+def _middle(designs: Array) -> tuple[float, float, float]:
+    """Return the design nearest to the middle of some, in each dimension on its own scale."""
+    import numpy as np
+
+    size = np.abs(designs).max(axis=0) + 1e-300
+    scaled = designs / size
+    row = int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))
+    crank, rod, offset = designs[row].tolist()
+    return crank, rod, offset

@@ -1,0 +1,111 @@
+"""What an incomplete job states already: ranges, requirements, and the machine once it can be read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...model.mechanism import Mechanism
+    from ...optimise.problem import Constraint, Problem, Range
+
+_MOST_POINTS = 100
+"""Points of tabulated loads; each is a breakpoint of every curve, and costs its share of every sampled design."""
+
+
+def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None:
+    """Return the problem of crank, rod and offset that a job states; None while their ranges cannot be read.
+
+    whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
+    the machine are left out without it, those that only a search can afford always.
+    """
+    from ...model.mechanism import Mechanism
+    from ...optimise.problem import Objective, Problem
+
+    ranges = _ranges(tables.get("variables"))
+    if ranges is None:
+        return None
+    machine = _turning(tables.get("mechanism")) if whole is None else whole.part(0).mechanism.nominal
+    with_machine = whole is not None and _points(machine) <= _MOST_POINTS
+    problem = Problem(
+        name="preview",
+        mechanism=machine,
+        crank=ranges["crank"],
+        rod=ranges["rod"],
+        offset=ranges["offset"],
+        objectives=(Objective(quantity="stroke", sense="minimise"),),
+    )
+    constraints = tuple(_constraints(tables.get("constraints"), with_machine=with_machine))
+    if not with_machine:
+        problem = replace(problem, mechanism=Mechanism(speed=machine.speed, branch=machine.branch))
+    return replace(problem, constraints=constraints)
+
+
+def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
+    """Return the requirements of a job that its geometry does not have, by their names."""
+    given = tables.get("constraints")
+    kept = {constraint.quantity for constraint in problem.constraints}
+    return [str(name)[:60] for name in given if name not in kept][:40] if isinstance(given, Mapping) else []
+
+
+def is_closed(name: str) -> bool:
+    """Whether a quantity follows from the three dimensions alone."""
+    from ...objectives.closed_form import ClosedFormQuantity
+    from ...objectives.registry import QUANTITIES
+
+    return isinstance(QUANTITIES.get(name), ClosedFormQuantity)
+
+
+def _turning(part: object) -> Mechanism:
+    """Return a machine that turns as a job says, if it does, and weighs nothing."""
+    from ...model.mechanism import Mechanism
+    from ...optimise.units import ANGULAR_SPEED, to_si
+
+    given = part if isinstance(part, Mapping) else {}
+    try:
+        speed = to_si(given.get("speed"), ANGULAR_SPEED) or 1.0
+    except InputError:
+        speed = 1.0
+    return Mechanism(speed=speed, branch="crossed" if given.get("branch") == "crossed" else "open")
+
+
+def _points(machine: Mechanism) -> int:
+    from ...model.loads import AngleTable, PositionTable
+
+    return sum(len(load.forces) for load in machine.loads if isinstance(load, AngleTable | PositionTable))
+
+
+def _ranges(part: object) -> dict[str, Range] | None:
+    from ...optimise.job.values import Choices, RangeOf
+    from ...optimise.problem import Range
+
+    if not isinstance(part, Mapping):
+        return None
+    found = {}
+    for name in ("crank", "rod", "offset"):
+        try:
+            given = RangeOf("any" if name == "offset" else "positive").read(part.get(name))
+        except InputError:
+            return None
+        lower, upper = (given.choices[0], given.choices[-1]) if isinstance(given, Choices) else given
+        found[name] = Range(lower=lower, upper=upper)
+    return found
+
+
+def _constraints(part: object, *, with_machine: bool) -> Iterator[Constraint]:
+    """Yield the requirements that can be read and checked within a moment."""
+    from pydantic import ValidationError
+
+    from ...objectives.registry import QUANTITIES
+    from ...optimise.job.quantities import ConstraintsPart, constraints_of
+
+    for name, bounds in part.items() if isinstance(part, Mapping) else ():
+        if name not in QUANTITIES or not (with_machine or is_closed(name)):
+            continue
+        try:
+            yield from constraints_of(ConstraintsPart.model_validate({name: bounds}))
+        except (InputError, ValidationError):
+            continue

@@ -1,0 +1,95 @@
+"""The report of one design, from its summary to the versions of what computed it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+
+from ..designs.columns import DIMENSIONS
+from .design_section import design_section, numbers_section
+from .document import Facts, Paragraph, Report, Section
+from .evidence_section import sensitivity_section, tolerance_section
+from .front_section import front_section
+from .job_section import job_section, search_section
+from .subject import Subject
+from .wording import with_unit
+
+_DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
+
+
+def design_report(subject: Subject, *, made: float | None = None) -> Report:
+    """Return the report of a design. made: when, seconds since 1970; now if None."""
+    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(made))
+    tolerances = tolerance_section(subject)
+    return Report(
+        title=f"{subject.result.name}: {subject.name}",
+        subtitle=f"Design report for review; run {subject.run}",
+        made=when,
+        sections=(
+            _summary(subject),
+            job_section(subject),
+            search_section(subject),
+            front_section(subject),
+            design_section(subject),
+            sensitivity_section(subject),
+            *([] if tolerances is None else [tolerances]),
+            numbers_section(subject),
+            _versions(subject, when),
+        ),
+    )
+
+
+def _summary(subject: Subject) -> Section:
+    row = subject.row
+    lengths = [f"{name} {with_unit(row[f'{name}_mm'], 'mm')}" for name in DIMENSIONS]
+    lengths.append(f"stroke {with_unit(row['stroke_mm'], 'mm')}")
+    rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
+    objectives = tuple(
+        f"{wanted.title} {with_unit(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives
+    )
+    rows.append(("Objectives", objectives))
+    chosen = [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")]
+    if chosen:
+        rows.append(("Choices", tuple(chosen)))
+    marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
+    words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
+    if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
+        words.append("knee of the front: the nearest to the best values of all objectives")
+    if words:
+        rows.append(("What it is", tuple(words)))
+    return Section("Summary", (Facts(tuple(rows)),))
+
+
+def _versions(subject: Subject, when: str) -> Section:
+    return Section(
+        "How this was made",
+        (
+            Facts(
+                (
+                    ("Front computed by", (_listed(subject.versions) or "not recorded",)),
+                    ("Report drawn by", (_listed(_installed()),)),
+                    ("Made", (when,)),
+                )
+            ),
+            Paragraph(
+                "Crank angles are counter-clockwise from the slider line's direction; signs and formulas are those of "
+                "the theory that comes with slidercrank.",
+                "note",
+            ),
+        ),
+    )
+
+
+def _listed(versions: Mapping[str, str]) -> str:
+    return ", ".join(f"{name} {number}" for name, number in versions.items())
+
+
+def _installed() -> dict[str, str]:
+    found = {}
+    for name in _DREW:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "unknown"
+    return found

@@ -1,0 +1,135 @@
+"""The chosen design: what it is, whether it meets its rules, whether it could be better, and every number of it."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+from ..designs.columns import Column, find_column
+from ..designs.trade_offs import trade_offs_of
+from .document import Block, Paragraph, Picture, Section, Table
+from .subject import Subject
+from .wording import as_stored, rounded, unit_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MET = 1e-6  # of a slack in its unit: constraints are met to rounding
+
+
+def design_section(subject: Subject) -> Section:
+    """Return drawing, rules, stationarity and trade-offs of the design."""
+    return Section(
+        f"Design {subject.number}",
+        (
+            Picture("The linkage, to scale", partial(_drawing, subject)),
+            *_rules(subject),
+            *_optimality(subject),
+            Picture("The design over a turn of the crank", partial(_sheet, subject)),
+        ),
+    )
+
+
+def numbers_section(subject: Subject) -> Section:
+    """Return every column of the design, rounded and as it is stored."""
+    columns = _columns(subject)
+    rows = tuple(
+        (
+            column.title,
+            rounded(subject.row[column.key]),
+            unit_text(column.unit),
+            as_stored(subject.row[column.key]),
+            column.key,
+        )
+        for column in columns
+    )
+    objectives = {wanted.column for wanted in subject.result.objectives}
+    return Section(
+        "Every number of the design",
+        (
+            Paragraph(
+                "Objectives in bold. The fourth column is the number as it is stored, the fifth its name.", "note"
+            ),
+            Table(
+                "",
+                ("quantity", "value", "unit", "as stored", "column"),
+                rows,
+                (0.28, 0.12, 0.07, 0.23, 0.30),
+                frozenset({1, 3}),
+                frozenset(place for place, column in enumerate(columns) if column.key in objectives),
+                small=True,
+            ),
+        ),
+    )
+
+
+def _columns(subject: Subject) -> list[Column]:
+    keys = list(subject.row)
+    return [find_column(key, keys) for key in keys]
+
+
+def _rules(subject: Subject) -> list[Block]:
+    slacks = [column for column in _columns(subject) if column.key.startswith("slack_")]
+    if not slacks:
+        return [Paragraph("The job sets no rules beside the ranges of the dimensions.", "note")]
+    rows, met = [], True
+    for column in slacks:
+        slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
+        size = max(1.0, abs(value)) if isinstance(value, float) and math.isfinite(value) else 1.0
+        held = isinstance(slack, float) and slack >= -_MET * size
+        met = met and held
+        active = isinstance(slack, float) and abs(slack) <= _MET * size
+        state = "met, active" if active and held else "met" if held else "not met"
+        title = column.title.removeprefix("slack of ")
+        rows.append((title, rounded(value), rounded(slack), unit_text(column.unit), state))
+    verdict = "All rules are met." if met else "Not all rules are met: see below."
+    return [
+        Paragraph(verdict, "good" if met else "bad"),
+        Table(
+            "Rules: the slack is the distance to the nearer bound",
+            ("quantity", "value", "slack", "unit", "state"),
+            tuple(rows),
+            (0.42, 0.16, 0.16, 0.11, 0.15),
+            frozenset({1, 2}),
+        ),
+    ]
+
+
+def _optimality(subject: Subject) -> list[Block]:
+    residual, status = subject.row.get("residual"), subject.row.get("status")
+    blocks: list[Block] = []
+    if status == "stationary":
+        text = (
+            f"Stationary: no small change betters every objective while the rules hold (residual {rounded(residual)})."
+        )
+        blocks.append(Paragraph(text, "good"))
+    elif status is not None:
+        text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."
+        blocks.append(Paragraph(text, "plain"))
+    if len(subject.result.objectives) < 2:
+        return blocks
+    try:
+        sentences = trade_offs_of(subject.front, subject.number - 1, subject.design)
+    except InputError as error:
+        return [*blocks, Paragraph(f"Trade-off rates: {error}.", "note")]
+    if sentences:
+        blocks.append(Paragraph("Trade-offs here, to first order: " + "; ".join(sentences) + "."))
+    return blocks
+
+
+def _drawing(subject: Subject) -> Figure:
+    from ..drawings.linkage_drawing import linkage_drawing
+    from ..drawings.painting import drawing_figure
+
+    design = subject.design
+    return drawing_figure(
+        linkage_drawing(design.mechanism, design.linkage, name=subject.result.name, number=subject.number)
+    )
+
+
+def _sheet(subject: Subject) -> Figure:
+    from ..figures.of_front import sheet_of
+
+    return sheet_of(subject.front, subject.number - 1, "the chosen design")

@@ -1,0 +1,83 @@
+"""The front, and where the design lies on it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from ..designs.columns import DIMENSIONS, find_column
+from ..runs.result import Wanted
+from .document import Block, Paragraph, Picture, Section, Table
+from .subject import Subject
+from .wording import rounded, unit_text, with_unit
+
+_MANY = 400
+"""Designs from which on figures of the front are drawn as points."""
+
+
+def front_section(subject: Subject) -> Section:
+    """Return the ranges of the objectives, the marked designs, and the figures of the front."""
+    from ..figures.parallel import parallel_coordinates
+    from ..figures.scatter import scatter_matrix
+
+    result = subject.result
+    blocks: list[Block] = [_ranges(subject), _marked(subject)]
+    raster = len(result.designs) > _MANY
+    if len(result.designs) > 1:
+        if len(result.objectives) > 1:
+            title = "Every pair of objectives"
+            blocks.append(Picture(title, partial(scatter_matrix, subject.front), raster))
+        title = "Dimensions and objectives of every design"
+        blocks.append(Picture(title, partial(parallel_coordinates, subject.front), raster))
+    else:
+        blocks.append(Paragraph("The front is this one design.", "note"))
+    return Section("The front", tuple(blocks))
+
+
+def _ranges(subject: Subject) -> Table:
+    rows = []
+    for wanted in subject.result.objectives:
+        ranked = sorted(subject.result.designs, key=wanted.rank)
+        best, worst = ranked[0][wanted.column], ranked[-1][wanted.column]
+        value = subject.row[wanted.column]
+        place = 1 + sum(wanted.rank(row) < wanted.rank(subject.row) for row in ranked)
+        numbers = (rounded(value), rounded(best), rounded(worst))
+        rows.append((wanted.title, _sense(wanted), *numbers, unit_text(wanted.unit), f"{place} of {len(ranked)}"))
+    return Table(
+        f"Objectives: design {subject.number} within the front",
+        ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
+        tuple(rows),
+        (0.29, 0.13, 0.13, 0.12, 0.12, 0.08, 0.13),
+        frozenset({2, 3, 4, 6}),
+    )
+
+
+def _sense(wanted: Wanted) -> str:
+    return wanted.sense if wanted.target is None else f"target {with_unit(wanted.target, wanted.unit)}"
+
+
+def _marked(subject: Subject) -> Table:
+    """Return this design beside the best in each objective and the knee."""
+    result = subject.result
+    titles = {wanted.quantity: wanted.title for wanted in result.objectives}
+    labels: dict[int, list[str]] = {subject.number - 1: ["this design"]}
+    for name, place in result.extremes.items():
+        labels.setdefault(place, []).append(f"best {titles[name]}")
+    if result.knee is not None and len(result.objectives) > 1:
+        labels.setdefault(result.knee, []).append("knee")
+    keys = [f"{name}_mm" for name in DIMENSIONS] + [wanted.column for wanted in result.objectives]
+    columns = [find_column(key, list(subject.row)) for key in dict.fromkeys(keys)]
+    rows = tuple(
+        (str(place + 1), ", ".join(words), *(rounded(result.designs[place][column.key]) for column in columns))
+        for place, words in labels.items()
+    )
+    heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
+    share = 0.81 / len(columns)
+    return Table(
+        "Marked designs",
+        ("no.", "what it is", *heads),
+        rows,
+        (0.05, 0.14, *(share for _ in columns)),
+        frozenset({0, *range(2, 2 + len(columns))}),
+        bold=frozenset({0}),
+        small=len(columns) > 5,
+    )

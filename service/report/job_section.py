@@ -1,0 +1,64 @@
+"""What was asked, and how the front was found."""
+
+from __future__ import annotations
+
+from ..commands.summary import freedom_in_words, summarise
+from .document import Block, Facts, Paragraph, Section
+from .subject import Subject
+from .wording import rounded
+
+
+def job_section(subject: Subject) -> Section:
+    """Return what the job says, as `slidercrank check` does."""
+    words = summarise(subject.problem)
+    parts = (
+        ("Given", words["given"]),
+        ("Tolerances", words["tolerances"]),
+        ("Costs", words["costs"]),
+        ("May vary", words["variables"]),
+        ("Rules", words["rules"]),
+        ("Objectives", words["objectives"]),
+        ("Freedom", [freedom_in_words(words)]),
+    )
+    rows = tuple((title, tuple(map(str, lines))) for title, lines in parts if lines)
+    return Section("The job", (Facts(rows),))
+
+
+def search_section(subject: Subject) -> Section:
+    """Return how the front was found, and how good it is known to be."""
+    result, settings = subject.result, subject.problem.settings
+    rows: list[tuple[str, tuple[str, ...]]] = [
+        ("Run", (subject.run,)),
+        ("Method", (settings.method,)),
+        ("Seed", (f"{result.seed}: the same job and seed give the same front, bit for bit",)),
+        ("Evaluations", (f"{result.evaluations}",)),
+        ("Time of the search", (f"{rounded(result.seconds)} s",)),
+        ("Designs", (f"{len(result.designs)} on the front, none of which is better than another in all objectives",)),
+        (
+            "Hypervolume",
+            (f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",),
+        ),
+        ("Outcome", (f"{result.status}: {result.message}",)),
+    ]
+    stationary = sum(row.get("status") == "stationary" for row in result.designs)
+    rows.append(("Stationary designs", (f"{stationary} of {len(result.designs)}",)))
+    return Section("How the front was found", (Facts(tuple(rows)), *_certificate(subject)))
+
+
+def _certificate(subject: Subject) -> tuple[Block, ...]:
+    found = subject.certificate
+    if found is None:
+        text = "No certificate: how far the front is from the true one was not proven (slidercrank certify does that)."
+        return (Paragraph(text, "note"),)
+    lines = [f"{found['status']}: {found['message']}"]
+    for key, title in (
+        ("epsilon", "epsilon proven, with the added designs"),
+        ("epsilon_of_delivered", "epsilon proven, for this front alone"),
+        ("gap_of_delivered", "gap of this front, certain"),
+        ("hypervolume_gap", "hypervolume missed, at most"),
+    ):
+        value = found.get(key)
+        if value is not None:
+            lines.append(f"{title}: {rounded(float(value))}")
+    lines += [f"{found['boxes']} boxes, {found['open_boxes']} open, {rounded(float(found['seconds']))} s"]
+    return (Facts((("Certificate", tuple(lines)), *((("Notes", tuple(found["notes"])),) if found["notes"] else ()))),)

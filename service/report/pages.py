@@ -1,0 +1,197 @@
+"""A report laid out on A4 pages: from the top down, tables broken between rows, figures where they fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ..figures.style import INK, MUTED, new_figure, write
+from .document import Block, Facts, Paragraph, Picture, Report, Section, Table, Tone
+from .text_lines import wrapped
+
+WIDTH, HEIGHT = 8.27, 11.69  # inches, A4
+_LEFT, _RIGHT, _TOP, _BOTTOM = 0.75, 0.75, 0.75, 0.85
+_ACROSS = WIDTH - _LEFT - _RIGHT
+_TEXT, _SMALL, _HEAD, _TITLE = 8.8, 7.0, 12.0, 16.0  # points
+_LEADING = 1.38 / 72.0  # inches of a line, by the size of its text
+_NAMES = 1.45  # width of the names of facts
+_INKS: dict[Tone, str] = {"plain": INK, "note": MUTED, "good": "#1c6b30", "bad": "#a8321f"}
+_MARKS: dict[Tone, str] = {"plain": "", "note": "", "good": "✓ ", "bad": "✗ "}
+_TALLEST = 6.6  # of a figure
+_SHRUNK = 0.7  # of its size, rather than leaving the foot of a page empty
+_BETWEEN = 0.09  # columns
+
+
+@dataclass(frozen=True)
+class Inset:
+    """A figure on a page. left, bottom: inches. scale: of its own size."""
+
+    figure: Figure
+    left: float
+    bottom: float
+    scale: float
+    raster: bool
+
+
+@dataclass
+class Page:
+    """A page: texts and lines on a figure of its size, and other figures on it."""
+
+    figure: Figure = field(default_factory=lambda: new_figure(WIDTH, HEIGHT))
+    insets: list[Inset] = field(default_factory=list)
+
+
+def pages(report: Report) -> list[Page]:
+    """Return the pages of a report."""
+    layout = _Layout()
+    layout.lines(wrapped(report.title, _TITLE, _ACROSS, bold=True), _TITLE, bold=True)
+    layout.lines(wrapped(f"{report.subtitle}; {report.made}", _TEXT, _ACROSS), _TEXT, ink=MUTED)
+    layout.rule(INK, 1.2)
+    for place, section in enumerate(report.sections):
+        layout.section(section)
+        if place == 0:
+            layout.signatures(report.signatures)
+    count = len(layout.pages)
+    for number, page in enumerate(layout.pages, 1):
+        foot = wrapped(report.title, _SMALL, _ACROSS - 1.2)[0]
+        write(page.figure, _LEFT, 0.45, foot, fontsize=_SMALL, color=MUTED)
+        write(page.figure, WIDTH - _RIGHT, 0.45, f"{number} of {count}", fontsize=_SMALL, color=MUTED, ha="right")
+    return layout.pages
+
+
+class _Layout:
+    """Pages as they are filled. y: where the next thing begins, inches from the bottom."""
+
+    def __init__(self) -> None:
+        self.pages: list[Page] = [Page()]
+        self.y = HEIGHT - _TOP
+
+    def room(self, height: float) -> None:
+        """Begin another page unless so much fits on this one."""
+        if self.y - height < _BOTTOM and self.y < HEIGHT - _TOP:
+            self.pages.append(Page())
+            self.y = HEIGHT - _TOP
+
+    def lines(
+        self, lines: Sequence[str], size: float, *, left: float = _LEFT, bold: bool = False, ink: str = INK
+    ) -> None:
+        """Write lines of text below one another."""
+        for line in lines:
+            self.room(size * _LEADING)
+            self.y -= size * _LEADING
+            self._text(left, line, size, bold=bold, ink=ink)
+
+    def rule(self, ink: str, width: float, *, below: float = 0.05) -> None:
+        """Draw a line across."""
+        self.y -= below
+        ends = (_LEFT / WIDTH, 1.0 - _RIGHT / WIDTH)
+        self.pages[-1].figure.add_artist(Line2D(ends, (self.y / HEIGHT,) * 2, color=ink, linewidth=width))
+
+    def section(self, section: Section) -> None:
+        """Write a heading and what is below it."""
+        # A heading is not left alone at the foot of a page.
+        self.room(4.5 if isinstance(section.blocks[0], Picture) else 1.3)
+        self.y -= 0.2
+        self.lines([section.title], _HEAD, bold=True)
+        self.rule("#c8c8c8", 0.8)
+        self.y -= 0.04
+        for block in section.blocks:
+            self.block(block)
+
+    def block(self, block: Block) -> None:
+        """Write a part of a section."""
+        if isinstance(block, Paragraph):
+            size = _SMALL + 0.4 if block.tone == "note" else _TEXT
+            text = _MARKS[block.tone] + block.text
+            self.y -= 0.03
+            self.lines(wrapped(text, size, _ACROSS), size, ink=_INKS[block.tone], bold=block.tone == "bad")
+            self.y -= 0.03
+        elif isinstance(block, Facts):
+            self.facts(block)
+        elif isinstance(block, Table):
+            self.table(block)
+        else:
+            self.picture(block)
+
+    def facts(self, facts: Facts) -> None:
+        """Write names with what there is to say beside them."""
+        for name, texts in facts.rows:
+            lines = [line for text in texts for line in wrapped(text, _TEXT, _ACROSS - _NAMES)]
+            self.room(min(len(lines), 4) * _TEXT * _LEADING)
+            top = self.y - _TEXT * _LEADING
+            page = self.pages[-1]
+            write(page.figure, _LEFT, top, name, fontsize=_TEXT, color=MUTED)
+            self.lines(lines, _TEXT, left=_LEFT + _NAMES)
+            self.y -= 0.03
+
+    def table(self, table: Table) -> None:
+        """Write a table, its heads again on every page."""
+        size = _SMALL if table.small else _TEXT - 0.6
+        widths = [share * _ACROSS for share in table.wide]
+        cells = [self._cells(row, widths, size, bold=place in table.bold) for place, row in enumerate(table.rows)]
+        heads = self._cells(table.heads, widths, size, bold=True)
+        self.room((4 + max(map(len, heads))) * size * _LEADING + 0.3)
+        if table.title:
+            self.y -= 0.07
+            self.lines([table.title], _TEXT, bold=True)
+        self._row(table, heads, widths, size, bold=True)
+        self.rule(INK, 0.8, below=0.045)
+        for place, row in enumerate(cells):
+            before = len(self.pages)
+            self.room(max(map(len, row)) * size * _LEADING + 0.08)
+            if len(self.pages) > before:
+                self._row(table, heads, widths, size, bold=True)
+                self.rule(INK, 0.8, below=0.045)
+            self._row(table, row, widths, size, bold=place in table.bold)
+            self.rule("#e2e2e2", 0.5, below=0.04)
+        self.y -= 0.1
+
+    def _cells(self, row: Sequence[str], widths: Sequence[float], size: float, *, bold: bool) -> list[list[str]]:
+        return [wrapped(cell, size, width - _BETWEEN, bold=bold) for cell, width in zip(row, widths, strict=True)]
+
+    def _row(self, table: Table, cells: list[list[str]], widths: Sequence[float], size: float, *, bold: bool) -> None:
+        left, top = _LEFT, self.y - 0.02
+        for place, (lines, width) in enumerate(zip(cells, widths, strict=True)):
+            right = place in table.right
+            for line, text in enumerate(lines, 1):
+                self.y = top - line * size * _LEADING
+                self._text(left + width - _BETWEEN if right else left, text, size, bold=bold, right=right)
+            left += width
+        self.y = top - max(map(len, cells)) * size * _LEADING
+
+    def picture(self, picture: Picture) -> None:
+        """Put a figure where it fits, its title above it."""
+        figure = picture.draw()
+        width, height = figure.get_size_inches()
+        scale = min(_ACROSS / width, _TALLEST / height, 1.0)
+        left = self.y - _BOTTOM - 0.42
+        if _SHRUNK * scale * height <= left < scale * height:
+            scale = left / height
+        self.room(scale * height + 0.4)
+        self.y -= 0.06
+        self.lines([picture.title], _TEXT, bold=True)
+        self.y -= scale * height + 0.06
+        self.pages[-1].insets.append(Inset(figure, _LEFT, self.y, scale, picture.raster))
+        self.y -= 0.08
+
+    def signatures(self, names: Sequence[str]) -> None:
+        """Leave room for names, dates and signatures."""
+        self.room(1.0)
+        self.y -= 0.75
+        width = _ACROSS / len(names)
+        for place, name in enumerate(names):
+            left = _LEFT + place * width
+            ends = (left / WIDTH, (left + width - 0.25) / WIDTH)
+            figure = self.pages[-1].figure
+            figure.add_artist(Line2D(ends, (self.y / HEIGHT,) * 2, color=INK, linewidth=0.7))
+            write(figure, left, self.y - 0.15, f"{name} by, date", fontsize=_SMALL, color=MUTED)
+        self.y -= 0.2
+
+    def _text(
+        self, x: float, text: str, size: float, *, bold: bool = False, ink: str = INK, right: bool = False
+    ) -> None:
+        style = {"fontsize": size, "color": ink, "ha": "right" if right else "left"}
+        write(self.pages[-1].figure, x, self.y, text, weight="bold" if bold else "normal", **style)

@@ -1,0 +1,104 @@
+"""Shipped jobs, job files read and written, and quantities explained, through the API."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from slidercrank.model.errors import JobError
+from slidercrank.objectives.motion_deviation import DEVIATIONS
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.service.job_toml import job_toml
+from tests.service.api.serving import refused
+
+TOML = {"Content-Type": "application/toml"}
+SHIPPED = ("feeder", "sieve", "support")
+
+
+def shipped(root: Path) -> dict[str, Any]:
+    return {file.stem: tomllib.loads(file.read_text()) for file in (root / "runs").glob("*.toml")}
+
+
+def test_the_packaged_jobs_are_those_of_the_folder_runs(pytestconfig: pytest.Config) -> None:
+    root = pytestconfig.rootpath
+    files = {file.name: file.read_bytes() for file in (root / "runs").glob("*.toml")}
+    packaged = {file.name: file.read_bytes() for file in (root / "service" / "presets").glob("*.toml")}
+    assert packaged == files, "copy runs/*.toml to service/presets"
+
+
+def test_presets_are_the_shipped_jobs(shared: httpx.Client, pytestconfig: pytest.Config) -> None:
+    presets = shared.get("/presets").json()["presets"]
+    assert {preset["name"]: preset["job"] for preset in presets} == shipped(pytestconfig.rootpath)
+    for preset in presets:
+        assert (preset["title"], preset["sentence"]) == (preset["job"]["name"], preset["job"]["description"])
+        assert shared.post("/check", json={"job": preset["job"]}).status_code == 200
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_job_comes_back_the_same_through_toml(
+    shared: httpx.Client, pytestconfig: pytest.Config, name: str
+) -> None:
+    file = (pytestconfig.rootpath / "runs" / f"{name}.toml").read_bytes()
+    tables = shared.post("/parse", content=file, headers=TOML).json()["job"]
+    assert tables == tomllib.loads(file.decode())
+    written = shared.post("/toml", json={"job": tables})
+    assert written.headers["content-type"] == "application/toml"
+    assert tomllib.loads(written.text) == tables
+    assert "[mechanism]\n" in written.text
+
+
+TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
+NUMBERS = st.integers(-(2**53), 2**53) | st.floats(allow_nan=False, allow_infinity=False)
+NESTED = st.recursive(
+    st.booleans() | NUMBERS | TEXT,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=60)
+@given(st.dictionaries(TEXT, NESTED, max_size=5))
+def test_whatever_the_tables_hold_reading_what_was_written_gives_it_again(tables: dict[str, Any]) -> None:
+    assert tomllib.loads(job_toml(tables)) == tables
+
+
+@pytest.mark.parametrize("value", [None, float("nan"), float("inf")])
+def test_what_toml_has_no_word_for_is_refused(value: object) -> None:
+    with pytest.raises(JobError, match="leave the key out"):
+        job_toml({"mechanism": {"speed": value}})
+
+
+def test_a_file_that_is_no_toml_is_said_with_its_line(shared: httpx.Client) -> None:
+    sentence = refused(shared.post("/parse", content=b"name = \n", headers=TOML), 422)
+    assert "no valid TOML" in sentence
+    assert "line 1" in sentence
+
+
+def test_every_quantity_is_explained(shared: httpx.Client, pytestconfig: pytest.Config) -> None:
+    found = {item["name"]: item for item in shared.get("/quantities").json()["quantities"]}
+    assert set(found) == {"crank", "rod", "offset", *QUANTITIES, *DEVIATIONS}
+    theory = (pytestconfig.rootpath / "docs" / "theory.md").read_text()
+    sections = set(re.findall(r"^## (.+)$", theory, re.MULTILINE))
+    pictures = (pytestconfig.rootpath / "service/page/static/help/picture.js").read_text()
+    for name, item in found.items():
+        assert item["sentence"].endswith("."), name
+        assert 30 < len(item["sentence"]) < 260, name
+        assert item["formula"], name
+        assert item["section"] in sections, name
+        assert re.search(rf'^  "?{re.escape(item["picture"])}"?: \{{', pictures, re.MULTILINE), item["picture"]
+        if name in QUANTITIES:
+            quantity = QUANTITIES[name]
+            assert (item["column"], item["title"], item["unit"]) == (
+                quantity.field,
+                quantity.title,
+                quantity.unit.symbol,
+            )
+        if item["source"].startswith("R. Chetana"):
+            assert "*Analysis of Position Error in Offset Slider Crank Mechanism*, Eq. (3)" in theory

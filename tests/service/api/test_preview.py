@@ -1,0 +1,193 @@
+"""A job while it is being written: what is wrong, where, and what its ranges allow."""
+
+from __future__ import annotations
+
+import math
+import time
+import tomllib
+from copy import deepcopy
+from typing import Any
+
+import httpx
+import pytest
+
+from slidercrank.model.linkage import Linkage
+from tests.service.api.serving import refused
+
+Job = dict[str, Any]
+
+
+@pytest.fixture
+def feeder(pytestconfig: pytest.Config) -> Job:
+    return tomllib.loads((pytestconfig.rootpath / "runs" / "feeder.toml").read_text())
+
+
+def preview(client: httpx.Client, job: Job) -> dict[str, Any]:
+    response = client.post("/preview", json={"job": job})
+    assert response.status_code == 200, response.text
+    found: dict[str, Any] = response.json()
+    return found
+
+
+def test_a_valid_job_is_understood_as_check_understands_it(shared: httpx.Client, feeder: Job) -> None:
+    found = preview(shared, feeder)
+    assert found["wrong"] == []
+    assert found["understood"] == shared.post("/check", json={"job": feeder}).json()
+    assert found["allowed"]["unchecked"] == []
+
+
+def test_the_example_is_a_linkage_within_the_ranges_that_meets_the_requirements(
+    shared: httpx.Client, feeder: Job
+) -> None:
+    example = preview(shared, feeder)["example"]
+    assert example["feasible"]
+    assert example["clockwise"]
+    linkage = Linkage(*(1e-3 * example[f"{name}_mm"] for name in ("crank", "rod", "offset")))
+    assert 80.0 <= 1e3 * linkage.stroke <= 90.0
+    assert linkage.rod / linkage.offset == pytest.approx(3.2, rel=1e-12)
+    assert 20.0 <= example["crank_mm"] <= 60.0
+    assert example["stroke_mm"] == pytest.approx(1e3 * linkage.stroke, rel=1e-12)
+    assert example["slow_stroke"] == "outward"
+    motion = example["motion"]
+    at = linkage.at([math.radians(angle) for angle in motion["crank_angle_deg"]])
+    assert motion["slider_position_mm"] == pytest.approx((1e3 * at.slider_position).tolist(), rel=1e-12)
+
+
+def test_strokes_of_the_ranges_are_those_of_the_closed_form(shared: httpx.Client) -> None:
+    ranges = {"crank": ["20 mm", "60 mm"], "rod": "200 mm", "offset": "50 mm"}
+    allowed = preview(shared, {"variables": ranges})["allowed"]
+    ends = [1e3 * float(Linkage(crank, 0.2, 0.05).stroke) for crank in (0.02, 0.06)]
+    assert allowed["stroke_mm"] == pytest.approx(ends, rel=1e-9)
+    assert allowed["turning_share"] == 1.0
+
+
+def test_the_greatest_time_ratio_with_a_transmission_angle_is_that_of_the_edge(shared: httpx.Client) -> None:
+    job = {
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": "100 mm", "offset": ["0 mm", "80 mm"]},
+        "constraints": {"transmission_angle": {"min": "40 deg"}},
+    }
+    allowed = preview(shared, job)["allowed"]
+    cosine = 0.1 * math.cos(math.radians(40.0))
+    fine = (0.02 + 1e-5 * step for step in range(4001))
+    best = max(float(Linkage(crank, 0.1, cosine - crank).time_ratio) for crank in fine if cosine > crank)
+    assert allowed["time_ratio"][1] == pytest.approx(best, rel=2e-3)
+    assert allowed["time_ratio"][1] <= best * (1.0 + 1e-6)
+
+
+def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: httpx.Client, feeder: Job) -> None:
+    feeder["constraints"] |= {"time_ratio": {"min": 2.0}, "transmission_angle": {"min": "40 deg"}}
+    found = preview(shared, feeder)
+    (wrong,) = found["wrong"]
+    assert wrong["path"] == "constraints.time_ratio"
+    assert "stays below 1.286" in wrong["sentence"]
+    assert found["understood"] is None
+    assert any("time ratio: at least 2 is asked" in sentence for sentence in found["allowed"]["said"])
+
+
+def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:
+    found = preview(shared, {"variables": {"crank": "100 mm", "rod": "90 mm", "offset": "0 mm"}})
+    assert found["example"] is None
+    assert found["allowed"]["turning_share"] == 0.0
+    assert "no crank of these ranges turns fully" in found["allowed"]["said"][0]
+
+
+WRONG = {
+    "name": ("name", ""),
+    "mechanism.speed": ("mechanism", "speed", "300"),
+    "mechanism.slider.mass": ("mechanism", "slider", "mass", "2 mm"),
+    "mechanism.rod.mass": ("mechanism", "rod", "mass", "heavy"),
+    "load #2.force": ("load", 1, "force", "-1 N"),
+    "tolerances.crank": ("tolerances", "crank", "1 kg"),
+    "variables.crank": ("variables", "crank", ["60 mm", "20 mm"]),
+    "constraints.stroke.min": ("constraints", "stroke", "min", "80"),
+    "constraints.transmission_angle": ("constraints", "transmission_angle", {"min": "95 deg"}),
+    "objectives.time_ratio": ("objectives", "time_ratio", "best"),
+    "optimiser.designs": ("optimiser", "designs", 0),
+    "mechanism.colour": ("mechanism", "colour", "red"),
+}
+
+
+@pytest.mark.parametrize("path", WRONG)
+def test_what_is_wrong_has_its_place(shared: httpx.Client, feeder: Job, path: str) -> None:
+    *keys, last, value = WRONG[path]
+    part: Any = feeder
+    for key in keys:
+        part = part[key]
+    part[last] = value
+    found = preview(shared, feeder)
+    assert [wrong["path"] for wrong in found["wrong"]] == [path]
+    assert not found["wrong"][0]["sentence"].startswith(path)
+
+
+def test_several_wrong_values_are_said_at_once_and_the_ranges_are_still_looked_at(
+    shared: httpx.Client, feeder: Job
+) -> None:
+    feeder["name"] = ""
+    feeder["mechanism"]["slider"]["mass"] = "x"
+    found = preview(shared, feeder)
+    assert {wrong["path"] for wrong in found["wrong"]} == {"name", "mechanism.slider.mass"}
+    assert found["allowed"]["stroke_mm"] is not None
+    assert found["example"]["clockwise"]
+
+
+def test_an_empty_job_says_what_is_missing(shared: httpx.Client) -> None:
+    found = preview(shared, {})
+    assert {"name", "mechanism", "variables", "objectives"} == {wrong["path"] for wrong in found["wrong"]}
+    assert (found["allowed"], found["example"]) == (None, None)
+
+
+def test_a_job_that_names_a_file_of_the_service_is_refused(shared: httpx.Client, feeder: Job) -> None:
+    feeder["target_motion"] = {"file": "/etc/passwd"}
+    (wrong,) = preview(shared, feeder)["wrong"]
+    assert wrong["path"] == "target_motion.file"
+    assert "the service opens no file" in wrong["sentence"]
+
+
+def hostile(feeder: Job) -> dict[str, Job]:
+    """Return jobs that are meant to take long or to break something."""
+
+    def but(**changes: Any) -> Job:
+        return {**deepcopy(feeder), **changes}
+
+    table = {"positions": [f"{n} mm" for n in range(1000)], "forces": ["1 N"] * 1000}
+    options = [{"name": str(n), "values": {"mechanism.slider.mass": f"{n + 1} kg"}} for n in range(100)]
+    angles = [f"{0.35 * n} deg" for n in range(1000)]
+    wanted = {"crank_angles": angles, "positions": ["100 mm"] * 1000, "phase": "free", "shift": "free"}
+    tiny = {"crank": ["1e-9 m", "1e4 m"], "rod": ["1e-9 m", "1e4 m"], "offset": ["-1e4 m", "1e4 m"]}
+    return {
+        "tables of loads": but(load=[table] * 50, constraints={"peak_torque": {"max": "1 N m"}}),
+        "many choices": but(choice=[{"name": "c", "option": options}, {"name": "d", "option": options[:2]}]),
+        "a wanted motion": but(
+            target_motion=wanted,
+            constraints={"motion_deviation": {"max": "1 mm"}},
+            objectives={"motion_deviation": "minimise", "time_ratio": "maximise"},
+        ),
+        "a robust job": but(robust={"kind": "percentile", "samples": 65536}),
+        "every size": but(variables=tiny, constraints={}),
+        "many keys": but(mechanism={f"k{n}": n for n in range(20_000)}),
+        "many bounds": but(constraints={f"k{n}": {"min": n} for n in range(20_000)}),
+        "lists for texts": but(variables={"crank": [[[]]], "rod": {"choices": list(range(5000))}, "offset": None}),
+        "texts for tables": but(constraints="all", objectives=3, variables="wide", mechanism=[], load={}),
+        "odd keys": but(constraints={"": {"min": 1}, "a.b #3: c": 2, "\n": 3}),
+    }
+
+
+@pytest.mark.parametrize("kind", hostile({}))
+def test_no_job_takes_long_or_breaks_the_preview(shared: httpx.Client, feeder: Job, kind: str) -> None:
+    job = hostile(feeder)[kind]
+    begin = time.monotonic()
+    response = shared.post("/preview", json={"job": job})
+    assert response.status_code in (200, 400), response.text
+    assert time.monotonic() - begin < 5.0  # far from what is usual, near to what would mean no bound at all
+
+
+def test_a_job_of_very_many_values_is_looked_at_but_not_read(shared: httpx.Client, feeder: Job) -> None:
+    found = preview(shared, hostile(feeder)["tables of loads"])
+    assert not found["checked"]
+    assert found["understood"] is None
+    assert found["example"] is not None
+    assert preview(shared, feeder)["checked"]
+
+
+def test_a_preview_is_of_a_job_and_nothing_else(shared: httpx.Client) -> None:
+    assert "body path: unknown" in refused(shared.post("/preview", json={"job": {}, "path": "x"}), 422)

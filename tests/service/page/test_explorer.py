@@ -1,0 +1,295 @@
+"""The explorer of a front: limits, marks and selected designs are the same in lines, scatter and table."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from slidercrank.service.runs.result import Row
+from slidercrank.service.store import Store
+from tests.service.api.fixed_front import Solved, served
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+from tests.service.page.large_front import put_large
+
+COUNT = 10_000
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Store, list[Row]]]:
+    """Return a store with a front of 10,000 designs, and these."""
+    with Store(tmp_path_factory.mktemp("large") / "store.db") as store:
+        number = put_large(store, COUNT)
+        yield store, store.result(number).designs
+
+
+def view_of(solved: Solved, query: str = "") -> str:
+    """Return the view of the small job."""
+    return f"#/jobs/{solved.number}{query}"
+
+
+def hash_of(page: Page) -> str:
+    """Return the part of the address from # on."""
+    return f"#{page.url.partition('#')[2]}"
+
+
+def expect_designs(page: Page, numbers: list[int]) -> None:
+    """Wait until the table shows these designs, in this order."""
+    shown = page.locator("table.designs tbody tr td:nth-child(2) > a")
+    expect(shown).to_have_text([str(number) for number in numbers])
+
+
+def field(page: Page, label: str) -> Locator:
+    """Return the field of a limit."""
+    return page.get_by_role("textbox", name=label)
+
+
+def axis(page: Page, index: int, axes: int) -> tuple[float, float, float]:
+    """Return where an axis is: x, top and bottom of its lines, in pixels of the screen."""
+    canvas = page.locator(".lines canvas").last
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] * (index + 0.5) / axes, box["y"] + 12, box["y"] + box["height"] - 12
+
+
+def cells(rows: list[Row], key: str) -> list[Any]:
+    """Return a column."""
+    return [row[key] for row in rows]
+
+
+def test_a_limit_holds_everywhere_and_in_a_link(open_page: Open, solved: Solved) -> None:
+    rows = solved.result.designs
+    ratios = sorted(cells(rows, "time_ratio"))
+    least = round((ratios[2] + ratios[3]) / 2, 6)
+    kept = [index + 1 for index, row in enumerate(rows) if row["time_ratio"] >= least]
+    assert 0 < len(kept) < len(rows)
+    page = open_page(solved.store, view_of(solved))
+    field(page, "At least time ratio").fill(str(least))
+    field(page, "At least time ratio").press("Enter")
+    expect(page.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
+    expect_designs(page, kept)
+    expect(page).to_have_url(re.compile(rf"min\.time_ratio={least}"))
+    again = open_page(solved.store, hash_of(page))
+    expect(again.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
+    expect_designs(again, kept)
+    again.get_by_role("button", name="Clear all limits").click()
+    expect(again.get_by_text(f"{len(rows)} of {len(rows)} designs chosen")).to_be_visible()
+
+
+def test_dragging_along_an_axis_is_the_same_as_its_fields(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    x, top, bottom = axis(page, 3, 5)
+    page.mouse.move(x, top)
+    page.mouse.down()
+    page.mouse.move(x, (top + bottom) / 2, steps=5)
+    page.mouse.up()
+    ratios = cells(solved.result.designs, "time_ratio")
+    middle = (min(ratios) + max(ratios)) / 2
+    expect(field(page, "At least time ratio")).not_to_have_value("")
+    least = float(field(page, "At least time ratio").input_value())
+    assert least == pytest.approx(middle, rel=0.01)
+    kept = [index + 1 for index, ratio in enumerate(ratios) if ratio >= least]
+    expect(page.get_by_text(f"{len(kept)} of 8 designs chosen")).to_be_visible()
+    expect_designs(page, kept)
+    page.mouse.dblclick(x, (top + bottom) / 2)
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(field(page, "At least time ratio")).to_have_value("")
+
+
+def test_limits_are_in_the_units_of_the_reader_and_stay_those_of_the_service(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved, "?min.rod_mm=254"))
+    expect(field(page, "At least rod, mm")).to_have_value("254")
+    page.get_by_label("Units").select_option("inch")
+    expect(field(page, "At least rod, in")).to_have_value("10")
+    field(page, "At most rod, in").fill("20")
+    field(page, "At most rod, in").press("Enter")
+    expect(page).to_have_url(re.compile(r"max\.rod_mm=508"))
+
+
+def test_what_is_no_number_is_marked_and_changes_nothing(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    field(page, "At least time ratio").fill("much")
+    field(page, "At least time ratio").press("Enter")
+    expect(field(page, "At least time ratio")).to_have_attribute("aria-invalid", "true")
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+
+
+def test_words_are_ticked(open_page: Open, solved: Solved) -> None:
+    words = cells(solved.result.designs, "slow_stroke")
+    page = open_page(solved.store, view_of(solved, "?axes=slow_stroke,time_ratio&columns=slow_stroke"))
+    group = page.get_by_role("group", name="Only slow stroke")
+    first = sorted(set(words))[0]
+    group.get_by_label(first).uncheck()
+    kept = [word for word in words if word != first] or words  # none ticked is no limit
+    expect(page.get_by_text(f"{len(kept)} of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_role("cell", name=words[0], exact=True).first).to_be_visible()
+
+
+def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    page.get_by_role("button", name="Flip: time ratio").click()
+    expect(page).to_have_url(re.compile(r"-time_ratio"))
+    page.get_by_role("button", name="Move left: time ratio").click()
+    page.get_by_role("button", name="Leave out: crank").click()
+    page.get_by_text("Axes", exact=True).click()
+    page.get_by_role("group", name="Axes").get_by_label("stroke, mm", exact=True).check()
+    expect(field(page, "At least stroke, mm")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
+
+
+def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    ratios = cells(solved.result.designs, "least_transmission_angle_deg")
+    button = page.get_by_role("columnheader").get_by_role("button", name="least transmission angle")
+    best = [row + 1 for row in sorted(range(8), key=lambda row: -ratios[row])]
+    button.click()
+    expect(page).to_have_url(re.compile("sort=-least_transmission_angle_deg"))
+    expect_designs(page, best)
+    button.click()
+    expect(page).to_have_url(re.compile("sort=least_transmission_angle_deg"))
+    expect_designs(page, best[::-1])
+    page.get_by_text("Columns", exact=True).click()
+    page.get_by_role("group", name="Columns").get_by_label("status").check()
+    expect(page.get_by_role("columnheader", name="status")).to_be_visible()
+    expect(page.get_by_role("cell", name="stationary").first).to_be_visible()
+
+
+def test_the_design_that_weights_choose_is_that_of_the_service(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    page.get_by_role("slider", name="time ratio").fill("9")
+    page.get_by_role("slider", name="least transmission angle").fill("2")
+    with served(solved.store) as address:
+        question = {"topsis": "time_ratio=9, transmission_angle=2"}
+        picked = httpx.get(f"{address}{solved.path}/pick", params=question).json()["number"]
+    expect(page.get_by_text(f"These weights choose design {picked}.")).to_be_visible()
+    expect(page).to_have_url(re.compile("weights=9%2C2"))
+
+
+def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    first = page.locator("table.designs tbody a").first
+    expect(first).to_be_visible()
+    first.focus()
+    page.keyboard.press("Space")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Space")
+    side_by_side = page.get_by_role("link", name="Designs 1, 2 side by side")
+    expect(side_by_side).to_have_attribute("href", f"#/jobs/{solved.number}/designs/1?beside=2")
+    expect(page.get_by_role("checkbox", name="Select design 2")).to_be_checked()
+    expect(page).to_have_url(re.compile("selected=1%2C2"))
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
+    page.go_back()
+    expect(page.get_by_role("checkbox", name="Select design 2")).to_be_checked()
+
+
+def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, large: tuple[Store, list[Row]]) -> None:
+    store, rows = large
+    page = open_page(store, "#/jobs/1?x=crank_mm&y=rod_mm")
+    canvas = page.locator(".dots canvas").last
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    assert box is not None
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.move(*middle)
+    expect(page.locator(".tip")).to_contain_text("Design")
+    page.mouse.down()
+    page.mouse.move(middle[0] + 80, middle[1] + 60, steps=4)
+    page.mouse.up()
+    expect(page).to_have_url(re.compile("max.rod_mm"))
+    low, high = (float(field(page, f"At {side} crank, mm").input_value()) for side in ("least", "most"))
+    under, over = (float(field(page, f"At {side} rod, mm").input_value()) for side in ("least", "most"))
+    kept = sum(low <= row["crank_mm"] <= high and under <= row["rod_mm"] <= over for row in rows)  # type: ignore[operator]
+    assert 0 < kept < COUNT
+    expect(page.get_by_text(f"{kept:,} of 10,000 designs chosen")).to_be_visible()
+    page.mouse.move(middle[0] + 40, middle[1] + 30)
+    expect(page.locator(".tip")).to_contain_text("Design")
+    design = page.locator(".tip strong").inner_text().removeprefix("Design ")
+    page.mouse.click(middle[0] + 40, middle[1] + 30)
+    expect(page).to_have_url(re.compile(rf"#/jobs/1/designs/{design}$"))
+
+
+def test_ten_thousand_designs_are_limited_together_and_right(open_page: Open, large: tuple[Store, list[Row]]) -> None:
+    store, rows = large
+    page = open_page(
+        store, "#/jobs/1?max.peak_torque_Nm=60&min.time_ratio=1.1&max.peak_power_W=900&sort=peak_torque_Nm"
+    )
+    kept = [
+        (row["peak_torque_Nm"], number)
+        for number, row in enumerate(rows, 1)
+        if row["peak_torque_Nm"] <= 60 and row["time_ratio"] >= 1.1 and row["peak_power_W"] <= 900  # type: ignore[operator]
+    ]
+    assert 20 < len(kept) < COUNT
+    expect(page.get_by_text(f"{len(kept):,} of 10,000 designs chosen")).to_be_visible()
+    expect_designs(page, [number for _, number in sorted(kept)[:20]])
+    page.get_by_role("button", name="Last page").click()
+    expect(page.get_by_text(f"{len(kept)} of {len(kept):,}")).to_be_visible()
+    expect_designs(page, [number for _, number in sorted(kept)[(len(kept) - 1) // 20 * 20 :]])
+
+
+def test_the_explorer_is_accessible(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved, "?min.time_ratio=1.01&selected=1,2&weights=3,1&colour=slow_stroke"))
+    expect(page.get_by_text("These weights choose")).to_be_visible()
+    page.get_by_text("Columns", exact=True).click()
+    require_accessible(page)
+
+
+def test_an_address_with_nonsense_shows_the_front(open_page: Open, solved: Solved) -> None:
+    nonsense = "?x=none&y=&axes=-,what&min.time_ratio=abc&max.no=3&selected=0,99,1.5&page=-7&sort=-x&weights=1"
+    page = open_page(solved.store, view_of(solved, nonsense))
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect_designs(page, list(range(1, 9)))
+
+
+def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved), viewport={"width": 390, "height": 800})
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    page.set_viewport_size({"width": 1200, "height": 800})
+    x, top, bottom = axis(page, 4, 5)
+    page.mouse.move(x, bottom)
+    page.mouse.down()
+    page.mouse.move(x, (top + bottom) / 2, steps=4)
+    page.mouse.up()
+    expect(field(page, "At most least transmission angle")).not_to_have_value("")
+
+
+def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[Store, list[Row]]) -> None:
+    store, rows = large
+    page = open_page(store, "#/jobs/1?x=crank_mm&y=rod_mm")
+    page.get_by_role("combobox", name="Drag").select_option("by hand")
+    canvas = page.locator(".dots canvas").last
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for dx, dy in ((100, 0), (0, 100)):
+        page.mouse.move(x + dx, y + dy)
+    page.mouse.up()
+    expect(page).to_have_url(re.compile("lasso=crank_mm%2Crod_mm"))
+    shown = parse_qs(urlsplit(hash_of(page).replace("#", "")).query)["lasso"][0].split(",")[2:]
+    (x1, y1), (x2, y2), (x3, y3) = (tuple(map(float, shown[i : i + 2])) for i in (0, 2, 4))
+    assert (y2, x3) == pytest.approx((y1, x1), rel=1e-3)
+    kept = 0
+    for row in rows:
+        across = (float(row["crank_mm"] or 0.0) - x1) / (x2 - x1)
+        up = (float(row["rod_mm"] or 0.0) - y1) / (y3 - y1)
+        kept += across >= 0.0 and up >= 0.0 and across + up <= 1.0
+    assert kept > 20
+    count = page.get_by_text("of 10,000 designs chosen")
+    found = int(count.inner_text().split()[0].replace(",", ""))
+    assert found == pytest.approx(kept, abs=3)  # the address has five digits of the corners
+    again = open_page(store, hash_of(page))
+    expect(again.get_by_text("of 10,000 designs chosen")).not_to_contain_text("10,000 of")
+    page.get_by_role("button", name="Clear all limits").click()
+    expect(page.get_by_text("10,000 of 10,000 designs chosen")).to_be_visible()

@@ -1,0 +1,38 @@
+"""The help: how it works, every quantity found, shown with its picture, and accessible."""
+
+from __future__ import annotations
+
+from playwright.sync_api import expect
+
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.service.store import Store
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+
+
+def test_the_help_lists_every_quantity_and_finds_those_of_some_words(open_page: Open, store: Store) -> None:
+    page = open_page(store, "#/help")
+    cards = page.locator(".quantities li")
+    expect(cards).to_have_count(len(QUANTITIES) + 5)
+    assert page.locator(".picture").count() == len(QUANTITIES) + 5
+    assert page.locator(".picture:not(:has(.mark))").count() == 0  # each points something out
+    page.get_by_label("Search").fill("torque motor")
+    expect(page.get_by_role("link", name="RMS torque")).to_be_visible()
+    expect(page.get_by_role("link", name="footprint")).to_have_count(0)
+    assert "search=torque" in page.url
+    page.reload()
+    expect(page.get_by_label("Search")).to_have_value("torque motor")
+    require_accessible(page)
+
+
+def test_a_quantity_has_a_page_by_its_name_and_by_its_column(open_page: Open, store: Store) -> None:
+    page = open_page(store, "#/help/peak_torque")
+    expect(page.get_by_role("heading", level=1)).to_have_text("peak torque")
+    expect(page.get_by_role("img", name="Picture: peak torque")).to_be_visible()
+    expect(page.locator("dl")).to_contain_text("docs/theory.md, section 8. Dynamics")
+    expect(page).to_have_title("peak torque · slidercrank")
+    require_accessible(page)
+    page.evaluate("location.hash = '#/help/stroke_mm'")
+    expect(page.get_by_role("heading", level=1)).to_have_text("stroke")
+    page.evaluate("location.hash = '#/help/nonsense'")
+    expect(page.get_by_role("main")).to_contain_text('No quantity is called "nonsense"')

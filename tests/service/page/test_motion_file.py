@@ -1,0 +1,62 @@
+"""The motion of a design as a file of its own, in a browser."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.service.designs.cycle_table import cycle_table
+from slidercrank.service.motion.player_page import player_page
+from tests.service import fronts
+
+OFFSET, BELOW = Linkage(0.14, 0.31, 0.06), Linkage(0.14, 0.31, -0.06)
+
+
+def test_the_page_plays_in_a_browser_and_fetches_nothing(browser: Browser, tmp_path: Path) -> None:
+    linkage = BELOW
+    mechanism = replace(fronts.MACHINE, speed=-4.0)
+    file = tmp_path / "motion.html"
+    file.write_bytes(player_page(mechanism, linkage, name="Sieve", number=3))
+    page = browser.new_page()
+    wrong: list[str] = []
+    asked: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda message: wrong.append(message.text))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(file.as_uri())
+    before = page.locator("#crank").get_attribute("transform")
+    page.wait_for_function(f"document.getElementById('crank').getAttribute('transform') !== {json.dumps(before)}")
+    page.get_by_role("button", name="Pause").click()
+    assert page.get_by_role("button", name="Play").is_visible()
+    angle = page.get_by_label("Crank angle")
+    angle.focus()
+    angle.fill("90")
+    position = next(c for c in cycle_table(mechanism, linkage, angles=4) if c.key == "slider_position_mm").values[1]
+    shown = page.locator('output[data-curve="slider_position_mm"]').text_content()
+    assert float(str(shown).replace("−", "-")) == pytest.approx(position, rel=1e-3)
+    moved = page.locator("#slider").get_attribute("transform") or ""
+    assert float(moved.split("(")[1].split()[0]) == pytest.approx(position, rel=1e-9)
+    angle.press("ArrowRight")
+    assert page.locator("#angle-now").text_content() == "91°"
+    assert page.locator("option", has_text="as it runs").text_content() == "as it runs, 38.2 turns a minute"
+    page.close()
+    assert wrong == []
+    assert asked == [file.as_uri()]
+
+
+def test_the_page_stands_still_for_who_wants_no_motion(browser: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "motion.html"
+    file.write_bytes(player_page(Mechanism(), OFFSET, name="Sieve"))
+    page = browser.new_page(reduced_motion="reduce")
+    page.goto(file.as_uri())
+    assert page.get_by_role("button", name="Play").is_visible()
+    before = page.locator("#crank").get_attribute("transform")
+    page.wait_for_timeout(200)
+    assert page.locator("#crank").get_attribute("transform") == before
+    page.close()

@@ -1,0 +1,365 @@
+"""The form of a new run: presets, what is typed, what is wrong, drafts, files, units, keyboard."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.units import kind_for, to_si
+from slidercrank.service.api.settings import Settings
+from slidercrank.service.store import Store
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+
+READY = "Ready to start."
+
+
+@pytest.fixture
+def form(open_page: Open) -> Open:
+    """Return what opens the form for a reader who prefers less motion: the sketch stands still, which saves time."""
+    return partial(open_page, reduced_motion="reduce")
+
+
+@pytest.fixture
+def shipped(pytestconfig: pytest.Config) -> dict[str, dict[str, Any]]:
+    return {file.stem: tomllib.loads(file.read_text()) for file in (pytestconfig.rootpath / "runs").glob("*.toml")}
+
+
+def status(page: Page) -> Locator:
+    return page.get_by_role("complementary").get_by_role("status")
+
+
+def ready(page: Page) -> None:
+    expect(status(page)).to_have_text(READY, timeout=30_000)
+
+
+def text_of(page: Page) -> dict[str, Any]:
+    """Return the job as the text beside the form has it."""
+    found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())
+    return found
+
+
+def start(page: Page) -> None:
+    page.get_by_role("button", name="Start the search").click()
+
+
+def test_a_preset_with_another_stroke_becomes_one_job_of_exactly_these_tables_also_on_a_double_click(
+    form: Open, store: Store, shipped: dict[str, Any]
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    expect(page.get_by_label("name", exact=True)).to_have_value("Vibrating sieve")
+    page.get_by_label("stroke, exactly").fill("260")
+    ready(page)
+    page.get_by_role("button", name="Start the search").dblclick()
+    page.wait_for_url("**/#/jobs/1")
+    wanted = shipped["sieve"]
+    wanted["constraints"]["stroke"] = {"equals": "260 mm"}
+    assert store.tables(1) == wanted
+    assert len(store.jobs()) == 1
+    assert store.job(1).name == "Vibrating sieve"
+    page.goto(f"{page.url.split('#')[0]}#/new")
+    expect(page.get_by_label("name", exact=True)).to_have_value("New slider-crank")  # the draft has become a job
+
+
+def test_every_preset_and_a_copy_of_a_job_are_shown_whole_and_stay_as_they_are(
+    form: Open, store: Store, shipped: dict[str, Any]
+) -> None:
+    page = form(store, "#/new")
+    for name, job in shipped.items():
+        page.get_by_label("Begin with a shipped job").select_option(name)
+        ready(page)
+        assert text_of(page) == job
+        assert page.url.endswith(f"#/new?preset={name}")
+    store.submit(shipped["support"], name="Tilting support")
+    page.evaluate("sessionStorage.clear(); location.hash = '#/new?from=1'")
+    expect(page.get_by_role("button", name="Bring back")).to_be_hidden()
+    ready(page)
+    assert text_of(page) == shipped["support"]
+
+
+def test_the_first_job_of_an_empty_form_can_be_solved_and_its_sketch_moves_until_paused(
+    open_page: Open, store: Store
+) -> None:
+    page = open_page(store, "#/new")
+    ready(page)
+    assert len(parse_job(text_of(page)).objectives) == 4
+    drawn = page.get_by_role("img", name="A linkage within the ranges")
+    before = drawn.inner_html()
+    page.wait_for_timeout(150)
+    assert drawn.inner_html() != before
+    page.get_by_role("button", name="Pause").click()
+    page.wait_for_timeout(50)
+    before = drawn.inner_html()
+    page.wait_for_timeout(150)
+    assert drawn.inner_html() == before
+
+
+WRONG = [
+    ("name", "", "is missing"),
+    ("crank speed", "fast", "must be an angular speed"),
+    ("slider mass", "-2", "must be zero or more"),
+    ("crank, from", "200", "must run from its lower to its upper end"),
+    ("rod, to", "ten", "must be a length"),
+    ("stroke, exactly", "9000", "at most"),
+    ("time ratio, at most", "0.9", "so 1 or more"),
+    ("least transmission angle, at least", "95", "lies between 0 and 90 deg"),
+    ("of the crank angle", "x", "must be an angle"),
+    ("designs", "1.5", "must be a whole number"),
+]
+
+
+def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_sent(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("max")
+    page.get_by_label("time ratio, at most").fill("1.1")
+    for label, typed, sentence in WRONG:
+        field = page.get_by_label(label, exact=True)
+        before = field.input_value()
+        field.fill(typed)
+        expect(field, label).to_have_attribute("aria-invalid", "true")
+        described = field.get_attribute("aria-describedby")
+        expect(page.locator(f"#{described}"), label).to_contain_text(re.compile(re.escape(sentence), re.IGNORECASE))
+        expect(status(page)).to_have_text("One thing to correct.")
+        field.fill(before)
+        expect(field, label).not_to_have_attribute("aria-invalid", "true")
+    page.get_by_label("slider mass", exact=True).fill("heavy")
+    expect(status(page)).to_have_text("One thing to correct.")
+    start(page)
+    expect(page.get_by_label("slider mass", exact=True)).to_be_focused()
+    expect(page.get_by_role("alert")).to_have_text("Correct what is marked first.")
+    assert store.jobs() == []
+
+
+def test_what_was_typed_survives_leaving_and_starting_over_is_asked_for(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder")
+    page.get_by_label("name", exact=True).fill("Mine")
+    page.get_by_label("crank, from").fill("25")
+    page.get_by_role("link", name="Help").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("Help")
+    page.get_by_role("link", name="New run").first.click()
+    expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
+    page.reload()
+    expect(page.get_by_label("crank, from")).to_have_value("25")
+    page.get_by_role("button", name="Start over").click()
+    expect(page.get_by_label("name", exact=True)).to_have_value("New slider-crank")
+    page.get_by_role("button", name="Bring back what was there").click()
+    expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
+    page.evaluate("location.hash = '#/new?preset=sieve'")  # as by a link
+    expect(page.get_by_label("name", exact=True)).to_have_value("Vibrating sieve")
+    page.get_by_role("button", name="Bring back what was there").click()
+    page.reload()
+    expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
+
+
+def test_a_job_in_inches_is_the_same_job_and_whoever_prefers_inches_begins_with_them(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_label("stroke, exactly").fill("101.6")
+    page.get_by_label("Unit of slider mass").select_option("lb")
+    page.get_by_label("slider mass", exact=True).fill("5")
+    metric = text_of(page)
+    page.get_by_label("Unit of stroke").select_option("in")
+    expect(page.get_by_label("stroke, exactly")).to_have_value("4")
+    inches = text_of(page)
+    assert inches["constraints"]["stroke"] == {"equals": "4 in"}
+    assert inches["mechanism"]["slider"]["mass"] == "5 lb"
+    assert parse_job(inches) == parse_job(metric)
+    page.get_by_label("Units").select_option("inch")
+    expect(page.get_by_role("complementary")).to_contain_text(" in")
+    page.get_by_role("button", name="Start over").click()
+    ready(page)
+    assert text_of(page)["constraints"]["stroke"] == {"equals": "4 in"}
+
+
+def test_a_job_file_comes_in_and_goes_out_the_same(
+    form: Open, store: Store, pytestconfig: pytest.Config, shipped: dict[str, Any], tmp_path: Path
+) -> None:
+    page = form(store, "#/new", expected=("422",))
+    for name, job in shipped.items():
+        page.get_by_label("Job file to import").set_input_files(pytestconfig.rootpath / "runs" / f"{name}.toml")
+        expect(page.get_by_label("name", exact=True)).to_have_value(job["name"])
+        for kind, read in (("TOML", tomllib.loads), ("JSON", json.loads)):
+            with page.expect_download() as begun:
+                page.get_by_role("button", name=f"Download {kind}").click()
+            saved = tmp_path / begun.value.suggested_filename
+            begun.value.save_as(saved)
+            assert saved.suffix == f".{kind.lower()}"
+            assert read(saved.read_text()) == job
+        page.get_by_role("button", name="Start over").click()
+        page.get_by_label("Job file to import").set_input_files(saved)
+        expect(page.get_by_label("name", exact=True)).to_have_value(job["name"])
+        assert text_of(page) == job
+    before = text_of(page)
+    bad = tmp_path / "bad.toml"
+    bad.write_text("name = ")
+    page.get_by_label("Job file to import").set_input_files(bad)
+    expect(page.locator("#notices")).to_contain_text("no valid TOML")
+    assert text_of(page) == before
+
+
+def test_the_text_and_the_form_are_in_step_and_unknown_parts_survive(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_text("The job as text").click()
+    job = text_of(page)
+    job["costs"] = {"crank": {"cost": 8.0, "at": "0.05 mm"}}
+    job["variables"]["mechanism"] = {"slider": {"mass": ["1 kg", "3 kg"]}}
+    job["mechanism"]["speed"] = "-90 rpm"
+    page.locator("#job-text").fill(json.dumps(job))
+    expect(page.get_by_label("crank speed", exact=True)).to_have_value("90")
+    expect(page.get_by_label("direction", exact=True)).to_have_value("-")
+    expect(page.get_by_role("region", name="Other parts")).to_contain_text("costs, variables.mechanism")
+    page.get_by_label("crank speed", exact=True).fill("80")
+    ready(page)
+    assert text_of(page) == {**job, "mechanism": {**job["mechanism"], "speed": "-80 rpm"}}
+    page.locator("#job-text").fill("{")
+    expect(page.locator("#job-text-error")).to_contain_text("no valid JSON yet")
+    expect(page.get_by_label("crank speed", exact=True)).to_have_value("80")
+
+
+def test_every_unit_that_a_field_offers_is_one_of_job_files_and_means_the_same(form: Open, store: Store) -> None:
+    page = form(store, "#/help")
+    offered = page.evaluate(
+        """async () => {
+          const { kinds, unitsOf, convert } = await import(new URL("page/form/units.js", document.baseURI));
+          const one = (kind, unit) => [unit, convert("1", unit, unitsOf(kind)[0], kind)];
+          return kinds().flatMap((kind) => unitsOf(kind).map((unit) => one(kind, unit)));
+        }"""
+    )
+    assert len(offered) > 50
+    for unit, in_si in offered:
+        assert to_si(f"1 {unit}", kind_for(unit)) == pytest.approx(float(in_si), rel=1e-9), unit
+
+
+def test_loads_requirements_and_objectives_are_added_and_taken_away(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_role("button", name="Add another load").click()
+    page.get_by_label("kind of load").nth(1).select_option("stiffness")
+    page.get_by_role("button", name="Remove load 1").click()
+    page.get_by_label("Another requirement").select_option("peak_guide_force")
+    expect(page.get_by_label("peak guide force, at most")).to_be_focused()
+    page.keyboard.type("800")
+    page.get_by_label("peak torque", exact=True).and_(page.get_by_role("checkbox")).uncheck()
+    page.get_by_label("time ratio: what is wanted").select_option("target")
+    page.get_by_label("time ratio: value to come near to").fill("1.2")
+    page.get_by_label("crank", exact=True).and_(page.get_by_role("combobox")).first.select_option("fixed")
+    page.get_by_label("crank, fixed at").fill("45")
+    ready(page)
+    job = text_of(page)
+    assert job["load"] == [{"stiffness": "1 N/mm", "free_position": "0 mm", "measured_from": "inner dead centre"}]
+    assert job["constraints"]["peak_guide_force"] == {"max": "800 N"}
+    assert "peak_torque" not in job["objectives"]
+    assert job["objectives"]["time_ratio"] == {"target": 1.2}
+    assert job["variables"]["crank"] == "45 mm"
+
+
+def test_a_submission_whose_answer_was_lost_is_sent_again_as_the_same(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder", expected=("ERR_FAILED", "net::"))
+    ready(page)
+
+    def lose(route: Any) -> None:
+        route.fetch()
+        route.abort()
+
+    page.route("**/api/v1/jobs", lose, times=1)
+    start(page)
+    expect(page.get_by_role("alert")).to_contain_text("does not answer")
+    page.reload()
+    ready(page)
+    start(page)
+    page.wait_for_url("**/#/jobs/1")
+    assert [job.id for job in store.jobs()] == [1]
+
+
+def test_a_refusal_is_said_in_words_and_nothing_is_lost(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder", settings=Settings(submissions_per_minute=1), expected=("429",))
+    address = page.url.split("#")[0]
+    httpx.post(f"{address}api/v1/jobs", json={"job": {}}, trust_env=False)
+    page.get_by_label("name", exact=True).fill("Mine")
+    ready(page)
+    start(page)
+    expect(page.get_by_role("alert")).to_contain_text("minute")
+    expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
+    assert store.jobs() == []
+
+
+def test_limits_and_priority_go_with_the_job_and_wrong_ones_are_said(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder", expected=("422",))
+    ready(page)
+    page.get_by_text("Samples, budget, priority and limits").click()
+    page.get_by_label("priority", exact=True).fill("2000")
+    page.get_by_label("time limit (s)", exact=True).fill("60")
+    start(page)
+    expect(page.get_by_label("priority", exact=True)).to_have_attribute("aria-invalid", "true")
+    page.get_by_label("priority", exact=True).fill("5")
+    start(page)
+    page.wait_for_url("**/#/jobs/1")
+    assert (store.job(1).priority, store.job(1).limits.seconds) == (5, 60.0)
+
+
+def test_the_service_is_asked_when_typing_rests_and_again_when_it_was_away(form: Open, store: Store) -> None:
+    page = form(store, "#/new", expected=("ERR_FAILED",))
+    ready(page)
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url) if request.url.endswith("/preview") else None)
+    page.route("**/preview", lambda route: route.abort(), times=1)
+    page.get_by_label("name", exact=True).press_sequentially(" of ten letters", delay=20)
+    expect(status(page)).to_contain_text("does not answer")
+    ready(page)
+    assert len(asked) <= 4
+
+
+def test_the_form_is_filled_and_sent_by_keyboard_alone(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    reached: list[str] = []
+    for _ in range(200):
+        page.keyboard.press("Tab")
+        where = page.evaluate("document.activeElement.id || document.activeElement.textContent")
+        reached.append(where)
+        if where == "f-name-c":
+            page.keyboard.type("By keyboard")
+        elif where == "Start the search":
+            break
+    assert {"preset", "f-mechanism-speed-c", "f-variables-crank-c", "f-objectives-time_ratio-c", "add-load"} <= set(
+        reached
+    )
+    page.keyboard.press("Shift+Tab")
+    page.keyboard.press("Tab")
+    ready(page)
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/#/jobs/1")
+    assert "By keyboard" in store.job(1).name
+
+
+def test_a_question_mark_opens_the_sentence_and_leads_to_the_help(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ask = page.get_by_role("button", name="What is stroke?").first
+    ask.focus()
+    page.keyboard.press("Enter")
+    expect(ask).to_have_attribute("aria-expanded", "true")
+    expect(page.get_by_text("The stroke is the way of the slider").first).to_be_visible()
+    page.get_by_role("link", name="More about stroke").first.click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("stroke")
+
+
+def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    page.get_by_label("slider mass", exact=True).fill("heavy")
+    expect(status(page)).to_have_text("One thing to correct.")
+    for fold in page.locator("main summary").all():
+        fold.click()
+    page.get_by_role("button", name="What is stroke?").first.click()
+    require_accessible(page)

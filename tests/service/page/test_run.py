@@ -1,0 +1,157 @@
+"""A run while it goes on, and what is said when it did not end well."""
+
+from __future__ import annotations
+
+import re
+import threading
+import tomllib
+from dataclasses import replace
+from typing import Any
+from urllib.parse import urlsplit
+
+from playwright.sync_api import Browser, expect
+from sqlalchemy import delete
+
+from slidercrank.service.store import Store
+from slidercrank.service.store.schema import jobs
+from slidercrank.service.submission import submit
+from slidercrank.service.workers.worker import work
+from tests.service import fronts
+from tests.service.api.fixed_front import Solved, put_in, served
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open, watch
+from tests.service.store.contents import add, progress, result, taken
+
+TABLES = tomllib.loads(fronts.JOB)
+FRONT: dict[str, Any] = {
+    "columns": ["time_ratio", "crank_mm", "peak_torque_Nm"],
+    "points": [[1.2, 30.0, 5.0], [1.3, 40.0, 6.0]],
+}
+
+
+def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store, solved: Solved) -> None:
+    submit(store, TABLES)
+    page = open_page(store, "#/jobs/1")
+    expect(page.get_by_role("banner").last).to_be_visible()
+    expect(page.get_by_text("Waits for a worker.")).to_be_visible()
+    claim = taken(store)
+    claim.tell(progress(2), FRONT)
+    expect(page.get_by_text("2 of 9")).to_be_visible()
+    expect(page.get_by_role("img", name="The front so far: 2 designs")).to_be_visible()
+    claim.say("begins anew")
+    expect(page.get_by_text("begins anew")).to_be_visible()
+    grown = {**FRONT, "points": [*FRONT["points"], [1.4, 50.0, 7.0]]}
+    claim.tell(progress(3), grown)
+    expect(page.get_by_role("img", name="The front so far: 3 designs")).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("Hypervolume: .* after round 3"))).to_be_visible()
+    page.get_by_label("Up").select_option("peak torque")
+    require_accessible(page)
+    page.evaluate("window.notReloaded = true")
+    claim.finish(solved.result)
+    expect(page.get_by_role("heading", name="All designs")).to_be_visible()
+    assert page.evaluate("window.notReloaded")
+
+
+def test_a_worker_solves_a_run_that_is_watched(open_page: Open, store: Store) -> None:
+    submit(store, TABLES)
+    page = open_page(store, "#/jobs/1")
+    expect(page.get_by_text("Waits for a worker.")).to_be_visible()
+    worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
+    worker.start()
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible(timeout=60_000)
+    worker.join()
+
+
+def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, store: Store, solved: Solved) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    page = open_page(store, "#/jobs/1")
+    page.get_by_role("button", name="Cancel run 1").click()
+    expect(page.get_by_text("stopping")).to_be_visible()
+    claim.finish(replace(solved.result, status="cancelled"))
+    expect(page.get_by_role("heading", name="The run was cancelled")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_role("button", name="Resume run 1")).to_be_visible()
+
+
+def test_a_run_without_a_solution_says_what_contradicts(open_page: Open, store: Store) -> None:
+    put_in(store, result("infeasible", []), TABLES, message="time ratio 1.5 caps the transmission angle at 27.46 deg")
+    page = open_page(store, "#/jobs/1")
+    expect(page.get_by_role("heading", name="No design meets all requirements")).to_be_visible()
+    expect(page.get_by_text("caps the transmission angle at 27.46 deg")).to_be_visible()
+    expect(page.get_by_role("link", name="Change the job")).to_have_attribute("href", "#/new?from=1")
+    require_accessible(page)
+
+
+def test_a_run_that_failed_says_so_and_what_to_do(open_page: Open, store: Store) -> None:
+    add(store)
+    taken(store).fail("no memory", again=False)
+    page = open_page(store, "#/jobs/1")
+    expect(page.get_by_role("heading", name="The run stopped with an error")).to_be_visible()
+    expect(page.get_by_text("no memory")).to_be_visible()
+    page.get_by_role("button", name="Resume run 1").click()
+    expect(page.get_by_role("heading", name="Front so far")).to_be_visible()
+
+
+def test_a_lost_connection_comes_back(browser: Browser, store: Store) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    wrong: list[str] = []
+    page = browser.new_context().new_page()
+    with served(store) as address:
+        watch(page, address, wrong, ("Failed to load resource", "ERR_"))
+        page.goto(f"{address}/#/jobs/1")
+        expect(page.get_by_role("heading", name="Progress")).to_be_visible()
+        claim.tell(progress(1))
+        expect(page.get_by_text("1 of 9")).to_be_visible()
+    port = urlsplit(address).port
+    assert port is not None
+    expect(page.get_by_text("The connection to the service was lost.")).to_be_visible()
+    require_accessible(page)
+    claim.tell(progress(2))
+    with served(store, port=port):
+        expect(page.get_by_text("2 of 9")).to_be_visible(timeout=15_000)
+        expect(page.get_by_text("The connection to the service was lost.")).to_be_hidden()
+        claim.tell(progress(3))
+        expect(page.get_by_text("3 of 9")).to_be_visible()
+        page.context.close()
+    assert wrong == []
+
+
+def test_a_run_that_is_deleted_elsewhere_while_it_is_watched_says_so(open_page: Open, store: Store) -> None:
+    add(store)
+    page = open_page(store, "#/jobs/1", expected=("404",))
+    expect(page.get_by_role("heading", name="Progress")).to_be_visible()
+    with store._database.writing() as connection:  # cancelled and deleted before the page heard of either
+        connection.execute(delete(jobs))
+    expect(page.get_by_role("heading", name="Run 1 is not there any more")).to_be_visible()
+
+
+def test_what_is_done_with_a_run_that_was_deleted_elsewhere_is_said(open_page: Open, store: Store) -> None:
+    add(store)
+    store.cancel(1)
+    page = open_page(store, "#/jobs/1", expected=("404",))
+    button = page.get_by_role("button", name="Resume run 1")
+    expect(button).to_be_visible()
+    store.delete(1)
+    button.click()
+    expect(page.get_by_role("status").filter(has_text="not there any more")).to_be_visible()
+    expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+
+
+def test_a_number_of_no_run_is_said(open_page: Open, store: Store) -> None:
+    page = open_page(store, "#/jobs/99", expected=("404",))
+    expect(page.get_by_text("there is no job 99; list the jobs")).to_be_visible()
+
+
+def test_everything_of_a_run_can_be_taken_away(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, f"#/jobs/{solved.number}")
+    page.get_by_text("Download", exact=True).click()
+    for name in ("Designs as CSV", "Front as JSON", "Designs as Parquet", "job.json"):
+        link = page.get_by_role("link", name=name)
+        expect(link).to_be_visible()
+        with page.expect_download() as download:
+            link.click()
+        assert download.value.failure() is None
+    expect(page.get_by_role("link", name=re.compile("as SVG")).first).to_be_visible(timeout=30_000)
+    require_accessible(page)

@@ -1,0 +1,148 @@
+"""The list of runs as people use it."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+from playwright.sync_api import Page, expect
+
+from slidercrank.service.store import Store
+from slidercrank.service.submission import submit
+from tests.service import fronts
+from tests.service.api.fixed_front import Solved, put_in
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+from tests.service.store.contents import add, progress, result, taken
+
+TABLES = tomllib.loads(fronts.JOB)
+
+
+def run(page: Page, name: str) -> object:
+    """Return the item of a run."""
+    return page.get_by_role("listitem").filter(has_text=name)
+
+
+def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> None:
+    page = open_page(store)
+    expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+    require_accessible(page)
+    page.get_by_role("link", name="New run").last.click()
+    expect(page).to_have_url(re.compile(r"#/new$"))
+
+
+def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
+    put_in(store, result(), TABLES)
+    page = open_page(store)
+    item = page.get_by_role("listitem")
+    expect(item).to_contain_text("done")
+    expect(item).to_contain_text("2 designs")
+    expect(item).to_contain_text("time ratio 1.25")
+    expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
+    require_accessible(page)
+    item.get_by_role("link", name="Feeder", exact=True).click()
+    expect(page).to_have_url(re.compile(r"#/jobs/1$"))
+
+
+def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
+    page = open_page(store)
+    expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+    submit(store, TABLES)
+    item = page.get_by_role("listitem")
+    expect(item).to_contain_text("queued")
+    claim = taken(store)
+    claim.tell(progress(3), {"columns": ["time_ratio", "crank_mm"], "points": [[1.2, 30.0], [1.3, 40.0]]})
+    expect(item).to_contain_text("round 3 of 9")
+    expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
+    claim.finish(result())
+    expect(item).to_contain_text("done")
+    store.delete(claim.job.id)
+    expect(item).to_have_count(0)
+
+
+def test_a_run_is_cancelled_and_resumed_from_the_list(open_page: Open, store: Store) -> None:
+    job = submit(store, TABLES)
+    page = open_page(store)
+    page.get_by_role("button", name="Cancel run 1").click()
+    expect(page.get_by_role("listitem")).to_contain_text("cancelled")
+    assert store.job(job.id).state == "cancelled"
+    page.get_by_role("button", name="Resume run 1").press("Enter")
+    expect(page.get_by_role("listitem")).to_contain_text("queued")
+
+
+def test_deleting_asks_first(open_page: Open, store: Store) -> None:
+    put_in(store, result(), TABLES)
+    page = open_page(store)
+    page.get_by_role("button", name="Delete run 1").click()
+    expect(page.get_by_role("dialog", name="Delete run 1?")).to_be_visible()
+    require_accessible(page)
+    page.get_by_role("button", name="Keep it").click()
+    expect(page.get_by_role("listitem")).to_have_count(1)
+    page.get_by_role("button", name="Delete run 1").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+    assert store.jobs() == []
+
+
+def test_what_somebody_else_deleted_is_said_and_vanishes(open_page: Open, store: Store) -> None:
+    add(store)
+    page = open_page(store, expected=("404",))
+    button = page.get_by_role("button", name="Cancel run 1")
+    expect(button).to_be_visible()
+    page.clock.install()  # so that the list does not look before the button is used
+    store.cancel(1)
+    store.delete(1)
+    button.click()
+    expect(page.get_by_role("status").filter(has_text="not there any more")).to_be_visible()
+    page.clock.run_for(5000)
+    expect(page.get_by_role("listitem")).to_have_count(0)
+
+
+def test_runs_are_found_by_name_and_state_and_a_link_finds_the_same(open_page: Open, store: Store) -> None:
+    for name in ("Press", "Sieve", "Sieve again"):
+        add(store, name)
+    store.cancel(2)
+    page = open_page(store)
+    page.get_by_label("Name").fill("sieve")
+    expect(page.get_by_role("listitem")).to_have_count(2)
+    page.get_by_label("State").select_option("cancelled")
+    expect(page.get_by_role("listitem")).to_have_count(1)
+    expect(page.get_by_role("listitem")).to_contain_text("run 2")
+    again = open_page(store, page.url.partition("/#")[2].join(("#", "")))
+    expect(again.get_by_role("listitem")).to_contain_text("run 2")
+    expect(again.get_by_label("Name")).to_have_value("sieve")
+    again.get_by_label("Name").fill("loom")
+    expect(again.get_by_text("No run is like this")).to_be_visible()
+
+
+def test_older_runs_are_on_further_pages(open_page: Open, store: Store) -> None:
+    for number in range(30):
+        add(store, f"Feeder {number}")
+    page = open_page(store)
+    expect(page.get_by_role("listitem")).to_have_count(25)
+    page.get_by_role("button", name="Older").click()
+    expect(page.get_by_role("listitem")).to_have_count(5)
+    expect(page.get_by_text("Feeder 0", exact=True)).to_be_visible()
+    page.get_by_role("button", name="Newest").click()
+    expect(page.get_by_text("Feeder 29", exact=True)).to_be_visible()
+
+
+def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) -> None:
+    better = [{**row, "time_ratio": float(row["time_ratio"]) + 1.0} for row in solved.result.designs]  # type: ignore[arg-type]
+    put_in(store, solved.result, TABLES)
+    put_in(store, solved.result, TABLES, designs=better)
+    page = open_page(store)
+    link = page.get_by_role("link", name="Compare 2 runs")
+    page.get_by_label("Compare run 1").check()
+    expect(link).to_have_count(0)
+    page.get_by_label("Compare run 2").check()
+    link.click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("Compare runs")
+    cells = page.get_by_role("row").filter(has_text="best time ratio").get_by_role("cell")
+    best = max(float(row["time_ratio"]) for row in better)  # type: ignore[arg-type]
+    expect(cells.nth(1)).to_have_text(f"{best:.5g} best")
+    expect(page.get_by_role("img", name="The fronts of 2 runs")).to_be_visible()
+    require_accessible(page)
+    store.delete(2)
+    gone = open_page(store, "#/compare?jobs=1,2", expected=("404",))
+    expect(gone.get_by_text("Run 2 is not there any more.")).to_be_visible()

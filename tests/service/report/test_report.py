@@ -1,0 +1,290 @@
+"""Reports: every number of the design is there, nothing is fetched, and both files say the same."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import zlib
+from dataclasses import replace
+from functools import cache
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from matplotlib.text import Text
+
+from slidercrank.service.designs.columns import find_column
+from slidercrank.service.report.design_report import design_report
+from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
+from slidercrank.service.report.html import html_file
+from slidercrank.service.report.pages import HEIGHT, WIDTH, Page, pages
+from slidercrank.service.report.pdf import pdf_file
+from slidercrank.service.report.subject import Subject, subject_of
+from slidercrank.service.report.text_lines import wrapped
+from slidercrank.service.report.wording import as_stored, rounded
+from slidercrank.service.runs.result import result_of
+from tests.service import fronts
+
+NUMBER = 3
+NAME = r"$\frac{ <script>alert(1)</script> &amp; Größe"
+CERTIFICATE = {
+    "status": "proven",
+    "message": "no feasible design beats the front by more than 1 %",
+    "epsilon": 0.01,
+    "epsilon_of_delivered": 0.0123,
+    "gap_of_delivered": 0.004,
+    "hypervolume_gap": None,
+    "boxes": 12345,
+    "open_boxes": 0,
+    "seconds": 1.5,
+    "notes": ["a note"],
+}
+
+
+@cache
+def subject() -> Subject:
+    found = fronts.front(fronts.FOUR[:2], designs=6)
+    found = replace(found, problem=replace(found.problem, name=NAME))
+    result = result_of(found, "kept")
+    return subject_of(found.problem, result, NUMBER, run="kept", versions={"numpy": "1.2.3"}, certificate=CERTIFICATE)
+
+
+@cache
+def report() -> Report:
+    return design_report(subject(), made=0.0)
+
+
+@cache
+def printed() -> list[Page]:
+    return pages(report())
+
+
+@cache
+def html() -> str:
+    return html_file(report()).decode()
+
+
+def text_of(page: str) -> str:
+    """Return the text of a page as a reader sees it, spaces as one."""
+    page = re.sub(r"<style>.*?</style>", " ", page, flags=re.DOTALL)
+    page = re.sub(r"<br>|</(dt|dd|td|th|p|li|h1|h2|h3|figcaption)>", " ", page)
+    return " ".join(unescape(re.sub(r"<[^>]+>", "", page)).split())
+
+
+def texts(part: Report) -> list[str]:
+    """Return everything that a report says."""
+    found = [part.title, part.subtitle, part.made, *part.signatures]
+    for section in part.sections:
+        found.append(section.title)
+        for block in section.blocks:
+            if isinstance(block, Paragraph):
+                found.append(block.text)
+            elif isinstance(block, Facts):
+                found += [text for name, lines in block.rows for text in (name, *lines)]
+            elif isinstance(block, Table):
+                found += [block.title, *block.heads, *(cell for row in block.rows for cell in row)]
+            else:
+                found.append(block.title)
+    return [" ".join(text.split()) for text in found if text.strip()]
+
+
+def test_every_number_of_the_design_is_in_it_with_all_its_digits() -> None:
+    (table,) = (block for block in named("Every number of the design").blocks if isinstance(block, Table))
+    row = subject().row
+    assert [cells[4] for cells in table.rows] == list(row)
+    for title, value, unit, stored, key in table.rows:
+        cell, column = row[key], find_column(key, list(row))
+        assert title == column.title
+        assert unit.replace("²", "^2").replace("³", "^3") == column.unit
+        if isinstance(cell, float):
+            assert float(stored) == cell
+            assert float(value.replace("−", "-")) == pytest.approx(cell, rel=1e-5)
+        else:
+            assert (value, stored) == (cell, "")
+        assert all(part in text_of(html()) for part in (value, stored, key))
+
+
+def named(title: str) -> Section:
+    return next(section for section in report().sections if section.title == title)
+
+
+def test_both_files_say_everything() -> None:
+    page = text_of(html())
+    paper = "".join("".join(item.get_text() for item in drawn.figure.findobj(Text)) for drawn in printed())
+    paper = re.sub(r"\s", "", paper)
+    for text in texts(report()):
+        assert text in page, text
+        assert re.sub(r"\s", "", text) in paper, text
+
+
+def test_it_says_what_was_asked_how_it_was_found_and_how_good_it_is() -> None:
+    page = text_of(html())
+    for words in (
+        "crank speed 300 rpm (counter-clockwise)",
+        "least transmission angle at least 30 deg",
+        "maximise time ratio",
+        "minimise peak torque",
+        "Seed 1",
+        "Evaluations 400",
+        "proven: no feasible design beats the front by more than 1 %",
+        "epsilon proven, for this front alone: 0.0123",
+        "numpy 1.2.3",
+        "1970-01-01 00:00 UTC",
+        "All rules are met.",
+        "Stationary: no small change betters every objective",
+        "Worst case, exact",
+        "random machines".capitalize(),
+    ):
+        assert words in page, words
+
+
+def test_a_rule_that_is_not_met_is_said() -> None:
+    rows = [{**row, "slack_least_transmission_angle_deg": -1.0} for row in subject().result.designs]
+    broken = replace(subject(), result=replace(subject().result, designs=rows))
+    said = texts(design_report(broken))
+    assert "Not all rules are met: see below." in said
+    assert "not met" in said
+
+
+def test_without_certificate_and_tolerances_it_says_so_or_leaves_out() -> None:
+    found = subject()
+    mechanism = replace(found.design.mechanism, tolerances=type(found.design.mechanism.tolerances)())
+    plain = design_report(
+        replace(found, certificate=None, versions={}, design=replace(found.design, mechanism=mechanism))
+    )
+    assert any(text.startswith("No certificate") for text in texts(plain))
+    assert "not recorded" in texts(plain)
+    assert "Tolerances" not in [section.title for section in plain.sections]
+
+
+def test_the_page_is_whole_and_nothing_in_it_runs_or_is_fetched() -> None:
+    open_, seen = [], []
+
+    class Reader(HTMLParser):
+        def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+            seen.append((tag, dict(attrs)))
+            if tag not in ("meta", "br", "img", "path", "use", "rect", "line", "circle", "image", "stop"):
+                open_.append(tag)
+
+        def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+            seen.append((tag, dict(attrs)))
+
+        def handle_endtag(self, tag: str) -> None:
+            if open_ and open_[-1] == tag:
+                open_.pop()
+            else:
+                assert tag in ("path", "use", "rect", "line", "circle"), (tag, open_[-3:])
+
+    reader = Reader()
+    reader.feed(html())
+    assert open_ == []
+    assert not [tag for tag, _ in seen if tag in ("script", "link", "iframe", "object", "embed", "form")]
+    names = [attributes["id"] for _, attributes in seen if "id" in attributes]
+    assert len(names) == len(set(names))
+    for tag, attributes in seen:
+        assert not [key for key in attributes if key.startswith("on")], tag
+        for key in ("src", "href", "xlink:href", "data"):
+            value = attributes.get(key)
+            assert value is None or value.startswith(("#", "data:image/png")), (tag, value)
+            if value is not None and value.startswith("#"):
+                assert value[1:] in names, value
+    assert not re.search(r"url\((?!#)|@import", html())
+    assert len([tag for tag, _ in seen if tag == "svg"]) == 6
+    (policy,) = (attributes["content"] for tag, attributes in seen if "http-equiv" in attributes)
+    assert policy == "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+
+
+def test_nothing_on_a_page_of_the_pdf_is_cut_or_covers_something_else() -> None:
+    assert 4 <= len(printed()) <= 12
+    for page in printed():
+        page.figure.canvas.draw()
+        dots = page.figure.dpi
+        boxes = [(item.get_text(), item.get_window_extent()) for item in page.figure.findobj(Text) if item.get_text()]
+        for text, box in boxes:
+            assert 0.6 * dots < box.x0, text
+            assert box.x1 < (WIDTH - 0.6) * dots, text
+            assert 0.3 * dots < box.y0, text
+            assert box.y1 < (HEIGHT - 0.6) * dots, text
+        for index, (text, one) in enumerate(boxes):
+            for other_text, other in boxes[:index]:
+                across, up = (
+                    min(one.x1, other.x1) - max(one.x0, other.x0),
+                    min(one.y1, other.y1) - max(one.y0, other.y0),
+                )
+                assert across < 1.5 or up < 2.5, (text, other_text)
+        for inset in page.insets:
+            width, height = inset.scale * inset.figure.get_size_inches()
+            assert inset.left + width < WIDTH - 0.7
+            assert inset.bottom > 0.8
+            for text, box in boxes:
+                below = box.y1 <= inset.bottom * dots + 1.0
+                above = box.y0 >= (inset.bottom + height) * dots - 1.0
+                assert below or above, text
+
+
+def test_the_pdf_is_whole_and_the_same_report_gives_the_same() -> None:
+    content = pdf_file(report())
+    assert content == pdf_file(report())
+    assert content.startswith(b"%PDF-1.4")
+    assert content.rstrip().endswith(b"%%EOF")
+    assert len(content) < 2_000_000
+    assert len(re.findall(rb"/Type /Page\b", content)) == len(printed())
+    starts = [match.end() for match in re.finditer(rb"stream\r?\n", content)]
+    streams = [_unpacked(content[start:]) for start in starts]
+    # Texts are texts, in brackets, with the distances between their letters; not outlines.
+    drawn = b"".join(stream for stream in streams if b" Tj" in stream or b" TJ" in stream)
+    pieces = b"".join(re.findall(rb"\(((?:\\.|[^\\)])*)\)", drawn)).decode("latin-1")
+    for word in ("Summary", "Prepared", "crank"):
+        assert word in pieces, word
+
+
+def _unpacked(data: bytes) -> bytes:
+    try:
+        return zlib.decompressobj().decompress(data)
+    except zlib.error:
+        return b""
+
+
+@pytest.mark.parametrize(
+    ("cell", "text", "stored"),
+    [
+        (1.23456789, "1.23457", "1.23456789"),
+        (-math.inf, "−∞", "-inf"),
+        (math.nan, "–", ""),
+        (None, "–", ""),
+        ("inward", "inward", ""),
+        (0.0, "0", "0.0"),
+    ],
+)
+def test_values_are_written_for_people_and_as_stored(cell: float | str | None, text: str, stored: str) -> None:
+    assert (rounded(cell), as_stored(cell)) == (text, stored)
+
+
+def test_lines_are_broken_where_they_have_to_be() -> None:
+    assert wrapped("", 10.0, 1.0) == [""]
+    assert wrapped("one two", 10.0, 5.0) == ["one two"]
+    assert wrapped("one two", 10.0, 0.4) == ["one", "two"]
+    broken = wrapped("x" * 100, 10.0, 1.0)
+    assert len(broken) > 3
+    assert "".join(broken) == "x" * 100
+
+
+def test_a_large_front_is_drawn_as_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slidercrank.service.report.front_section._MANY", 5)
+    large = design_report(subject())
+    front = replace(large, sections=tuple(part for part in large.sections if part.title == "The front"))
+    assert html_file(front).decode().count("data:image/png;base64,") == 2
+    assert pdf_file(front).count(b"/Subtype /Image") >= 1
+
+
+def test_json_of_the_certificate_is_what_certify_writes(tmp_path: Path) -> None:
+    """The names that the report reads are those of the file of `slidercrank certify`."""
+    import inspect
+
+    from slidercrank.service.commands import certify
+
+    source = inspect.getsource(certify._record)
+    assert all(f'"{key}"' in source for key in CERTIFICATE)
+    assert json.loads(json.dumps(CERTIFICATE)) == CERTIFICATE

@@ -1,0 +1,131 @@
+"""`slidercrank export` of one design, drawing and motion, and `slidercrank report`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from ezdxf.filemanagement import readfile
+
+from tests.service import fronts
+from tests.service.conftest import Command
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a place with a run of the small job."""
+    from typer.testing import CliRunner
+
+    from slidercrank.service.cli import app
+
+    place = tmp_path_factory.mktemp("kept")
+    job = fronts.job_file(tmp_path_factory.mktemp("job"))
+    done = CliRunner().invoke(app, ["optimise", str(job), "--runs", str(place), "--no-figures"])
+    assert done.exit_code == 0
+    return place
+
+
+def test_a_design_is_written_in_all_ways_at_once(kept: Path, tmp_path: Path, command: Command) -> None:
+    names = {option: tmp_path / f"a.{option}" for option in ("dxf", "svg", "motion", "gif")}
+    options = [part for name, file in names.items() for part in (f"--{name}", file)]
+    done = command("export", "latest", "--runs", kept, "--design", 3, *options, "--csv", tmp_path / "a.csv")
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    assert done.stderr.count("design 3") == 4
+    designs = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)["designs"]
+    document = readfile(names["dxf"])
+    assert document.audit().errors == []
+    radii = [circle.dxf.radius for circle in document.modelspace().query('CIRCLE[layer=="PATHS"]')]
+    assert radii == [pytest.approx(designs[2]["crank_mm"], rel=1e-12)]
+    assert "Short test [job], design 3" in names["svg"].read_text(encoding="utf-8")
+    assert "Short test [job], design 3" in names["motion"].read_text(encoding="utf-8")
+    assert names["gif"].read_bytes()[:6] == b"GIF89a"
+    assert (tmp_path / "a.csv").read_text().startswith("crank_mm")
+
+
+def test_the_knee_and_a_crank_angle_may_be_asked_for(kept: Path, tmp_path: Path, command: Command) -> None:
+    front = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)
+    done = command(
+        *("export", "latest", "--runs", kept, "--knee", "--at", "100 deg", "--svg", tmp_path / "knee.svg"),
+    )
+    assert done.exit_code == 0
+    text = (tmp_path / "knee.svg").read_text(encoding="utf-8")
+    assert f"design {front['knee'] + 1}<" in text
+    assert "Drawn at crank angle 100 deg" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--dxf", "a.dxf"), "a design is named by --design NO, --knee"),
+        (("--dxf", "a.dxf", "--design", 99), "the run has designs 1 to 8; got 99"),
+        (("--dxf", "a.dxf", "--design", 0), "the run has designs 1 to 8; got 0"),
+        (("--dxf", "a.dxf", "--design", 1, "--knee"), "a design is chosen in one way"),
+        (("--dxf", "a.dxf", "--knee", "--topsis", "time_ratio=1"), "a design is chosen in one way"),
+        (("--design", 1), "a design is written with --dxf, --svg, --motion, --gif"),
+        (("--design", 1, "--csv", "a.csv"), "a design is written with --dxf, --svg, --motion, --gif"),
+        (("--csv", "a.csv", "--at", "5 deg"), "--at is for --dxf and --svg"),
+        (("--design", 1, "--svg", "a.svg", "--at", "5"), "--at must be an angle with its unit"),
+        (("--design", 1, "--gif", "-"), "--gif writes a file"),
+        (("--design", 1, "--svg", "none/there/a.svg"), "must be a folder that can be written"),
+    ],
+)
+def test_a_wrong_request_is_exit_code_2_and_writes_nothing(
+    arguments: tuple[object, ...],
+    words: str,
+    kept: Path,
+    tmp_path: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = command("export", "latest", "--runs", kept, *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_report_is_written_as_html_and_as_pdf(
+    kept: Path, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    front = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)
+    done = command("report", "latest", "--runs", kept, "--design", 3)
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    (file,) = tmp_path.iterdir()
+    assert file.name.endswith("short-test-job-design-3.html")
+    assert done.stderr == f"report: {file.name}\n"
+    page = file.read_text(encoding="utf-8")
+    assert all(repr(value) in page for value in front["designs"][2].values() if isinstance(value, float))
+    assert "Trade-offs here, to first order: " in page
+    assert "<script" not in page
+    done = command("report", "latest", "--runs", kept, "--knee", "--out", tmp_path / "knee.pdf")
+    assert done.exit_code == 0, done.stderr
+    assert (tmp_path / "knee.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        ((), 2, "a design is named by --design NO"),
+        (("--design", 9), 2, "the run has designs 1 to 8; got 9"),
+        (("--design", 1, "--where", "time_ratio > 1"), 2, "a design is chosen in one way"),
+        (("--knee", "--where", "time_ratio > 9"), 3, "none of the 8 designs meets time_ratio > 9"),
+        (("--knee", "--pdf", "--out", "a.html"), 2, "--pdf writes PDF; got --out a.html"),
+        (("--knee", "--out", "none/there/a.html"), 2, "must be a folder that can be written"),
+    ],
+)
+def test_a_report_that_cannot_be_written_is_refused(
+    arguments: tuple[object, ...],
+    code: int,
+    words: str,
+    kept: Path,
+    tmp_path: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = command("report", "latest", "--runs", kept, *arguments)
+    assert (done.exit_code, done.stdout) == (code, "")
+    assert words in done.stderr
+    assert list(tmp_path.iterdir()) == []
