@@ -271,6 +271,28 @@ def test_designs_are_walked_through_by_number(opened: Opened, solved: Solved) ->
     expect(page.get_by_role("heading", level=1)).to_have_text(f"Design 2 of {len(solved.result.designs)}")
 
 
+def test_the_way_back_is_to_the_front_as_it_was_left(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    front = f"#/jobs/{solved.number}"
+    expect(page.locator(".back a")).to_have_attribute("href", front)
+    page.evaluate("view => { location.hash = view; }", f"{front}?x=crank_mm")
+    expect(page.locator(".design-head")).to_have_count(0)
+    page.evaluate("view => { location.hash = view; }", view(solved))
+    expect(page.locator(".back a")).to_have_attribute("href", f"{front}?x=crank_mm", timeout=30_000)
+    page.evaluate("sessionStorage.clear()")
+
+
+def test_everything_to_take_away_is_linked(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    design = f"api/v1/jobs/{solved.number}/designs/3"
+    assert links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))") == [
+        *(f"{design}/{name}" for name in ("linkage.dxf", "linkage.svg", "motion.html", "motion.gif")),
+        *(f"{design}/{name}" for name in ("report.html", "report.pdf")),
+        *(f"api/v1/jobs/{solved.number}/figures/design_3.{kind}" for kind in ("png", "svg")),
+    ]
+
+
 def test_a_design_that_is_not_there_is_said(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view(solved, 99), expected=("404",))
     expect(page.get_by_role("main")).to_contain_text("has designs 1 to")

@@ -10,11 +10,12 @@ const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
 
 /** Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null. */
 export function frontMap(place, { objectives, front }) {
-  const picture = svg("svg", { class: "chart front-map", role: "img", viewBox: `0 0 ${WIDTH} ${HEIGHT}` });
+  // The front is a picture of its own, so that thousands of points are not painted again as one moves.
+  const [cloud, moving] = ["", "moving"].map((kind) => svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }));
+  const picture = h("div", { class: "front-map", role: "img" }, cloud, moving);
   const chosen = [0, Math.min(1, objectives.length - 1)];
   const choice = (n, label) => h("label", {}, h("span", { class: "quiet" }, `${label} `), h("select", { onchange: (event) => { chosen[n] = Number(event.target.value); arrange(); } },
     objectives.map((objective, at) => h("option", { value: at, selected: at === chosen[n] }, `${objective.title} (${sense(objective)})`))));
-  const moving = svg("g");
   let [x, y, shown] = [null, null, [null, null]];
   fill(place, h("div", { class: "axes-choice" }, choice(0, "Across"), choice(1, "Up")), picture);
 
@@ -28,12 +29,11 @@ export function frontMap(place, { objectives, front }) {
     const tall = range([...points.map(([, one]) => one), ...rows.map((row) => value(row, up))], 0.08);
     x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
     y = scale(tall.low, tall.high, HEIGHT - ROOM.bottom, ROOM.top, 4);
-    fill(picture,
+    fill(cloud,
       svg("g", { class: "axes" },
         y.ticks.map((tick) => [svg("line", { class: "grid", x1: ROOM.left, x2: WIDTH - ROOM.right, y1: y.at(tick), y2: y.at(tick) }), svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick))]),
         x.ticks.map((tick) => svg("text", { x: x.at(tick), y: HEIGHT - 6, "text-anchor": "middle" }, x.text(tick)))),
-      svg("path", { class: "cloud", d: points.map(([one, other]) => `M${x.at(one).toFixed(1)} ${y.at(other).toFixed(1)}h0`).join("") }),
-      moving);
+      svg("path", { class: "cloud", d: points.map(([one, other]) => `M${x.at(one).toFixed(1)} ${y.at(other).toFixed(1)}h0`).join("") }));
     move();
   }
 

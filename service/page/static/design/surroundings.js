@@ -2,12 +2,9 @@
 
 import { get } from "../lib/api.js";
 
-const PAGE = 1000; // designs that the API gives at once
-
 /** Return the objectives of all designs of a front, as rows by column. */
 export async function loadFront(job, front, signal) {
-  const columns = front.objectives.map(({ column }) => column).join(",");
-  const starts = Array.from({ length: Math.ceil(front.count / PAGE) }, (_, n) => n * PAGE);
-  const pages = await Promise.all(starts.map((offset) => get(`jobs/${job}/designs`, { columns, offset, limit: PAGE }, signal)));
-  return pages.flatMap(({ designs }) => designs);
+  const keys = front.objectives.map(({ column }) => column);
+  const { values, count } = await get(`jobs/${job}/columns`, { columns: keys.join(",") }, signal);
+  return Array.from({ length: count }, (_, n) => Object.fromEntries(keys.map((key) => [key, values[key][n]])));
 }

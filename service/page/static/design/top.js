@@ -1,6 +1,6 @@
 /** The head of the view: where it is, the designs before and after it, and what stands beside it. */
 
-import { link } from "../lib/address.js";
+import { left, link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 
 /** Return the head. */
@@ -13,16 +13,11 @@ export function top({ job, number, front, others }) {
   return h(
     "header",
     { class: "design-head" },
-    h("p", { class: "back" }, h("a", { href: backTo(job) }, `← ${front.name}`)),
+    h("p", { class: "back" }, h("a", { href: left(["jobs", job]) }, `← ${front.name}`)),
     h("div", { class: "row" },
       h("h1", {}, `Design ${number}`, h("span", { class: "quiet" }, ` of ${front.count}`)),
       step(number - 1, "Previous design", "‹"), step(number + 1, "Next design", "›"), compare({ job, number, front, others })),
   );
-}
-
-/** Return the address of the front as it was left, or its plain one. */
-function backTo(job) {
-  return sessionStorage.getItem(`left ${link(["jobs", job])}`) ?? link(["jobs", job]);
 }
 
 function compare({ job, number, front, others }) {

@@ -18,6 +18,16 @@ export function keep(query) {
   history.replaceState(null, "", link(read().parts, query));
 }
 
+/** Return the address of a view as the reader left it, or the plain one: the way back keeps what was chosen there. */
+export function left(parts) {
+  return sessionStorage.getItem(`left ${link(parts)}`) ?? link(parts);
+}
+
+window.addEventListener("hashchange", ({ oldURL }) => {
+  const { hash } = new URL(oldURL);
+  sessionStorage.setItem(`left ${hash.split("?")[0]}`, hash);
+});
+
 /** Go to a view. */
 export function go(parts, query = {}) {
   location.hash = link(parts, query);
