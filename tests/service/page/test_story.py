@@ -60,7 +60,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
     assert f"design {number}" in report.lower()
     page.goto(brushed)
     expect(page.get_by_text("6 of 12 designs chosen")).to_be_visible()
-    page.get_by_role("button", name="Download").click()
+    page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("link", name="CSV").click()
     download.value.save_as(tmp_path / "front.csv")
