@@ -13,7 +13,7 @@ from .deliver import as_found, deliver, planned
 from .elimination import Sheet, sheets
 from .engine.engine import Engine
 from .evaluation import Evaluator
-from .front import ParetoFront
+from .front import ParetoFront, Progress
 from .gradients import require_gradients
 from .identity import identity_of
 from .infeasibility import diagnose
@@ -29,6 +29,7 @@ def solve(
     problem: Problem,
     *,
     progress: Callback | None = None,
+    fronts: Callable[[Array], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     resume: Sequence[Record] = (),
     keep: Callable[[Record], None] | None = None,
@@ -36,7 +37,8 @@ def solve(
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
-    progress: called after every round. cancelled: asked many times a second; when it says so, what was found so far is
+    progress: called after every round. fronts: called just before that with the objectives of the front so far, see
+    `Run.front_so_far`. cancelled: asked many times a second; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
@@ -51,6 +53,14 @@ def solve(
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
     require_eliminated(problem, evaluators)
     run = Run(problem, 1, progress, ledger)
+    if fronts is not None:
+
+        def told(entry: Progress) -> None:
+            fronts(run.front_so_far())
+            if progress is not None:
+                progress(entry)
+
+        run.progress = told
     try:
         return _searched(problem, evaluators, run)
     except Cancelled:

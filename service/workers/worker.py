@@ -21,11 +21,13 @@ from .engines import EngineOptions, engine_of
 from .job_limits import Budget, within
 from .logs import about
 from .pulse import PULSE, Pulse, Stop
+from .so_far import front_so_far
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
     from ...optimise.front import ParetoFront, Progress
     from ...optimise.ledger import Record
+    from ...optimise.stationarity import Array
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
@@ -159,15 +161,20 @@ def _solve(
     require_allowed(tables, terms.allowed_quantities)
     problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
 
+    latest: list[Array] = []
+
+    def show(front: Array) -> None:
+        latest[:] = [front]
+
     def tell(at: Progress) -> None:
-        claim.tell(at)
+        claim.tell(at, front_so_far(problem, latest[0]) if latest else None)
         budget.count(at.evaluations)
 
     def over() -> bool:
         return _ends(claim, pulse, stop) or budget.spent()
 
     def search(past: Sequence[Record]) -> ParetoFront:
-        return solve(problem, progress=tell, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+        return solve(problem, progress=tell, fronts=show, cancelled=over, resume=past, keep=claim.keep, engine=engine)
 
     try:
         front = search(claim.records())
