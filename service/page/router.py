@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gzip
+import hashlib
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from fastapi import APIRouter, Request, Response
-from fastapi.responses import FileResponse
 
 from ...model.errors import NotFound
 
@@ -34,15 +36,25 @@ _TYPES = {
 
 
 @router.get("/")
-def show_page(request: Request) -> Response:
+async def show_page(request: Request) -> Response:
     """Return the document; its modules ask the API for everything else."""
     return _answer(request, "index.html")
 
 
 @router.get("/page/{name:path}")
-def fetch_page_file(request: Request, name: str) -> Response:
+async def fetch_page_file(request: Request, name: str) -> Response:
     """Return a file that the document uses."""
     return _answer(request, name)
+
+
+@dataclass(frozen=True)
+class _File:
+    """A file of the page, as it is and compressed. tag: another one for another content."""
+
+    media_type: str
+    content: bytes
+    compressed: bytes
+    tag: str
 
 
 def _answer(request: Request, name: str) -> Response:
@@ -50,16 +62,27 @@ def _answer(request: Request, name: str) -> Response:
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
     # Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once.
-    headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"}
-    response = FileResponse(file, media_type=_TYPES[file.suffix], headers=headers)
-    response.set_stat_headers(file.stat())
-    if request.headers.get("if-none-match") == response.headers["etag"]:
-        return Response(status_code=304, headers={**headers, "ETag": response.headers["etag"]})
-    return response
+    headers = {
+        "Content-Security-Policy": POLICY,
+        "Cache-Control": "no-cache",
+        "ETag": file.tag,
+        "Vary": "Accept-Encoding",
+    }
+    if request.headers.get("if-none-match") == file.tag:
+        return Response(status_code=304, headers=headers)
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        return Response(file.compressed, media_type=file.media_type, headers={**headers, "Content-Encoding": "gzip"})
+    return Response(file.content, media_type=file.media_type, headers=headers)
 
 
 @cache
-def _files() -> dict[str, Path]:
-    """Return the files by name: those of the folder, looked up once, so that no name from a client is ever a path."""
+def _files() -> dict[str, _File]:
+    """Return the files by name: those of the folder, read once, so that no name from a client is ever a path."""
     folder = Path(__file__).parent / "static"
-    return {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.suffix in _TYPES}
+    return {path.relative_to(folder).as_posix(): _read(path) for path in folder.rglob("*") if path.suffix in _TYPES}
+
+
+def _read(path: Path) -> _File:
+    content = path.read_bytes()
+    tag = f'W/"{hashlib.sha256(content).hexdigest()[:16]}"'
+    return _File(_TYPES[path.suffix], content, gzip.compress(content, mtime=0), tag)

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import cloudpickle
+import cloudpickle  # type: ignore[import-untyped]
 import pytest
 from distributed import Client
 from sqlalchemy import create_engine
@@ -180,7 +180,7 @@ def server() -> Iterator[tuple[str, Path]]:
 
 def done_on_cluster(port: int) -> int:
     """Return how many kinds of tasks of the engine a scheduler saw done."""
-    cloudpickle.register_pickle_by_value(sys.modules[__name__])  # type: ignore[no-untyped-call]
+    cloudpickle.register_pickle_by_value(sys.modules[__name__])
     with Client(f"tcp://127.0.0.1:{port}", set_as_default=False) as client:  # type: ignore[no-untyped-call]
         return int(client.run_on_scheduler(finished))
 

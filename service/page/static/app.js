@@ -9,12 +9,12 @@ import { chooseSystem, system } from "./lib/numbers.js";
  * and ends what it began once `signal` is aborted. Problems that it throws are shown in its place.
  */
 const VIEWS = [
-  { match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
-  { match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },
-  { match: (parts) => parts[0] === "compare" && parts.length === 1, load: () => import("./views/compare.js") },
-  { match: (parts) => parts[0] === "jobs" && parts.length === 2, load: () => import("./views/run.js") },
-  { match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, load: () => import("./views/design.js") },
-  { match: (parts) => parts[0] === "help" && parts.length <= 2, load: () => import("./views/help.js") },
+  { name: "runs", match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
+  { name: "new-run", match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },
+  { name: "compare", match: (parts) => parts[0] === "compare" && parts.length === 1, load: () => import("./views/compare.js") },
+  { name: "run", match: (parts) => parts[0] === "jobs" && parts.length === 2, load: () => import("./views/run.js") },
+  { name: "design", match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, load: () => import("./views/design.js") },
+  { name: "help", match: (parts) => parts[0] === "help" && parts.length <= 2, load: () => import("./views/help.js") },
 ];
 const NAVIGATION = [["Runs", "#/"], ["New run", "#/new"], ["Help", "#/help"]];
 
@@ -33,6 +33,7 @@ async function showView() {
   try {
     const view = VIEWS.find(({ match }) => match(parts));
     if (!view) throw new Error("There is no such page.");
+    place.classList.add(`of-${view.name}`); // which the style of the view begins with
     const module = await view.load();
     if (signal.aborted) return;
     document.title = `${module.title} · slidercrank`;
