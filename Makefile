@@ -55,7 +55,7 @@ $(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test])
 
 $(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
-	$(call install,[benchmark])
+	$(call install,[test,benchmark])
 
 # numba renews a compiled kernel when its own file changes, not when a formula that it calls does.
 $(VENV)/.kernels: $(VENV)/.created $(shell find model objectives optimise -name '*.py')

@@ -8,25 +8,24 @@ it in lines, scatter and table.
 from __future__ import annotations
 
 import gzip
-import shutil
 import sys
 import tempfile
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import served
 from tests.service.page.large_front import put_large
 
+from .browser import address_of, chromium
 from .report import Row, machine, show
+from .service_process import service
 
 DESIGNS = 10_000
 MOST_FIRST = 1000.0  # ms
 MOST_BRUSH = 50.0  # ms
 MOST_WEIGHT = 150.0  # kB
 REPEATS = 5
-_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 _STATIC = Path(__file__).parents[1] / "service" / "page" / "static"
 
 # Moves the pointer along an axis and back, a tenth of it at a time; a step ends after the frame that it caused.
@@ -65,22 +64,19 @@ _FIRST = """async () => {
 
 def measure() -> list[Row]:
     """Return first views and brushes, ms, and the weight of the page, kB."""
-    found = next(filter(None, map(shutil.which, _BROWSERS)), None)
-    if found is None:
-        raise SystemExit(f"no browser; install one of {', '.join(_BROWSERS)}")
-    with tempfile.TemporaryDirectory() as place, Store(Path(place) / "store.db") as store, sync_playwright() as driver:
-        number = put_large(store, DESIGNS)
-        browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox", "--disable-dev-shm-usage"])
-        cold, warm, brushes = [], [], []
+    cold, warm, brushes = [], [], []
+    with tempfile.TemporaryDirectory() as place, chromium() as browser:
+        file = Path(place) / "store.db"
+        with Store(file) as store:
+            number = put_large(store, DESIGNS)
         for _ in range(REPEATS):
-            with served(store) as address:
-                view = f"{address}/#/jobs/{number}"
+            with service(str(file), Path(place), workers=0) as running:
+                view = address_of(running, f"jobs/{number}")
                 cold.append(_first_view(browser, view)[0])
                 taken, page = _first_view(browser, view)
                 warm.append(taken)
                 brushes += page.evaluate(_BRUSH, 20)
                 page.context.close()
-        browser.close()
     return [
         Row(f"first view of {DESIGNS} designs, service just started, ms", cold, at_most=MOST_FIRST, worst=True),
         Row(f"first view of {DESIGNS} designs, ms", warm, at_most=MOST_FIRST, worst=True),

@@ -7,20 +7,19 @@ numbers and front anew, of a service on the same machine.
 
 from __future__ import annotations
 
-import shutil
-import sys
 import tempfile
 import tomllib
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from slidercrank.service.store import Store
 from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
-from tests.service.api.fixed_front import served
 
+from .browser import address_of, chromium
 from .report import Row, machine, show
+from .service_process import Service, service
 
 LEAST_FRAMES = 55.0  # a second
 MOST_ANSWER = 100.0  # ms
@@ -28,7 +27,6 @@ SECONDS = 3.0
 REPEATS = 3
 CHANGES = 25
 _JOB = Path(__file__).parents[1] / "runs" / "feeder.toml"
-_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 _FRAMES = """async (seconds) => {
   const times = [];
@@ -76,12 +74,12 @@ def answers(page: Page) -> Row:
     return Row(f"what if, ms, median of {CHANGES} changes", page.evaluate(_CHANGES, CHANGES), at_most=MOST_ANSWER)
 
 
-def measure(browser: Browser, address: str, job: int) -> list[Row]:
+def measure(browser: Browser, running: Service, job: int) -> list[Row]:
     """Return all figures of a job that has three designs or more."""
     page = browser.new_page(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
     found = []
     for what, query in (("one design", ""), ("three designs and their forces", "?beside=2,3")):
-        page.goto(f"{address}/#/jobs/{job}/designs/1{query}")
+        page.goto(address_of(running, f"jobs/{job}/designs/1{query}"))
         page.locator(".trade-offs li").first.wait_for()
         page.get_by_role("checkbox", name="Forces").set_checked(bool(query))
         page.wait_for_timeout(500)
@@ -92,25 +90,23 @@ def measure(browser: Browser, address: str, job: int) -> list[Row]:
     return found
 
 
-def main() -> None:
-    """Solve a small job, measure and print."""
-    executable = next(filter(None, map(shutil.which, _BROWSERS)), None)
-    if executable is None:
-        sys.exit(f"no browser: install one of {', '.join(_BROWSERS)}")
+def solved() -> list[Row]:
+    """Solve a small job and return the figures of its designs."""
     tables = tomllib.loads(_JOB.read_text(encoding="utf-8"))
     tables["optimiser"] = {"designs": 10, "samples": 512, "seed": 1}
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        Store(Path(folder) / "store.db") as store,
-        sync_playwright() as playing,
-    ):
-        job = submit(store, tables).id
-        work(store, drain=True)
-        browser = playing.chromium.launch(executable_path=executable, args=["--no-sandbox", "--disable-dev-shm-usage"])
-        with served(store) as address:
-            print(machine())
-            show("A design on the page", measure(browser, address, job))
-        browser.close()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "store.db"
+        with Store(file) as store:
+            job = submit(store, tables).id
+            work(store, drain=True)
+        with service(str(file), Path(folder), workers=0) as running, chromium() as browser:
+            return measure(browser, running, job)
+
+
+def main() -> None:
+    """Measure and print."""
+    print(machine())
+    show("A design on the page", solved())
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -14,6 +13,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from slidercrank.service.api.app import create_app
+from slidercrank.service.api.server import listen
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 
@@ -23,7 +23,7 @@ TOKEN = "a-long-random-text"
 @contextlib.contextmanager
 def serving(app: FastAPI, *, port: int = 0) -> Iterator[str]:
     """Serve an application while entered; gives its address. port: any free one unless given."""
-    with socket.create_server(("127.0.0.1", port)) as listening:
+    with listen("127.0.0.1", port) as listening:
         config = uvicorn.Config(app, ws="none", lifespan="off", log_config=None, timeout_graceful_shutdown=1)
         server = uvicorn.Server(config)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)

@@ -1,0 +1,30 @@
+"""A browser for what is measured on the page."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, sync_playwright
+
+from .service_process import TOKEN, Service
+
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Give a headless browser. Ends the program with a sentence where there is none."""
+    found = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if found is None:
+        raise SystemExit(f"no browser; install one of {', '.join(_BROWSERS)}")
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox", "--disable-dev-shm-usage"])
+        yield browser
+        browser.close()
+
+
+def address_of(running: Service, view: str) -> str:
+    """Return the address of a view, such as "jobs/1", for a browser that has not been there yet."""
+    return f"{running.url.removesuffix('api/v1/')}?token={TOKEN}#/{view}"
