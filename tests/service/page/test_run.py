@@ -52,6 +52,22 @@ def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store
     assert page.evaluate("window.notReloaded")
 
 
+def test_a_search_that_says_nothing_at_first_is_explained(open_page: Open, store: Store) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    page = open_page(store)
+    page.clock.install()
+    page.goto(f"{page.url}#/jobs/1")
+    expect(page.get_by_role("heading", name="Progress")).to_be_visible()
+    why = page.get_by_text("compiles the model of the machine")
+    expect(why).to_be_hidden()
+    page.clock.run_for(11_000)
+    expect(why).to_be_visible()
+    claim.tell(progress(1))
+    expect(page.get_by_text("1 of 9")).to_be_visible()
+    expect(why).to_be_hidden()
+
+
 def test_a_worker_solves_a_run_that_is_watched(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     page = open_page(store, "#/jobs/1")

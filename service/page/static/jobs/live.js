@@ -13,6 +13,7 @@ const OFTEN = 700; // ms between two looks at the job for its front
 const AGAIN = 2000; // ms until the next try where the service does not answer
 const PAST = 400; // events before now that are shown
 const LOG = 200; // lines
+const LONG = 10_000; // ms without a word in the first rounds, after which it is said why
 
 /**
  * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
@@ -25,6 +26,7 @@ export function watch(place, job, { signal, changed }) {
   const curve = h("div");
   const front = h("div");
   const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
+  const why = h("p", { class: "quiet", hidden: true }, "The first search after an installation compiles the model of the machine. That takes a minute or two, once.");
   const axes = { x: 0, y: 1 };
   const pickers = h("div", { class: "row picks" });
   const rounds = [];
@@ -32,10 +34,15 @@ export function watch(place, job, { signal, changed }) {
   let timer = null;
   let over = false;
   let asking = false;
+  let silent = setTimeout(explain, LONG);
+
+  function explain() {
+    why.hidden = over || job.state !== "running" || rounds.length > 2;
+  }
 
   fill(place,
     lost,
-    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), bar, figures),
+    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), bar, figures, why),
     h("div", { class: "columns" },
       h("section", { class: "panel", "aria-labelledby": "so-far-title" }, h("h2", { id: "so-far-title" }, "Front so far"), pickers, front),
       h("section", { class: "panel", "aria-labelledby": "history-title" }, h("h2", { id: "history-title" }, "Hypervolume of the front"), curve)),
@@ -44,6 +51,9 @@ export function watch(place, job, { signal, changed }) {
   function told(event) {
     if (event.kind === "progress") {
       rounds.push(event.data);
+      why.hidden = true;
+      clearTimeout(silent);
+      silent = setTimeout(explain, LONG);
       stand(event.data);
       soon();
     } else if (event.kind === "state") {
@@ -133,7 +143,7 @@ export function watch(place, job, { signal, changed }) {
     soon(yes ? OFTEN : 0); // whether the service is away, or only the job
   };
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
-  signal.addEventListener("abort", () => clearTimeout(timer));
+  signal.addEventListener("abort", () => [timer, silent].forEach(clearTimeout));
   fill(front, h("p", { class: "quiet" }, job.state === "queued" ? "Waits for a worker." : "Nothing yet."));
   if (job.progress) {
     stand(job.progress);
@@ -141,7 +151,7 @@ export function watch(place, job, { signal, changed }) {
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
   return () => {
     over = true;
-    clearTimeout(timer);
+    [timer, silent].forEach(clearTimeout);
     stop();
   };
 }
