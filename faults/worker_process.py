@@ -34,10 +34,10 @@ def _note(journal: Journal, pause: float) -> None:
     tell, write, writing = Claim.tell, Claim._write, Database.writing
     chance = random.Random()
 
-    def slow_tell(claim: Claim, progress: Any) -> None:
+    def slow_tell(claim: Claim, progress: Any, *front: Any) -> None:
         journal.note("evaluated", claim.job.id, claim.job.fence, progress.round)
         time.sleep(chance.uniform(0.0, pause))
-        tell(claim, progress)
+        tell(claim, progress, *front)
 
     def noted_write(claim: Claim, *given: Any, **options: Any) -> None:
         with claim._lock:

@@ -21,9 +21,9 @@ SPEED = ("--no-sandbox", "--disable-dev-shm-usage", "--force-prefers-reduced-mot
 Open = Callable[..., Page]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """Return a browser that the tests share."""
+    """Return a browser for the tests of a file. Its driver keeps an event loop, which other tests must not meet."""
     found = next(filter(None, map(shutil.which, BROWSERS)), None)
     if found is None:
         pytest.skip(f"no browser: the page is not tested; install one of {', '.join(BROWSERS)}")
