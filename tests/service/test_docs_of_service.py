@@ -48,11 +48,11 @@ stroke = { min = "80 mm", max = "100 mm" }
 time_ratio = "maximise"
 peak_torque = "minimise"
 [robust]
-samples = 10000
+samples = 65536
 [optimiser]
 method = "random"
-evaluations = 40000
-designs = 8
+evaluations = 100000
+designs = 48
 """
 """A job whose Monte Carlo is worth the way to a cluster."""
 STAYS = ("slidercrank serve", "slidercrank worker", "dask ")
