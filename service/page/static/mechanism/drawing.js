@@ -114,7 +114,9 @@ function movingParts() {
       for (const one of pins) one.setAttribute("r", Math.max(2.5, 0.28 * link));
       pins[1].setAttribute("cx", linkage.crank_mm * view.unit);
       pins[2].setAttribute("cx", linkage.rod_mm * view.unit);
-      radius = Math.min(Math.max(0.42 * linkage.rod_mm * view.unit, 26), 90);
+      const line = view.y(linkage.offset_mm);
+      const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
+      radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));
       side = "";
     },
     move(pivot, crankPin, slider, degrees, settled) {
