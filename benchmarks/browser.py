@@ -1,4 +1,4 @@
-"""A browser for what is measured on the page."""
+"""A browser for what is measured and tested on the page."""
 
 from __future__ import annotations
 
@@ -10,15 +10,20 @@ from playwright.sync_api import Browser, sync_playwright
 
 from .service_process import TOKEN, Service
 
-_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+def browser_path() -> str | None:
+    """Return where a browser is; None where there is none."""
+    return next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 @contextmanager
 def chromium() -> Iterator[Browser]:
     """Give a headless browser. Ends the program with a sentence where there is none."""
-    found = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    found = browser_path()
     if found is None:
-        raise SystemExit(f"no browser; install one of {', '.join(_BROWSERS)}")
+        raise SystemExit(f"no browser; install one of {', '.join(BROWSERS)}")
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox", "--disable-dev-shm-usage"])
         yield browser

@@ -18,7 +18,7 @@ from .dask_cluster import DaskCluster
 
 _BETWEEN = 5.0  # s between two blows, on average
 _AWAY = 2.0  # s that the scheduler is away
-_JOB = """
+ROBUST = """
 name = "robust"
 [mechanism]
 speed = "300 rpm"
@@ -37,8 +37,8 @@ stroke = { min = "80 mm", max = "100 mm" }
 time_ratio = "maximise"
 peak_torque = "minimise"
 [robust]
-[optimiser]
 """
+"""A job file to which its samples and its search are added."""
 
 
 @dataclass
@@ -67,7 +67,7 @@ def job(designs: int, samples: int) -> Problem:
     """Return a robust job."""
     import tomllib
 
-    return parse_job(tomllib.loads(f"{_JOB}designs = {designs}\nsamples = {samples}\n"))
+    return parse_job(tomllib.loads(f"{ROBUST}[optimiser]\ndesigns = {designs}\nsamples = {samples}\n"))
 
 
 def strike(workers: int, schedulers: int, seed: int, *, designs: int = 3, samples: int = 200) -> Struck:

@@ -22,6 +22,7 @@ import pytest
 from distributed import Client
 from sqlalchemy import create_engine
 
+from faults.dask_faults import ROBUST
 from slidercrank.service.api.server import listen
 from slidercrank.service.store import Store
 from tests.service import fronts
@@ -29,26 +30,7 @@ from tests.service.conftest import Command
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
-HEAVY = """
-name = "Feeder"
-[mechanism]
-speed = "300 rpm"
-slider = { mass = "2 kg" }
-[tolerances]
-crank = "0.2 mm"
-rod = "0.2 mm"
-[variables]
-crank = ["20 mm", "80 mm"]
-rod = ["100 mm", "300 mm"]
-offset = ["20 mm", "60 mm"]
-[constraints]
-transmission_angle = { min = "40 deg" }
-stroke = { min = "80 mm", max = "100 mm" }
-[objectives]
-time_ratio = "maximise"
-peak_torque = "minimise"
-[robust]
-samples = 65536
+HEAVY = f"""{ROBUST}samples = 65536
 [optimiser]
 method = "random"
 evaluations = 100000

@@ -8,22 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.service import fronts
 from tests.service.conftest import Command
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a place with a run of the small job."""
-    from typer.testing import CliRunner
-
-    from slidercrank.service.cli import app
-
-    place = tmp_path_factory.mktemp("kept")
-    job = fronts.job_file(tmp_path_factory.mktemp("job"))
-    done = CliRunner().invoke(app, ["optimise", str(job), "--runs", str(place), "--no-figures"])
-    assert done.exit_code == 0
-    return place
 
 
 def test_a_design_like_another_with_more_transmission_angle(kept: Path, command: Command) -> None:

@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
 from slidercrank.service.store import Artefact, Store
-from tests.service.api.fixed_front import Solved, solved_in
 from tests.service.api.serving import TOKEN, client_of
 from tests.service.store.contents import add
 
 Serve = Callable[..., httpx.Client]
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    """Return an empty store."""
-    with Store(tmp_path / "store.db") as opened:
-        yield opened
 
 
 @pytest.fixture
@@ -57,13 +48,6 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     """Return a client of a service with a token, `TOKEN`, which it does not send."""
     with Store(tmp_path_factory.mktemp("guarded") / "store.db") as store, client_of(store, token=TOKEN) as client:
         yield client
-
-
-@pytest.fixture(scope="session")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a small job that was solved, which the tests leave as it is."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture(autouse=True)

@@ -3,48 +3,28 @@
 from __future__ import annotations
 
 import contextlib
-import shutil
 from collections.abc import Callable, Collection, Iterator
-from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
+from benchmarks.browser import BROWSERS, browser_path, chromium
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import Solved, served, solved_in
+from tests.service.api.fixed_front import served
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-SPEED = ("--no-sandbox", "--disable-dev-shm-usage", "--force-prefers-reduced-motion=0")
 Open = Callable[..., Page]
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """Return a browser for the tests of a file. Its driver keeps an event loop, which other tests must not meet."""
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if found is None:
+    if browser_path() is None:
         pytest.skip(f"no browser: the page is not tested; install one of {', '.join(BROWSERS)}")
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=found, args=list(SPEED))
+    with chromium() as opened:
         yield opened
-        opened.close()
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    """Return an empty store."""
-    with Store(tmp_path / "store.db") as opened:
-        yield opened
-
-
-@pytest.fixture(scope="session")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Solved]:
-    """Return a small job that was solved, which the tests leave as it is."""
-    with solved_in(tmp_path_factory.mktemp("solved")) as found:
-        yield found
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 import { histogram, tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";
-import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { grouped, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Put the numbers of the API into `place`. */
 export function tolerances(place, found, { signal }) {
@@ -37,7 +37,7 @@ function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_
     ...Object.entries(simulated.percentiles_greatest_mm).slice(1, 2).map(([percent, value]) => ({ value: shown(value), title: `${percent} % within` })),
   ];
   const holder = h("div", {});
-  fill(place, h("h3", {}, `Greatest position error of ${(samples - stuck).toLocaleString("en")} random machines (${unitOf("mm")})`), holder);
+  fill(place, h("h3", {}, `Greatest position error of ${grouped(samples - stuck)} random machines (${unitOf("mm")})`), holder);
   const label = `Histogram of the greatest position error of random machines: half of them within ${withUnit(simulated.percentiles_greatest_mm["50"], "mm", 3)}, worst case ${withUnit(worst, "mm", 3)}.`;
   return histogram(holder, { edges: bins.edges_mm.map(shown), counts: bins.counts, marks, label });
 }
@@ -51,7 +51,7 @@ function numbers(found) {
     ["root sum square", at(found.root_sum_square_mm, found.root_sum_square_angle_deg)],
     ...Object.entries(percentiles).map(([percent, value]) => [`${percent} % of the machines within`, withUnit(value, "mm", 4)]),
     ...yields.map((one) => [`yield at ${withUnit(one.limit_mm, "mm", 4)} (${one.limit})`, `${one.yield_percent.toFixed(2)} %, between ${one.yield_low_percent.toFixed(2)} and ${one.yield_high_percent.toFixed(2)} %`]),
-    ...(stuck ? [["do not turn fully", stuck.toLocaleString("en")]] : []),
+    ...(stuck ? [["do not turn fully", grouped(stuck)]] : []),
   ];
   return h("dl", { class: "facts" }, rows.map(([title, value]) => [h("dt", {}, title), h("dd", {}, value)]));
 }

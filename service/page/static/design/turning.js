@@ -59,7 +59,7 @@ export function turning(rpm, signal) {
 }
 
 /** Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen. */
-export function pacesOf(rpm) {
+function pacesOf(rpm) {
   const real = rpm ? 60 / Math.abs(rpm) : null;
   const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds)}${real ? `, ${share(real / seconds)}` : ""}` }));
   if (real && real >= SHORTEST) {

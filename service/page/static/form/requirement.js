@@ -50,7 +50,7 @@ export function requirement(form, quantity, { label = quantity.title, place = ["
 }
 
 /** Return which kind of requirement is given. */
-export function modeOf(given) {
+function modeOf(given) {
   if (given === undefined || given === null || typeof given !== "object") return "any";
   if (given.equals !== undefined) return "equals";
   if (given.min !== undefined && given.max !== undefined) return "between";

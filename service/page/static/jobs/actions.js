@@ -50,7 +50,7 @@ export function actions(job, changed) {
 }
 
 /** Ask whether something is meant; the promise gives the answer. */
-export function confirmed(question, consequence, yes) {
+function confirmed(question, consequence, yes) {
   return new Promise((answer) => {
     const dialog = h("dialog", { "aria-labelledby": "question" },
       h("h2", { id: "question" }, question),
