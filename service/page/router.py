@@ -5,12 +5,12 @@ from __future__ import annotations
 import gzip
 import hashlib
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from fastapi import APIRouter, Request, Response
 
 from ...model.errors import NotFound
+from .joined import joined_modules, joined_styles
 
 router = APIRouter(include_in_schema=False)
 
@@ -58,7 +58,7 @@ class _File:
 
 
 def _answer(request: Request, name: str) -> Response:
-    file = _files().get(name)
+    file = _FILES.get(name)
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
     # Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once.
@@ -75,14 +75,22 @@ def _answer(request: Request, name: str) -> Response:
     return Response(file.content, media_type=file.media_type, headers=headers)
 
 
-@cache
 def _files() -> dict[str, _File]:
-    """Return the files by name: those of the folder, read once, so that no name from a client is ever a path."""
+    """Return the files by name: read once, so that no name from a client is ever a path.
+
+    The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
+    """
     folder = Path(__file__).parent / "static"
-    return {path.relative_to(folder).as_posix(): _read(path) for path in folder.rglob("*") if path.suffix in _TYPES}
+    paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
+    texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}
+    styles = {name: text for name, text in texts.items() if name.endswith(".css")}
+    joined = {"app.js": joined_modules(texts, "app.js"), "style.css": joined_styles(styles)}
+    return {name: _file(Path(name).suffix, text.encode()) for name, text in {**texts, **joined}.items()}
 
 
-def _read(path: Path) -> _File:
-    content = path.read_bytes()
+def _file(kind: str, content: bytes) -> _File:
     tag = f'W/"{hashlib.sha256(content).hexdigest()[:16]}"'
-    return _File(_TYPES[path.suffix], content, gzip.compress(content, mtime=0), tag)
+    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), tag)
+
+
+_FILES = _files()

@@ -7,6 +7,7 @@ has to be given up half-way because another one wrote meanwhile. PostgreSQL: psy
 from __future__ import annotations
 
 import contextlib
+import math
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -15,12 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
-from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import InputError, StoreError
 
 _PATIENCE = 30.0  # s to wait for other writers
+_POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
+_SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
+_IDLE = 1.0  # s after which a connection has to prove that it is alive
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
@@ -45,7 +49,7 @@ class Database:
         self.name = url.render_as_string(hide_password=True)
         self.sqlite = url.get_backend_name() == "sqlite"
         self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
-        self._reader = self.engine.execution_options(reading=True)
+        self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite:
             self._use_write_ahead_log()
 
@@ -116,7 +120,7 @@ def _url(address: str | PathLike[str]) -> URL:
 
 
 def _sqlite(url: URL) -> Engine:
-    engine = create_engine(url, connect_args={"timeout": _PATIENCE, "isolation_level": None})
+    engine = create_engine(url, connect_args={"timeout": _PATIENCE, "isolation_level": None}, **_POOL)
 
     @event.listens_for(engine, "connect")
     def prepare(connection: Any, _record: Any) -> None:
@@ -142,11 +146,30 @@ def _postgresql(url: URL) -> Engine:
     }
     kept = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
     try:
-        return create_engine(url.difference_update_query(["options"]), connect_args=kept, pool_pre_ping=True)
+        engine = create_engine(url.difference_update_query(["options"]), connect_args=kept, **_POOL)
     except ModuleNotFoundError as error:
         raise InputError(
             'a store on PostgreSQL needs the package psycopg; it is not installed; pip install "slidercrank[postgres]"'
         ) from error
+
+    @event.listens_for(engine, "checkin")
+    def rest(_connection: Any, record: Any) -> None:
+        record.info["since"] = time.monotonic()
+
+    @event.listens_for(engine, "checkout")
+    def prove(connection: Any, record: Any, _proxy: Any) -> None:
+        # Not each time, as the pool itself would do it: that takes as long as what the connection is for.
+        if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _alive(engine, connection):
+            raise InvalidatePoolError  # by which the pool gives up its connections and makes another one
+
+    return engine
+
+
+def _alive(engine: Engine, connection: Any) -> bool:
+    try:
+        return engine.dialect.do_ping(connection)
+    except engine.dialect.loaded_dbapi.Error:
+        return False
 
 
 def _may_pass(error: Exception) -> bool:

@@ -13,7 +13,7 @@ from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
-from tests.service.store.contents import add, progress, result, taken
+from tests.service.store.contents import ROWS, add, progress, result, taken
 
 TABLES = tomllib.loads(fronts.JOB)
 
@@ -32,7 +32,7 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
 
 
 def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
-    put_in(store, result(), TABLES)
+    put_in(store, result(rows=[{**row, "rod_mm": 120.0, "offset_mm": 30.0} for row in ROWS]), TABLES)
     page = open_page(store)
     item = page.get_by_role("listitem")
     expect(item).to_contain_text("done")

@@ -14,7 +14,7 @@ from tests.service.page.conftest import Open
 
 def test_every_file_comes_with_a_policy_that_allows_nothing_from_elsewhere(store: Store) -> None:
     with served(store) as address, httpx.Client(base_url=address) as client:
-        for name in ("", "page/app.js", "page/style/shell.css", "page/icon.svg"):
+        for name in ("", "page/app.js", "page/style.css", "page/icon.svg"):
             response = client.get(f"/{name}")
             assert response.status_code == 200, name
             policy = response.headers["content-security-policy"]

@@ -5,6 +5,7 @@ import { scatter } from "../charts/scatter.js";
 import { colours } from "../charts/scale.js";
 import { keep, link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
+import { grouped } from "../lib/numbers.js";
 import { sayProblem } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
 import { chooser } from "./chooser.js";
@@ -149,7 +150,7 @@ class Explorer {
     if (what === "all" || what === "chosen") {
       this.limits.apply();
       const { chosen } = this.limits;
-      this.count.textContent = `${chosen.toLocaleString("en")} of ${this.data.count.toLocaleString("en")} designs chosen`;
+      this.count.textContent = `${grouped(chosen)} of ${grouped(this.data.count)} designs chosen`;
       this.clearing.disabled = this.limits.open;
     }
     if (what === "all") {
@@ -170,12 +171,11 @@ class Explorer {
     this.selected.draw();
   }
 
-  /** Draw the table, soon where it may wait and was drawn a moment ago. */
+  /** Draw the table; where it may wait, after the frame, and not again within a moment. */
   drawTable(waits) {
     clearTimeout(this.tabling);
-    const passed = performance.now() - (this.tabled ?? -Infinity);
-    if (waits && passed < OFTEN) {
-      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - passed);
+    if (waits) {
+      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - (performance.now() - (this.tabled ?? -Infinity)));
       return;
     }
     this.tabled = performance.now();

@@ -1,7 +1,7 @@
 /** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
 
 import { fill, h } from "../lib/dom.js";
-import { inShown, text } from "../lib/numbers.js";
+import { grouped, inShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
 
 const PAGE = 20;
@@ -47,7 +47,7 @@ export function designTable(explorer) {
     const first = (page - 1) * PAGE;
     fill(pages,
       turn("«", "First page", 1, page === 1), turn("‹", "Previous page", page - 1, page === 1),
-      h("span", {}, found.length ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${limits.chosen.toLocaleString("en")}` : "0"),
+      h("span", {}, found.length ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${grouped(limits.chosen)}` : "0"),
       turn("›", "Next page", page + 1, page === last), turn("»", "Last page", last, page === last));
     if (held) place.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
     mark();

@@ -6,6 +6,7 @@ import { columnOf } from "../front/columns.js";
 import { get } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
+import { grouped } from "../lib/numbers.js";
 import { stateWord } from "./states.js";
 import { clock, duration } from "./times.js";
 
@@ -74,8 +75,8 @@ export function watch(place, job, { signal, changed }) {
     const shown = [
       ["stage", data.stage],
       ["round", `${data.round} of ${data.rounds}`],
-      ["evaluated", data.evaluations.toLocaleString("en")],
-      ["feasible", data.feasible.toLocaleString("en")],
+      ["evaluated", grouped(data.evaluations)],
+      ["feasible", grouped(data.feasible)],
       ["hypervolume", data.hypervolume === null ? "–" : data.hypervolume.toFixed(4)],
       ["so far", duration(data.seconds ?? 0)],
       ["left", left === null ? "–" : `about ${duration(left)}`],

@@ -4,6 +4,7 @@ import { thumbnail } from "../charts/thumbnail.js";
 import { named } from "../front/columns.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
+import { grouped } from "../lib/numbers.js";
 import { actions } from "./actions.js";
 import { badge } from "./states.js";
 import { ago } from "./times.js";
@@ -30,7 +31,7 @@ function standing(job) {
   if (job.summary?.designs) {
     const { designs, best } = job.summary;
     return [
-      h("div", {}, `${designs.toLocaleString("en")} designs`),
+      h("div", {}, `${grouped(designs)} designs`),
       h("div", { class: "quiet" }, "best: ", Object.entries(best).map(([key, value]) => named(key, value)).join(" · ")),
     ];
   }
@@ -38,7 +39,7 @@ function standing(job) {
     const { stage, round, rounds, feasible } = job.progress;
     return [
       h("progress", { max: rounds, value: round, "aria-label": `run ${job.id}: round ${round} of ${rounds}` }),
-      h("div", { class: "quiet" }, `${stage}, round ${round} of ${rounds} · ${feasible.toLocaleString("en")} feasible designs`),
+      h("div", { class: "quiet" }, `${stage}, round ${round} of ${rounds} · ${grouped(feasible)} feasible designs`),
     ];
   }
   return h("div", { class: "quiet" }, job.reason || (job.state === "queued" ? "waits for a worker" : ""));

@@ -3,20 +3,23 @@
 import { h } from "../lib/dom.js";
 
 const STEPS = [["day", 86_400], ["hour", 3600], ["minute", 60]];
-const relative = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
-const exact = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle: "medium" });
 
 /** Return how long ago a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. */
 export function ago(seconds) {
   const date = new Date(1000 * seconds);
-  return h("time", { datetime: date.toISOString(), title: exact.format(date) }, agoText(seconds));
+  const exact = (event) => {
+    // Only then: a browser takes 50 ms to make itself ready to write dates.
+    event.target.title = date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "medium" });
+  };
+  return h("time", { datetime: date.toISOString(), onpointerenter: exact }, agoText(seconds));
 }
 
 function agoText(seconds) {
   const passed = Math.max(0, Date.now() / 1000 - seconds);
   const [unit, length] = STEPS.find(([, length]) => passed >= length) ?? ["second", 1];
   if (unit === "second") return passed < 10 ? "just now" : "less than a minute ago";
-  return relative.format(-Math.round(passed / length), unit);
+  const count = Math.round(passed / length);
+  return `${count} ${unit}${count === 1 ? "" : "s"} ago`;
 }
 
 /** Return the time of the day of an event. */

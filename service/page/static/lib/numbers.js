@@ -61,6 +61,11 @@ export function withUnit(value, unit = "", digits = 5) {
   return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
 }
 
+/** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. */
+export function grouped(count) {
+  return String(count).replace(/\B(?=(\d{3})+$)/g, ",");
+}
+
 /** Return a heading with its unit: "crank (mm)". */
 export function heading(column) {
   const unit = unitOf(column.unit);

@@ -4,7 +4,7 @@ import { badge } from "../jobs/states.js";
 import { keep, link } from "../lib/address.js";
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { text, withUnit } from "../lib/numbers.js";
+import { grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 
 export const title = "Compare runs";
@@ -62,8 +62,8 @@ export async function show(place, { query, signal }) {
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
       h("thead", {}, h("tr", {}, h("td", {}), runs.map(({ job }, index) => h("th", { scope: "col", class: "number" }, sign(index), " ", h("a", { href: link(["jobs", job.id]) }, job.name), h("div", { class: "quiet" }, `run ${job.id}`))))),
       h("tbody", {}, plain("state", ({ job }) => badge(job)), rows,
-        plain("designs", ({ front }) => front.count.toLocaleString("en")),
-        plain("evaluated", ({ front }) => front.evaluations.toLocaleString("en")),
+        plain("designs", ({ front }) => grouped(front.count)),
+        plain("evaluated", ({ front }) => grouped(front.evaluations)),
         plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
         plain("seed", ({ front }) => String(front.seed)))));
   }

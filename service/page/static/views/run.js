@@ -6,6 +6,7 @@ import { ago, duration } from "../jobs/times.js";
 import { get, Problem } from "../lib/api.js";
 import { go, read } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
+import { grouped } from "../lib/numbers.js";
 
 export const title = "Run";
 
@@ -46,7 +47,7 @@ export async function show(place, { parts, signal }) {
 
   function drawHead(job) {
     const { summary } = job;
-    const facts = [`run ${job.id}`, summary && `${summary.designs.toLocaleString("en")} designs`, summary && `${summary.evaluations.toLocaleString("en")} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
+    const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
       h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", ago(job.finished ?? job.started ?? job.submitted))),
       h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now))), downloads(job, { designs: Boolean(summary?.designs), signal })));
