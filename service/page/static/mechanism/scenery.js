@@ -24,7 +24,7 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
     rotation(view, r, direction),
-    offset(view, e, reach[0] + 4),
+    offset(view, e, reach[0] + 20),
     bearing(x(0), y(0), link),
   ];
 }
@@ -70,7 +70,8 @@ function offset(view, e, x) {
     "g",
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
-    Math.abs(to - from) < 24 || view.width < 330 ? null : svg("text", { x: x + 6, y: (from + to) / 2 + 4 }, `offset ${withUnit(e, "mm", 4)}`),
+    // Beside the line, not over it to the right: there the crank passes.
+    view.width < 330 ? null : svg("text", { transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`, "text-anchor": "middle" }, `offset ${withUnit(e, "mm", 4)}`),
   );
 }
 
