@@ -47,7 +47,7 @@ def list_columns(
     request: Request,
     found: FrontDep,
     columns: Annotated[
-        str | None, Query(max_length=10_000, description="quantities or columns, separated by commas; all if left out")
+        str | None, Query(max_length=2000, description="quantities or columns, separated by commas; all if left out")
     ] = None,
     accept_encoding: Annotated[str, Header(include_in_schema=False)] = "",
 ) -> Response:

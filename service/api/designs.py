@@ -52,7 +52,7 @@ def list_designs(
     ] = None,
     reverse: Annotated[bool, Query(description="turn the order round")] = False,
     columns: Annotated[
-        str | None, Query(max_length=10_000, description="quantities or columns, separated by commas; all if left out")
+        str | None, Query(max_length=2000, description="quantities or columns, separated by commas; all if left out")
     ] = None,
     offset: Annotated[int, Query(ge=0, le=2**31, description="pass over so many designs")] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most so many designs")] = 100,
