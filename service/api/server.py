@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _WAITING = 2048
 """Connections that may wait to be accepted."""
+_KEPT = 75
+"""Seconds that a connection at rest stays open: longer than clients keep theirs, so none is closed as it is used."""
 _FAREWELL = 2
 """Seconds that requests and streams of events have to end once the server stops; clients come back to the next."""
 _ANY = ("0.0.0.0", "::")
@@ -82,6 +84,7 @@ def run_server(app: FastAPI, listening: socket.socket) -> None:
         access_log=False,  # the address that carries the token would be in it
         server_header=False,
         ws="none",
+        timeout_keep_alive=_KEPT,
         timeout_graceful_shutdown=_FAREWELL,
     )
 
