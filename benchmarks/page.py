@@ -2,7 +2,7 @@
 
 First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that
 has read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows
-it in lines and scatter; the table follows.
+it in lines and scatter; the table follows. It begins half a second after a first view: no hand is there sooner.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ _BRUSH = """async (steps) => {
     channel.port2.postMessage(0);
   }));
   const times = [];
+  await new Promise((done) => setTimeout(done, 500));
   send("pointerdown", box.top + 20);
   for (let step = 1; step <= steps; step += 1) {
     await new Promise((done) => setTimeout(done, 30));

@@ -11,10 +11,10 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi.responses import JSONResponse, StreamingResponse
 from fastapi.sse import format_sse_event
 
-from ..store import Event
+from ..store import Event, Store
 from ..store.records import ENDED
 from .event_feed import Feed
-from .models import LARGEST, EventPage, EventShown, JobNumber
+from .models import LARGEST, EventPage, JobNumber
 from .state import StoreDep
 
 router = APIRouter(tags=["jobs"])
@@ -46,12 +46,11 @@ async def list_events(
     ] = None,
 ) -> Response:
     """Return what happened to a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""
-    job = await run_sync(store.job, number)
-    position = min(after if last_event_id is None else last_event_id, job.events)
+    begin = after if last_event_id is None else last_event_id
     if STREAM not in request.headers.get("accept", ""):
-        found = await run_sync(lambda: store.events(number, after=position, limit=limit))
-        page = EventPage(events=[_shown(event) for event in found], last=found[-1].number if found else position)
-        return JSONResponse(page.model_dump())
+        return JSONResponse(await run_sync(_page, store, number, begin, limit))
+    job = await run_sync(store.job, number)
+    position = min(begin, job.events)
     if job.state in ENDED and last_event_id is not None and position == job.events:
         return Response(status_code=204)
     feed: Feed = request.app.state.feed
@@ -60,15 +59,22 @@ async def list_events(
     return StreamingResponse(_lines(followed), headers=headers, media_type=STREAM)
 
 
+def _page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:
+    position = min(after, store.job(number).events)
+    found = store.events(number, after=position, limit=limit)
+    return {"events": [_shown(event) for event in found], "last": found[-1].number if found else position}
+
+
 async def _lines(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:
     yield _FIRST
     async for event in events:
         if event is None:
             yield b": still there\n\n"
         else:
-            data = json.dumps(_shown(event).model_dump(), separators=(",", ":"))
+            data = json.dumps(_shown(event), separators=(",", ":"))
             yield format_sse_event(data_str=data, event=event.kind, id=str(event.number))
 
 
-def _shown(event: Event) -> EventShown:
-    return EventShown(number=event.number, at=event.at, kind=event.kind, data=event.data)
+def _shown(event: Event) -> dict[str, Any]:
+    """Return an event as `EventShown` has it."""
+    return {"number": event.number, "at": event.at, "kind": event.kind, "data": event.data}

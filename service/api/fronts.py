@@ -87,11 +87,8 @@ class PickedModel(BaseModel):
 def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
     record = finite(store.record(number))
-    summary = store.job(number).summary
-    # Only results of the first stores have no summary.
-    count = len(store.result(number).designs) if summary is None else summary["designs"]
     keys = record.pop("columns")
-    return FrontModel(**record, job=number, count=count, columns=[column_model(find_column(key, keys)) for key in keys])
+    return FrontModel(**record, job=number, columns=[column_model(find_column(key, keys)) for key in keys])
 
 
 @router.get("/jobs/{number}/pick")

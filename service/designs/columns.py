@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -50,27 +51,40 @@ def find_column(name: str, keys: Collection[str]) -> Column:
 
     Raises `InputError` with the nearest names.
     """
+    name = name.strip()
+    key = name if name in keys else _meant(name, keys)
+    plain, unit, factor = split_unit(key)
+    slack = key.startswith("slack_")
+    title = _titles().get(
+        key.removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
+    )
+    return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
+
+
+@functools.cache
+def _titles() -> dict[str, str]:
+    """Return what the columns of quantities are called, by their keys."""
     from ...objectives.registry import QUANTITIES
 
-    name = name.strip()
+    return {quantity.field: quantity.title for quantity in QUANTITIES.values()}
+
+
+def _meant(name: str, keys: Collection[str]) -> str:
+    """Return the key that a name without unit means. Raises `InputError` with the nearest names."""
+    from ...objectives.registry import QUANTITIES
+
     aliases = {dimension: f"{dimension}_mm" for dimension in DIMENSIONS}
     aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
     aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
-    key = name if name in keys else aliases.get(name, "")
-    if key not in keys:
-        from ...optimise.units import closest
+    if (key := aliases.get(name, "")) in keys:
+        return key
 
-        near = closest(name, [*keys, *aliases]) if name else None
-        hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"
-        raise InputError(f"no quantity or column is called {name!r}; {hint}")
-    titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
-    plain, unit, factor = split_unit(key)
-    slack = key.startswith("slack_")
-    title = titles.get(
-        key.removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
-    )
-    return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
+    from ...optimise.units import closest
+
+    near = closest(name, [*keys, *aliases]) if name else None
+    hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"
+    raise InputError(f"no quantity or column is called {name!r}; {hint}")
 
 
 def split_unit(key: str) -> tuple[str, str, float]:

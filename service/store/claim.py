@@ -16,7 +16,7 @@ from .clock import now
 from .database import Database, Unavailable
 from .events_log import Told, add_events, state_event
 from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
-from .records import Artefact, Job
+from .records import NOT_DONE, Artefact, Job
 from .schema import designs, jobs, records, workers
 from .submitting import put_files
 
@@ -35,6 +35,8 @@ class Claim:
     by the clock of the database; else nothing is written and `LeaseLost` is raised, also when no other worker has come
     yet. Every write renews the lease. A write that the database refuses, or whose answer is lost, is tried again for as
     long as the lease lasts, and takes effect once. Threads may share a claim.
+
+    begun: whether its search has evaluated anything yet.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
@@ -42,6 +44,7 @@ class Claim:
         self.job = job
         self.lease = lease
         self.cancel_asked = job.cancel_asked
+        self.begun = False
         self._database = database
         self._lock = threading.RLock()
         self._writes = 0
@@ -64,6 +67,7 @@ class Claim:
     def keep(self, record: Record) -> None:
         """Take in the next record; it is written with the next progress, or with the end."""
         with self._lock:
+            self.begun = True
             self._kept.append(record)
 
     def tell(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
@@ -72,6 +76,7 @@ class Claim:
         front: some designs of the front so far, as JSON has them. Only the latest is kept, with the job: events that
         each carried one would make a store of many runs grow.
         """
+        self.begun = True
         data = finite(asdict(progress))
         standing = data if front is None else {**data, "front": finite(front)}
         self._write({"progress": text_of(standing)}, [("progress", data)])
@@ -142,6 +147,10 @@ class Claim:
             self._end("queued", f"{reason}{tries}", {"due": now() + cast(literal(delay), Double), "finished": None})
         else:
             self._end("failed", f"{reason}{tries}", {})
+
+    def give_up(self) -> None:
+        """End the job, cancelled, with what it had found before this claim."""
+        self._end("cancelled", NOT_DONE, {})
 
     def hand_back(self, reason: str) -> None:
         """Queue the job again as it is, without counting the attempt: its worker stops in an orderly way."""

@@ -15,6 +15,7 @@ State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"
 ENDED: tuple[State, ...] = ("done", "infeasible", "cancelled", "failed")
 RESUMABLE: tuple[State, ...] = ("cancelled", "failed")
 LIMITS = ("most_seconds", "most_evaluations", "most_memory")
+NOT_DONE = "cancelled before it was done"
 SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "result"))
 """Columns of a list of jobs: all but the long ones."""
 

@@ -19,7 +19,7 @@ from .clock import now
 from .database import Database
 from .events_log import add_events
 from .packing import plain, rows_of
-from .records import ENDED, NO_LIMITS, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
+from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
 from .rows import become, damaged, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, jobs, workers
 from .schema_version import upgrade
@@ -181,12 +181,18 @@ class Store:
             return news_of(connection, after, limit)
 
     def record(self, number: int) -> dict[str, Any]:
-        """Return what a job found as `Result.record` has it, with the names of the columns in place of the designs.
+        """Return what a job found as `Result.record` has it, with "count" and "columns" in place of the designs.
 
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
         with self._database.reading() as connection:
-            return the_record(connection, the_job(connection, number))
+            job = the_job(connection, number)
+            record = the_record(connection, job)
+            if job.summary is not None:
+                return {**record, "count": job.summary["designs"]}
+            # Only results of the first stores have none.
+            count = select(func.count()).select_from(designs).where(designs.c.job == number)
+            return {**record, "count": connection.execute(count).scalar_one()}
 
     def result(self, number: int) -> Result:
         """Return what a job found. Raises `RunError` if it has no result (yet), or a damaged one."""
@@ -225,7 +231,7 @@ class Store:
             ended = select(jobs.c.lease_until < now()).where(jobs.c.id == number)
             if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
                 left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
-                return become(connection, job, "cancelled", "cancelled before it was done", **left)
+                return become(connection, job, "cancelled", NOT_DONE, **left)
             if job.state == "running" and not job.cancel_asked:
                 values = {"cancel_asked": True, "events": job.events + 1}
                 connection.execute(update(jobs).where(jobs.c.id == number).values(values))

@@ -25,11 +25,17 @@ Stop = Callable[[], bool]
 class Pulse:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
-    lost: whether the lease is another worker's by now.
+    lost: why the job is not this worker's any more, in words; empty as long as it is.
     """
 
     def __init__(
-        self, claim: Claim, *, memory: int | None = None, stop: Stop | None = None, grace: float | None = None
+        self,
+        claim: Claim,
+        *,
+        memory: int | None = None,
+        stop: Stop | None = None,
+        grace: float | None = None,
+        patience: float | None = None,
     ) -> None:
         """Care for a claim.
 
@@ -37,12 +43,16 @@ class Pulse:
         process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
         grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
         ends with 0. For as long as it takes, if None.
+        patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. While
+        a search loads or compiles what it computes with, it hears of nothing. For as long as it takes, if None.
         """
         self.claim = claim
-        self.lost = False
+        self.lost = ""
         self._memory = memory
         self._stop = stop or (lambda: False)
         self._grace = grace
+        self._patience = patience
+        self._cancelled: float | None = None
         self._asked: float | None = None
         self._end = threading.Event()
         beat = contextvars.copy_context().run  # so that its logs are about the same job
@@ -60,7 +70,7 @@ class Pulse:
 
     def _beat(self) -> None:
         lease = self.claim.lease
-        while not self._end.wait(min(PULSE, lease / 10.0)):
+        while not self.lost and not self._end.wait(min(PULSE, lease / 10.0)):
             self._look_at_memory()
             self._look_at_stop()
             try:
@@ -68,11 +78,20 @@ class Pulse:
                     self.claim.renew()
                 else:
                     self.claim.look()
+                self._look_at_cancel()
             except LeaseLost:
-                self.lost = not self._end.is_set()  # at the end of a job it is given up as it should be
-                return
+                if not self._end.is_set():  # at the end of a job it is given up as it should be
+                    self.lost = "its lease has ended; another worker goes on from what was committed"
             except StoreError:
-                continue  # the writes of the search find out whether it stays so
+                pass  # the writes of the search find out whether it stays so
+
+    def _look_at_cancel(self) -> None:
+        if self._patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
+            return
+        self._cancelled = time.monotonic() if self._cancelled is None else self._cancelled
+        if time.monotonic() - self._cancelled >= self._patience:
+            self.claim.give_up()
+            self.lost = "it was cancelled before its search began"
 
     def _look_at_memory(self) -> None:
         taken = memory_taken() if self._memory is not None else 0

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
+_PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 
 
@@ -122,7 +123,7 @@ def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT
     with about(job=claim.job.id):
         _log.info("claimed")
         try:
-            with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace) as pulse:
+            with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace, patience=_PATIENCE) as pulse:
                 _end(claim, lambda: _solve(store, claim, Budget(limits), terms, engine, pulse, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
@@ -196,7 +197,7 @@ def versions_file(versions: Mapping[str, str]) -> Artefact:
 def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:
     """Whether the search is to end with what it has; raises what ends it without."""
     if pulse.lost:
-        raise LeaseLost(f"the lease of job {claim.job.id} has ended; another worker goes on from what was committed")
+        raise LeaseLost(f"job {claim.job.id}: {pulse.lost}")
     if claim.cancel_asked:
         return True
     if stop():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -193,6 +194,29 @@ def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> No
     ended = store.job(job.id)
     assert (ended.state, ended.reason, ended.records) == ("cancelled", "1 design", 1)
     assert len(store.result(job.id).designs) == 1
+
+
+def test_a_job_is_cancelled_soon_though_its_search_still_loads(store: Store, searches: Any) -> None:
+    job = submit(store, TABLES)
+    heard: list[float] = []
+
+    def loading(*_: Any, cancelled: Any, **_more: Any) -> ParetoFront:
+        store.cancel(job.id)
+        begin = time.monotonic()
+        until(lambda: store.job(job.id).state == "cancelled")
+        heard.append(time.monotonic() - begin)
+        cancelled()
+        raise AssertionError("a search goes on that was cancelled")
+
+    searches(loading)
+    assert work(store, drain=True) == 1
+    assert 1.0 <= heard[0] < 2.0
+    ended = store.job(job.id)
+    assert (ended.reason, ended.worker, ended.summary) == ("cancelled before it was done", None, None)
+    store.resume(job.id)
+    searches(search)
+    assert work(store, drain=True) == 1
+    assert store.job(job.id).state == "done"
 
 
 def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> None:

@@ -7,9 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from sqlalchemy import update
 
 from slidercrank.model.errors import InputError, LeaseLost, NotFound, RunError
 from slidercrank.service.store import Artefact, Claim, Limits, Store
+from slidercrank.service.store.schema import jobs
 from tests.service.store.contents import ROWS, TABLES, add, progress, result, search_record, taken
 
 FILE = Artefact(name="job.toml", media_type="application/toml", content=b"name = 'Feeder'\n")
@@ -138,7 +140,11 @@ def test_the_record_of_a_result_has_columns_in_place_of_designs(store: Store) ->
     claim.finish(result())
     record = store.record(1)
     assert record["columns"] == list(ROWS[0])
+    assert record["count"] == len(ROWS)
     assert "designs" not in record
+    with store._database.writing() as connection:
+        connection.execute(update(jobs).values(summary=None))  # as the first stores left it
+    assert store.record(1) == record
     assert record["message"] == "2 designs"
     with pytest.raises(NotFound, match="there is no job 2"):
         store.record(2)

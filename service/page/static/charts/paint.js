@@ -22,6 +22,10 @@ export function layers(count, label) {
         contexts[index].setTransform(factor, 0, 0, factor, 0, 0);
       });
     },
+    /** Show a layer, or hide it. */
+    show(index, shown) {
+      canvases[index].style.visibility = shown ? "visible" : "hidden";
+    },
     /** Clear a layer. */
     clear(index) {
       const context = contexts[index];

@@ -53,9 +53,9 @@ export function parallel(chart) {
     }
   }
 
-  /** Draw all designs behind the chosen ones, once, and not before some are left out. */
+  /** Draw all designs behind the chosen ones, once; of many, they are seen only while some are left out. */
   function drawBack() {
-    if (!view.many || view.backed || chart.limits.chosen === chart.data.count) return;
+    if (!view.many || view.backed) return;
     view.backed = true;
     view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
   }
@@ -72,7 +72,9 @@ export function parallel(chart) {
   /** Draw the chosen ones. Of many, only those are touched that changed, unless most did. */
   function drawChosen() {
     const { mask, chosen } = chart.limits;
-    drawBack();
+    const some = chosen < chart.data.count;
+    stack.show(BACK, some || !view.many);
+    if (some) drawBack();
     if (!view.many) {
       stack.clear(FRONT);
       lines(contexts[FRONT], (row) => mask[row], view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
@@ -222,7 +224,10 @@ export function parallel(chart) {
     place,
     /** Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks". */
     draw(what) {
-      if (what === "all" || !view) lay();
+      if (what === "all" || !view) {
+        lay();
+        setTimeout(drawBack); // after the frame: the first limit should not wait for it
+      }
       if (what !== "marks") drawChosen();
       drawOver();
     },

@@ -30,19 +30,29 @@ export async function show(place, { parts, signal }) {
       return;
     }
     document.title = `${job.name} · slidercrank`;
+    const live = !ENDED.includes(job.state);
+    const watched = live && inner?.live;
+    if (!watched) {
+      inner?.abort();
+      inner = Object.assign(new AbortController(), { live });
+      signal.addEventListener("abort", () => inner.abort(), { signal: inner.signal });
+    }
+    const own = inner.signal;
+    const asked = live || !job.summary?.designs ? [] : designs(job, own); // on their way while the head is drawn
     const held = head.contains(document.activeElement);
     drawHead(job);
     if (held) head.querySelector("button, a")?.focus();
-    const live = !ENDED.includes(job.state);
-    if (live && inner?.live) return;
-    inner?.abort();
-    const own = new AbortController();
-    inner = Object.assign(own, { live });
-    signal.addEventListener("abort", () => own.abort(), { signal: own.signal });
+    if (watched) return;
     if (live) {
       const { watch } = await import("../jobs/live.js");
-      if (!own.signal.aborted) watch(body, job, { signal: own.signal, changed: stand });
-    } else await ended(job, own.signal);
+      if (!own.aborted) watch(body, job, { signal: own, changed: stand });
+    } else await ended(job, asked, own);
+  }
+
+  /** Ask for what the explorer shows of a job unless it is told otherwise. */
+  function designs(job, own) {
+    const columns = [...SIZES, ...Object.keys(job.summary.best)].join(",");
+    return [get(`jobs/${job.id}/front`, {}, own), get(`jobs/${job.id}/columns`, { columns }, own)];
   }
 
   function drawHead(job) {
@@ -57,18 +67,12 @@ export async function show(place, { parts, signal }) {
     go([]);
   }
 
-  async function ended(job, own) {
-    const said = outcome(job);
-    const place = h("div", { class: "explorer" });
-    fill(body, said, place);
-    if (!job.summary?.designs) {
-      place.remove();
-      return;
-    }
-    const standard = [...SIZES, ...Object.keys(job.summary.best)].join(","); // what the explorer shows unless told otherwise
-    const asked = [get(`jobs/${job.id}/front`, {}, own), get(`jobs/${job.id}/columns`, { columns: standard }, own), explorer];
+  async function ended(job, asked, own) {
+    const place = asked.length ? h("div", { class: "explorer" }) : null;
+    fill(body, outcome(job), place);
+    if (!place) return;
     try {
-      const [front, { values }, { explore }] = await Promise.all(asked);
+      const [[front, { values }], { explore }] = await Promise.all([Promise.all(asked), explorer]);
       await explore(place, { job, front, values, query: read().query, signal: own });
     } catch (problem) {
       if (problem.name === "AbortError") return;
