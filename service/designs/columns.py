@@ -77,12 +77,13 @@ def _meant(name: str, keys: Collection[str]) -> str:
     aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
     aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
-    if (key := aliases.get(name, "")) in keys:
-        return key
+    meant = {alias: key for alias, key in aliases.items() if key in keys}
+    if name in meant:
+        return meant[name]
 
     from ...optimise.units import closest
 
-    near = closest(name, [*keys, *aliases]) if name else None
+    near = closest(name, [*keys, *meant]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"
     raise InputError(f"no quantity or column is called {name!r}; {hint}")
 
