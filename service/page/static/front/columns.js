@@ -30,5 +30,5 @@ export function named(key, value, digits = 4) {
 /** Return a title with the unit that the reader chose, on one line. */
 export function headed(column) {
   const unit = unitOf(column.unit);
-  return unit ? `${column.title}, ${unit}` : column.title;
+  return unit ? `${column.title},\u00a0${unit}` : column.title; // no line begins with a unit
 }
