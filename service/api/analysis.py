@@ -19,6 +19,7 @@ from ..designs.topics import ALL, TOPICS, chosen_topics
 from ..runs.result import Row, finite
 from .fronts import ColumnModel
 from .given_jobs import given_problem
+from .models import Whole
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
@@ -111,7 +112,7 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
 def show_curves(
     found: FrontDep,
     design: DesignNumber,
-    angles: Annotated[int, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced")] = 360,
+    angles: Annotated[Whole, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced")] = 360,
 ) -> CurvesModel:
     """Give slider motion, torque, transmission angle and joint forces over a turn of the crank, from 0 deg."""
     stored = found.design(design)

@@ -11,6 +11,7 @@ from ..designs.choosing import chosen_rows
 from ..designs.columns import find_columns
 from ..runs.result import finite
 from .fronts import Cells, ColumnModel, Where, column_model
+from .models import Whole
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
@@ -54,8 +55,8 @@ def list_designs(
     columns: Annotated[
         str | None, Query(max_length=2000, description="quantities or columns, separated by commas; all if left out")
     ] = None,
-    offset: Annotated[int, Query(ge=0, le=2**31, description="pass over so many designs")] = 0,
-    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most so many designs")] = 100,
+    offset: Annotated[Whole, Query(ge=0, le=2**31, description="pass over so many designs")] = 0,
+    limit: Annotated[Whole, Query(ge=1, le=MOST_ROWS, description="at most so many designs")] = 100,
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = found.result

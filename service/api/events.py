@@ -14,7 +14,7 @@ from fastapi.sse import format_sse_event
 from ..store import Event, Store
 from ..store.records import ENDED
 from .event_feed import Feed
-from .models import LARGEST, EventPage, JobNumber
+from .models import LARGEST, EventPage, JobNumber, Whole
 from .state import StoreDep
 
 router = APIRouter(tags=["jobs"])
@@ -39,10 +39,11 @@ async def list_events(
     request: Request,
     number: JobNumber,
     store: StoreDep,
-    after: Annotated[int, Query(ge=0, le=LARGEST, description="events after the one of this number")] = 0,
-    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many, in a page of JSON")] = 1000,
+    after: Annotated[Whole, Query(ge=0, le=LARGEST, description="events after the one of this number")] = 0,
+    limit: Annotated[Whole, Query(ge=1, le=1000, description="at most so many, in a page of JSON")] = 1000,
     last_event_id: Annotated[
-        int | None, Header(ge=0, le=LARGEST, description="the same as `after`, as browsers send it when they reconnect")
+        Whole | None,
+        Header(ge=0, le=LARGEST, description="the same as `after`, as browsers send it to reconnect"),
     ] = None,
 ) -> Response:
     """Return what happened to a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""

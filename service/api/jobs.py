@@ -17,7 +17,7 @@ from ..store import Job, State, Store
 from ..submission import submit
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, require_no_file, within
 from .merge_patch import merged
-from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown
+from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
 from .problems import problem_responses
 from .rate_limit import limit_submissions
 from .settings import Settings
@@ -53,8 +53,8 @@ def list_jobs(
     store: StoreDep,
     state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
     name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
-    before: Annotated[int | None, Query(ge=1, le=LARGEST, description="older than the job of this number")] = None,
-    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many")] = 100,
+    before: Annotated[Whole | None, Query(ge=1, le=LARGEST, description="older than the job of this number")] = None,
+    limit: Annotated[Whole, Query(ge=1, le=1000, description="at most so many")] = 100,
 ) -> dict[str, Any]:
     """Return jobs, latest first."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)

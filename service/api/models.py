@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any
 
 from fastapi import Path
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticKnownError
 
 from ..store import State
 
 LARGEST = 2**53 - 1
-JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
+_WHOLE = re.compile(r"-?(0|[1-9][0-9]*)")
+
+
+def _plain(given: Any) -> Any:
+    if isinstance(given, str) and not _WHOLE.fullmatch(given):
+        raise PydanticKnownError("int_parsing")
+    return given
+
+
+Whole = Annotated[int, BeforeValidator(_plain)]
+"""A whole number in an address, in digits: not all that Python takes for one, such as "6.0", "1_0" and " 6"."""
+JobNumber = Annotated[Whole, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
 

@@ -17,7 +17,7 @@ from ..designs.columns import Column, find_column
 from ..designs.stored_designs import StoredDesign, design_of, front_of
 from ..runs.result import Result, Row
 from ..store import Job, Store
-from .models import JobNumber
+from .models import JobNumber, Whole
 
 if TYPE_CHECKING:
     from ...optimise.front import ParetoFront
@@ -30,7 +30,7 @@ _MOST_IMAGES = 24  # of a front, 100 kB each
 _MOST_ANSWERS = 8_000_000  # bytes of a front's answers that are kept, and one if it is longer
 
 DesignNumber = Annotated[
-    int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
+    Whole, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
 ]
 
 

@@ -264,6 +264,13 @@ def test_a_place_that_is_not_there_and_a_method_it_does_not_know_are_told(shared
     assert "got PUT; use GET, DELETE" in refused(response, 405)
 
 
+@pytest.mark.parametrize("number", ["6%0C", "%206", "1_0", "6.0", "06", "+6", "six"])
+def test_a_number_in_an_address_is_written_in_digits(shared: httpx.Client, number: str) -> None:
+    assert "path number: input should be a valid integer" in refused(shared.get(f"/jobs/{number}"), 422)
+    query = number.replace("+", "%2B")
+    assert "query before: input should be a valid integer" in refused(shared.get(f"/jobs?before={query}"), 422)
+
+
 def test_files_keep_their_bytes_and_type(client: httpx.Client, store: Store) -> None:
     content = bytes(range(256))
     add(store, files=[Artefact(name="figure.png", media_type="image/png", content=content)])
