@@ -24,7 +24,7 @@ from ...model.errors import InputError, StoreError
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
 _SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
-_IDLE = 1.0  # s after which a connection has to prove that it is alive
+_IDLE = 0.1  # s after which a connection has to prove that it is alive: no server restarts sooner
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
