@@ -58,6 +58,6 @@ $(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test,benchmark])
 
 # numba renews a compiled kernel when its own file changes, not when a formula that it calls does.
-$(VENV)/.kernels: $(VENV)/.created $(shell find model objectives optimise -name '*.py')
-	@find model objectives optimise -name '*.nb[ic]' -delete
+$(VENV)/.kernels: $(VENV)/.created $(shell find model optimise/certificate -name '*.py')
+	@find model optimise/certificate -name '*.nb[ic]' -delete
 	@touch $@

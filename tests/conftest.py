@@ -22,7 +22,7 @@ def delete_stale_kernels() -> None:
     numba compares a kernel with the time of its own file only; a kernel that has a formula of
     another file compiled into it would stay as it was.
     """
-    folders = [*places("model"), *places("objectives"), *places("optimise")]
+    folders = [*places("model"), *places("optimise.certificate")]  # where all that is compiled stands
     sources = [file.stat().st_mtime_ns for folder in folders for file in folder.rglob("*.py")]
     kernels = [file for folder in folders for file in folder.rglob("__pycache__/*.nb[ic]")]
     if kernels and max(sources) > min(file.stat().st_mtime_ns for file in kernels):
