@@ -15,7 +15,7 @@ def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None
     parts = tables.get("quantity", {})
     for name, part in parts.items() if isinstance(parts, Mapping) else ():
         function = part.get("function") if isinstance(part, Mapping) else None
-        if function not in allowed:
+        if not (isinstance(function, str) and function in allowed):
             remedy = f"choose from {', '.join(sorted(allowed))}" if allowed else "leave the table out"
             raise JobError(
                 f"quantity.{name[:60]}: only functions that the operator allows are run here; got {shown(function)}; "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import stat
 import tomllib
 from collections import Counter
@@ -17,6 +18,12 @@ LARGEST = 1_000_000
 """Bytes. A job with the longest tables allowed takes a tenth of it."""
 DEEPEST = 8
 """Tables within tables; a job has five at most."""
+# Possessive, and a text that is not closed ends with the file: the search takes a time in proportion to its length.
+_WORD = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"?+|'[^'\n]*+'?+)"""
+_TEXT = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|''' + r"""'''(?:[^']|'(?!''))*+(?:'''|\Z)"""
+_DOT = r"[ \t]*+\.[ \t]*+"
+_DEEP = rf"{_WORD}(?:{_DOT}{_WORD}){{{DEEPEST}}}"
+_DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_DOT}{_WORD})*+|.))*+{_DEEP}")
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -63,20 +70,39 @@ def _bytes(path: Path) -> bytes:
 
 
 def _tables(text: str, suffix: str) -> dict[str, Any]:
-    language = "TOML" if suffix == ".toml" else "JSON"
+    if suffix == ".toml":
+        return toml_tables(text)
     try:
-        if suffix == ".toml":
-            return tomllib.loads(text)
         data = json.loads(text, object_pairs_hook=_unique)
     except RecursionError:
-        raise JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the file") from None
+        raise _too_deep() from None
     except JobError:
         raise
     except ValueError as error:
-        raise JobError(f"the file is no valid {language}: {error}; correct the line") from None
+        raise JobError(f"the file is no valid JSON: {error}; correct the line") from None
     if not isinstance(data, dict):
         raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
     return data
+
+
+def toml_tables(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text. Raises JobError.
+
+    Dotted keys of more than `DEEPEST` words are refused before the text is parsed: `tomllib` takes a time and a memory
+    for one that grow with the square of its length.
+    """
+    if _DEEP_KEY.match(text):
+        raise _too_deep()
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise _too_deep() from None
+    except ValueError as error:
+        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
+
+
+def _too_deep() -> JobError:
+    return JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the file")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

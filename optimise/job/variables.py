@@ -15,6 +15,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
 from ..units import shown
+from .file import DEEPEST
 from .quantities import ConstraintsPart
 from .values import AnyRange, Part, PositiveRange
 
@@ -51,7 +52,9 @@ class VariablesPart(Part):
             return data
         found: dict[str, Any] = {}
         for key, value in data.items():
-            steps = key.split(".") if isinstance(key, str) and key.split(".")[0] in _ROOTS else [key]
+            steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in _ROOTS else [key]
+            if len(steps) > DEEPEST:
+                raise InputError(f"a path has at most {DEEPEST} words; got {shown(key)}; shorten it")
             _place(found, steps, deepcopy(value), key)
         return found
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -21,8 +19,6 @@ from .models import LARGEST
 from .settings import Settings
 from .strict_input import read_json, require_moderate
 
-# A dotted key of so many words: tomllib takes a time for it that grows with the square of its length.
-_DOTTED = r"""(?:(?:[\w-]{1,100}|"[^"\n]{0,100}"|'[^'\n]{0,100}')[ \t]{0,9}\.[ \t]{0,9}){%d}"""
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
     "name": "Feeder",
@@ -103,7 +99,7 @@ async def asked_for(request: Request) -> Asked:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        tables = await run_in_threadpool(toml_tables, body, settings.most_depth)
+        tables = await run_in_threadpool(tables_of, body, settings.most_depth)
         return Asked(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
@@ -119,22 +115,19 @@ async def asked_for(request: Request) -> Asked:
     return Asked(tables=stated.job, priority=stated.priority, limits=limits)
 
 
-def toml_tables(body: bytes, most_depth: int) -> dict[str, Any]:
+def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
     """Return the tables of a job file in TOML. Raises `JobError`."""
+    from ...optimise.job.file import toml_tables
+
     try:
         text = body.decode("utf-8-sig")
-        if re.search(_DOTTED % most_depth, text):
-            raise RecursionError
-        tables = tomllib.loads(text)
-        require_moderate(tables, most_depth)
-    except RecursionError:
-        raise JobError(f"a body nests at most {most_depth} deep; got more; flatten it") from None
     except UnicodeDecodeError:
         raise JobError("a job file is UTF-8 text; got other bytes; save it as UTF-8") from None
+    tables = toml_tables(text)
+    try:
+        require_moderate(tables, most_depth)
     except InputError as error:
         raise JobError(str(error)) from None
-    except ValueError as error:
-        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
     return tables
 
 

@@ -6,12 +6,13 @@ import gc
 import ipaddress
 import os
 import socket
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
+    from uvicorn import Config
 
 _WAITING = 2048
 """Connections that may wait to be accepted."""
@@ -74,12 +75,15 @@ def spare_imports() -> None:
     gc.freeze()
 
 
-def run_server(app: FastAPI, listening: socket.socket) -> None:
-    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before."""
-    import uvicorn
+def config_of(app: FastAPI) -> Config:
+    """Return how the web server serves an application."""
+    from uvicorn import Config
 
-    config = uvicorn.Config(
+    from .connections import Gate, room_for_connections
+
+    return Config(
         app,
+        http=cast("Any", Gate(room_for_connections()).protocol),  # anything that makes a protocol will do
         log_config=None,
         access_log=False,  # the address that carries the token would be in it
         server_header=False,
@@ -87,6 +91,11 @@ def run_server(app: FastAPI, listening: socket.socket) -> None:
         timeout_keep_alive=_KEPT,
         timeout_graceful_shutdown=_FAREWELL,
     )
+
+
+def run_server(app: FastAPI, listening: socket.socket) -> None:
+    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before."""
+    import uvicorn
 
     class Server(uvicorn.Server):
         """Ends the streams of events first: they would wait until they are cut."""
@@ -96,7 +105,7 @@ def run_server(app: FastAPI, listening: socket.socket) -> None:
             await super().shutdown(sockets)
 
     spare_imports()
-    Server(config).run(sockets=[listening])
+    Server(config_of(app)).run(sockets=[listening])
 
 
 def _bracketed(host: str) -> str:

@@ -1,0 +1,160 @@
+"""Connections that ask too much, too slowly or nothing at all: refused or closed, and all others are answered."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import socket
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from slidercrank.service.api import connections
+from slidercrank.service.api.connections import MOST_HEAD
+from slidercrank.service.store import Store
+from tests.service.api.serving import TOKEN, client_of
+from tests.service.store.contents import add
+
+LIVE = b"GET /api/v1/health/live HTTP/1.1\r\nHost: localhost\r\n"
+
+
+@contextlib.contextmanager
+def connected(client: httpx.Client) -> Iterator[socket.socket]:
+    with socket.create_connection(("127.0.0.1", client.base_url.port or 0), timeout=10.0) as there:
+        yield there
+
+
+def answer(there: socket.socket) -> tuple[int, dict[str, object]]:
+    """Return status and problem document of what a connection is answered before it is closed."""
+    content = b""
+    with contextlib.suppress(ConnectionResetError):
+        while part := there.recv(65_536):
+            content += part
+    head, _, body = content.partition(b"\r\n\r\n")
+    assert b"content-type: application/problem+json" in head.lower()
+    assert b"connection: close" in head.lower()
+    return int(head.split()[1]), json.loads(body)
+
+
+def sent(there: socket.socket, *parts: bytes) -> tuple[int, dict[str, object]]:
+    with contextlib.suppress(ConnectionError):
+        for part in parts:
+            there.sendall(part)
+    return answer(there)
+
+
+@pytest.fixture(scope="module")
+def open_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
+    with Store(tmp_path_factory.mktemp("open") / "store.db") as store, client_of(store, token=TOKEN) as client:
+        yield client
+
+
+@pytest.mark.parametrize("size", [MOST_HEAD + 1, 40_000_000])
+def test_an_endless_address_is_refused_before_it_ends(open_service: httpx.Client, size: int) -> None:
+    begin = time.process_time()
+    with connected(open_service) as there:
+        status, document = sent(there, b"GET /", b"a" * size, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
+    assert status == document["status"] == 414
+    assert "at most 65536 bytes" in str(document["detail"])
+    assert time.process_time() - begin < 1.0  # 3.4 s for 40 MB where it was read to its end
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [b"X: " + b"a" * MOST_HEAD, b"X: " + b"a" * 20_000_000, b"a:\r\n" * 30_000, b"X-" + b"a" * 200_000 + b": 1"],
+)
+def test_endless_headers_are_refused(open_service: httpx.Client, headers: bytes) -> None:
+    with connected(open_service) as there:
+        status, document = sent(there, LIVE, headers, b"\r\n\r\n")
+    assert status == document["status"] == 431
+
+
+def test_headers_of_the_allowed_size_are_taken(open_service: httpx.Client) -> None:
+    response = open_service.get("/health/live", headers={"X-Long": "a" * 60_000})
+    assert response.status_code == 200
+
+
+def test_what_is_not_http_gets_a_problem_document(open_service: httpx.Client) -> None:
+    for noise in (
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n",
+        b"HELO there\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+    ):
+        with connected(open_service) as there:
+            assert sent(there, noise)[0] == 400
+
+
+def test_a_body_after_a_pipelined_request_is_no_head(open_service: httpx.Client) -> None:
+    body = b'{"job": "' + b"a" * 100_000 + b'"}'
+    token = f"Authorization: Bearer {TOKEN}\r\n".encode()
+    post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n" + token
+    post += b"Content-Length: %d\r\n\r\n" % len(body) + body
+    with connected(open_service) as there:
+        there.sendall(post + LIVE[:20])
+        time.sleep(0.2)
+        there.sendall(LIVE[20:] + b"Connection: close\r\n\r\n")
+        content = b""
+        while part := there.recv(65_536):
+            content += part
+    assert content.count(b"HTTP/1.1 ") == 2
+    assert content.endswith(b'{"status":"live"}')
+
+
+def test_a_request_that_never_ends_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(connections, "HEAD_SECONDS", 0.3)
+    monkeypatch.setattr(connections, "BODY_SECONDS", 0.5)
+    post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1"
+    with Store(tmp_path / "store.db") as store, client_of(store) as client:
+        with connected(client) as silent, connected(client) as half, connected(client) as slow:
+            half.sendall(LIVE)
+            slow.sendall(post)
+            assert silent.recv(100) == b""
+            assert answer(half)[0] == 408
+            status, document = answer(slow)
+        assert (status, document["detail"]) == (
+            408,
+            "the body must be there within 0.5 s; not all came; send less, or over a faster connection",
+        )
+        time.sleep(0.6)  # a connection at rest after an answer is kept
+        assert client.get("/health/live").status_code == 200
+    assert "nothing was asked within 0.3 s" in caplog.text
+
+
+def test_half_open_connections_keep_nobody_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
+    with Store(tmp_path / "store.db") as store, client_of(store) as client, contextlib.ExitStack() as stack:
+        assert client.get("/health/live").status_code == 200
+        for number in range(100):
+            there = stack.enter_context(connected(client))
+            there.sendall(LIVE[: number % len(LIVE)])
+            if number % 10 == 0:
+                begin = time.monotonic()
+                assert client.get("/health/live").status_code == 200
+                assert time.monotonic() - begin < 1.0
+        kept = client.get("/health/live")
+        assert kept.status_code == 200
+    assert "closed at rest, to make room: more than 20" in caplog.text
+
+
+def test_where_all_connections_are_being_answered_a_new_one_is_told_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    stream = b"GET /api/v1/jobs/1/events HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n"
+    with Store(tmp_path / "store.db") as store, client_of(store) as client, contextlib.ExitStack() as stack:
+        add(store)
+        for _ in range(3):
+            there = stack.enter_context(connected(client))
+            there.sendall(stream)
+            assert there.recv(12) == b"HTTP/1.1 200"
+        with connected(client) as late:
+            status, document = answer(late)
+        assert status == 503
+        assert "at most 3 connections" in str(document["detail"])
