@@ -123,6 +123,7 @@ class Connection(HttpToolsProtocol):
         self.since = self.loop.time()
         self._gate = gate
         self._part: Literal["rest", "head", "body"] = "rest"  # what is coming
+        self._answering = 0  # requests that wait for their answers
         self._size, self._fresh = 0, False  # bytes of the head in earlier pieces; whether it began in this one
         self._deadline: asyncio.TimerHandle | None = None
         self._fault: tuple[HTTPStatus, str] | None = None
@@ -130,7 +131,7 @@ class Connection(HttpToolsProtocol):
     @property
     def waits(self) -> bool:
         """Whether nothing is being answered on it."""
-        return self.cycle is None or self.cycle.response_complete
+        return self._answering == 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent
         """Begin, unless there are too many."""
@@ -169,6 +170,7 @@ class Connection(HttpToolsProtocol):
             raise ValueError(self._fault[1])  # the parser ends the request with `send_400_response`
         self._part = "body"
         self._wait(BODY_SECONDS)
+        self._answering += 1
         super().on_headers_complete()
 
     def on_message_complete(self) -> None:
@@ -181,6 +183,7 @@ class Connection(HttpToolsProtocol):
     def on_response_complete(self) -> None:
         """Note that it was answered."""
         self.since = self.loop.time()
+        self._answering -= 1
         super().on_response_complete()
 
     def send_400_response(self, msg: str) -> None:

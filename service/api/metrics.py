@@ -11,7 +11,7 @@ from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from ..store import LEASE, State, Store
+from ..store import State, Store
 
 _BOUNDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
 
@@ -53,8 +53,8 @@ class Metrics(Collector):
 
 
 def live_workers(store: Store) -> int:
-    """Return how many workers were heard of within a lease."""
-    return sum(worker.silent <= LEASE for worker in store.workers())
+    """Return how many workers were heard of lately."""
+    return sum(worker.at_work for worker in store.workers())
 
 
 class Timed:

@@ -36,7 +36,8 @@ class Guard:
 
     Refused are, in this order: a Host that is not one of the service's names, as after DNS rebinding; an Origin that is
     not the service itself, to the port, since cookies do not tell ports apart; a token that is wrong or missing. The
-    token comes as `Authorization: Bearer ...`, or in the cookie that `GET /?token=...` sets.
+    token comes as `Authorization: Bearer ...`; in its place a browser has the cookie that `GET /?token=...` sets, which
+    holds a value made of the token and not the token itself.
     """
 
     def __init__(self, app: ASGIApp, *, settings: Settings) -> None:
@@ -45,7 +46,8 @@ class Guard:
         self.hosts = frozenset(host.lower() for host in settings.hosts)
         self.token = None if settings.token is None else settings.token.encode()
         # Cookies are shared by all ports of a machine: two services must not take each other's for their own.
-        self.cookie = f"slidercrank-{hashlib.sha256(self.token or b'').hexdigest()[:12]}"
+        self.cookie = f"slidercrank-{_made_of(self.token or b'', 'name')[:12]}"
+        self.session = _made_of(self.token or b"", "session")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on."""
@@ -119,18 +121,25 @@ class Guard:
             )
         response = RedirectResponse("/", HTTPStatus.SEE_OTHER)
         secure = scope.get("scheme") == "https"
-        response.set_cookie(self.cookie, given[0], httponly=True, samesite="strict", secure=secure, path="/")
+        response.set_cookie(self.cookie, self.session, httponly=True, samesite="strict", secure=secure, path="/")
         return response
 
     def _knows(self, connection: HTTPConnection) -> bool:
         scheme, _, token = connection.headers.get("authorization", "").partition(" ")
         if scheme.lower() == "bearer" and self._right(token.strip()):
             return True
-        return self._right(connection.cookies.get(self.cookie, ""))
+        return hmac.compare_digest(
+            connection.cookies.get(self.cookie, "").encode(errors="replace"), self.session.encode()
+        )
 
     def _right(self, token: str) -> bool:
         """Whether it is the token, found out in a time that tells nothing about it."""
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
+
+
+def _made_of(token: bytes, purpose: str) -> str:
+    """Return a text that only who has the token can make, and from which the token cannot be had."""
+    return hmac.new(token, f"slidercrank {purpose}".encode(), hashlib.sha256).hexdigest()
 
 
 def _name(host: str) -> str:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 Grade = Literal["ok", "note", "problem"]
 _LEAST_ROOM, _LITTLE_ROOM = 200e6, 2e9  # bytes
 _CLOCKS = 2.0  # s between clocks that is worth a note
-_SILENT = 120.0  # s; a worker with the default lease is heard of every 10 s
 _REMEDY = "; stop the service and restore a backup, see docs/service.md"
 _PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
 _OPTIONAL = ("psycopg", "distributed", "pyarrow")
@@ -37,10 +36,13 @@ class Check:
     text: str
 
 
-def diagnose(address: str, runs: Path) -> list[Check]:
-    """Look at a store, given by its address, at the place of runs and at this machine; no job is changed."""
+def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
+    """Look at a store, given by its address, at the place of runs and at this machine; no job is changed.
+
+    named: whether somebody says that there is a store at the address; it may be missing otherwise.
+    """
     return [
-        *_store(address),
+        *_store(address, named),
         _writable("runs", runs),
         *([] if "://" in address else [_room("disk of the store", Path(address).parent)]),
         _room("disk of runs", runs),
@@ -49,18 +51,32 @@ def diagnose(address: str, runs: Path) -> list[Check]:
     ]
 
 
-def _store(address: str) -> Iterator[Check]:
+def _store(address: str, named: bool) -> Iterator[Check]:
     from ..store.database import Database
 
     if "://" not in address and not Path(address).exists():
-        yield Check(name="store", grade="ok", text=f"there is none at {address} yet; the first job makes it")
+        left = [name for end in ("-wal", "-shm") if Path(name := f"{address}{end}").exists()]
+        if named or left:
+            why = f"{left[0]} is left of one that was deleted" if left else "the first job makes a new one"
+            text = f"there is none at {address}: {why}; put it back, or restore a backup, see docs/service.md"
+            yield Check(name="store", grade="problem", text=text)
+        else:
+            yield Check(name="store", grade="ok", text=f"there is none at {address} yet; the first job makes it")
         yield _writable("place of the store", Path(address).parent)
         return
     try:
         with contextlib.closing(Database(address)) as database:
+            yield from _private(address)
             yield from _database(address, database)
     except SlidercrankError as error:
         yield Check(name="store", grade="problem", text=str(error))
+
+
+def _private(address: str) -> Iterator[Check]:
+    """Look at who may read a store that is a file: it has all that the token of a service protects."""
+    if "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
+        text = f"others of this machine may read or write {address} (mode {mode:03o} for them); chmod 600 {address}"
+        yield Check(name="permissions", grade="note", text=text)
 
 
 def _database(address: str, database: Database) -> Iterator[Check]:
@@ -91,18 +107,19 @@ def _database(address: str, database: Database) -> Iterator[Check]:
 def _at_work(address: str, now: float) -> Iterator[Check]:
     """Look at jobs and workers. now: on the clock of the store."""
     from ..store import Store
+    from ..store.records import SILENT
 
     with Store(address) as store:
         counts, workers = store.counts(), store.workers()
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
-    heard = [worker for worker in workers if worker.silent <= _SILENT]
+    heard = [worker for worker in workers if worker.at_work]
     text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
     yield Check(name="jobs", grade="ok", text=text)
     text = f"{len(heard)} at work"
     silent = len(workers) - len(heard)
     if silent:
-        text += f"; {silent} not heard of for more than {_SILENT:g} s: stopped, or cut off"
+        text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
     waiting = counts.get("queued", 0) + len(expired)
     if waiting and not heard:
         text += f"; {waiting} jobs wait for one; start slidercrank serve or slidercrank worker"

@@ -12,9 +12,10 @@ from ...model.errors import NotFound
 from ..runs.run_folder import runs_place
 from .optimise import Json, Runs
 from .screen import console, give, say
-from .stores import Address, has_store, store_address
+from .stores import Address, has_store, is_named, store_address
 
-UNHEALTHY = 2
+UNHEALTHY = 1
+"""Exit code where something is not in order; 2 is for wrong input."""
 
 
 def doctor(
@@ -26,7 +27,7 @@ def doctor(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Look whether store, workers, disks and software are in order; exit code 2 if anything is not.
+    """Look whether store, workers, disks and software are in order; exit code 1 if anything is not.
 
     Looked at are: the database and its tables, whether anything in it is damaged, its clock, jobs that wait without a
     worker, places to write, free disk, versions. No job is changed.
@@ -37,7 +38,7 @@ def doctor(
     address = store_address(store, runs)
     if backup is not None:
         _back_up(store, runs, backup)
-    checks = diagnose(address, runs_place(runs))
+    checks = diagnose(address, runs_place(runs), named=is_named(store))
     healthy = all(check.grade != "problem" for check in checks)
     if json:
         found = [{"name": check.name, "grade": check.grade, "text": check.text} for check in checks]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,13 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...model.errors import InputError
+from ...model.errors import InputError, StoreError
 from ..runs.result import Result, json_text, result_of
 from ..runs.run_folder import RunFolder, disk, runs_place
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
 from .interruption import Interruption
 from .screen import console, give, progress_bar, say, waiting
-from .stores import Address, open_store
+from .stores import FILE, Address, open_store
 from .tables import show_design, show_front
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def optimise(
     The run is in the store too, where `jobs` and the service see it.
     """
     from ..runs.own_run import told
+    from ..store.database import without_secrets
     from ..workers.pulse import Pulse
     from ..workers.worker import versions_file
 
@@ -70,9 +72,10 @@ def optimise(
         raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
     options = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key)
     with contextlib.ExitStack() as opened:
+        listed = True
         if job is not None:
             problem, tables = _problem(job, designs, seed)
-            jobs = opened.enter_context(open_store(store, runs))
+            jobs, listed = opened.enter_context(_store_or_own(store, runs))
             begin = _new(job, jobs, problem, tables, runs_place(runs))
         else:
             jobs = opened.enter_context(open_store(store, runs))
@@ -81,8 +84,8 @@ def optimise(
         run, problem, claim = opened.enter_context(begin)
         opened.enter_context(told(claim))
         opened.enter_context(Pulse(claim))
-        run.log(f"command: {' '.join(sys.argv[1:])}")
-        run.log(f"job {claim.job.id} of the store {jobs.name}")
+        run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
+        run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
         engine = opened.enter_context(engine_of(options))
         front = _solve(problem, run, interruption, claim, engine)
         result = result_of(front, str(run.path))
@@ -98,9 +101,29 @@ def optimise(
             say(f"slidercrank: {result.message}")
     else:
         show_result(result)
-    if result.status == "cancelled":
+    if result.status == "cancelled" and listed:
         say(f"go on with: slidercrank optimise --resume {run.path.name}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
+
+
+@contextlib.contextmanager
+def _store_or_own(option: str | None, runs: Path | None) -> Iterator[tuple[Store, bool]]:
+    """Give the store, or where it cannot be used one that lasts as long as the run; and whether it is the first."""
+    from ..store import Store
+
+    with contextlib.ExitStack() as opened:
+        try:
+            store = opened.enter_context(open_store(option, runs))
+            store.require_writable()
+            listed = True
+        except StoreError as error:
+            say(
+                f"slidercrank: {error}\n"
+                "the run begins without the store: jobs does not list it, and once stopped it cannot go on"
+            )
+            own = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
+            store, listed = opened.enter_context(Store(Path(own) / FILE)), False
+        yield store, listed
 
 
 @contextlib.contextmanager

@@ -11,7 +11,7 @@ from ...model.errors import InputError
 from .job_names import Name, find_job, store_that_is_there
 from .optimise import Json
 from .screen import console, give, say
-from .stores import Address, has_store, store_address
+from .stores import Address, has_store, store_address, tell_idle
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -43,6 +43,8 @@ def jobs(
         with store_that_is_there(store) as opened:
             states: list[State] = state or []  # type: ignore[assignment] # looked at above
             found = opened.jobs(states=states, name=name, limit=limit)
+            if any(job.state == "queued" for job in found):
+                tell_idle(opened)
     if json:
         give(json_text([job_record(job) for job in found]))
     elif found:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..runs.run_folder import disk, runs_place
+from .screen import say
 
 if TYPE_CHECKING:
     from ..store import Store
@@ -32,6 +33,11 @@ def store_address(option: str | None, runs: Path | None = None) -> str:
     return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
 
 
+def is_named(option: str | None) -> bool:
+    """Whether somebody says where the store is; else it is in its usual place."""
+    return bool(option or os.environ.get(STORE_VARIABLE))
+
+
 def open_store(option: str | None, runs: Path | None = None) -> Store:
     """Open the store, and create it where it is a file that is not there yet.
 
@@ -42,7 +48,7 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
     address = store_address(option, runs)
     if "://" not in address:
         with disk(Path(address).parent):
-            Path(address).parent.mkdir(parents=True, exist_ok=True)
+            Path(address).parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     return Store(address)
 
 
@@ -50,3 +56,9 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
     """Whether there is a store to look into, without making one."""
     address = store_address(option, runs)
     return "://" in address or Path(address).is_file()
+
+
+def tell_idle(store: Store) -> None:
+    """Say that jobs wait if no worker is there to solve them."""
+    if not any(worker.at_work for worker in store.workers()):
+        say("slidercrank: no worker is at work, so jobs wait; start one with: slidercrank serve")

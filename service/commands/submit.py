@@ -15,7 +15,7 @@ from ..workers.sizes import size_of
 from .job_names import Name, find_job, store_that_is_there
 from .optimise import EXIT_CODES, Json
 from .screen import console, give, progress_bar, say
-from .stores import Address, open_store
+from .stores import Address, open_store, tell_idle
 
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
@@ -69,6 +69,8 @@ def submit(
         )
         if not (watch and json):
             give(json_text(job_record(queued)) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
+        if queued.state == "queued":
+            tell_idle(opened)
         if watch:
             raise typer.Exit(_follow(opened, queued, json=json))
 
@@ -79,7 +81,10 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
     The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C leaves the job alone.
     """
     with store_that_is_there(store) as opened:
-        raise typer.Exit(_follow(opened, find_job(opened, job), json=json))
+        found = find_job(opened, job)
+        if found.state == "queued":
+            tell_idle(opened)
+        raise typer.Exit(_follow(opened, found, json=json))
 
 
 def _source(job: Path) -> Artefact | None:

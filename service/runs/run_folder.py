@@ -62,10 +62,10 @@ class RunFolder:
         """Create the folder in `place`, named by time and job name; unique even among runs of the same second."""
         self.started = time.strftime("%Y-%m-%d %H:%M:%S")
         with disk(place):
-            place.mkdir(parents=True, exist_ok=True)
+            place.mkdir(mode=0o700, parents=True, exist_ok=True)
             # Prepared out of sight, then renamed: nobody sees the folder without its mark.
             hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
-            hidden.mkdir()
+            hidden.mkdir(mode=0o700)  # its log has what was typed
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run still goes on, or was interrupted.\n")
                 self.path = _rename(hidden, place / run_name(name))

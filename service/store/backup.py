@@ -30,6 +30,7 @@ def back_up(database: Database, target: Path) -> None:
         raise InputError(f"a backup is a new file; {target} is there already; name another one, or move it away")
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
+        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all that the store has
         with (
             contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as there,
             contextlib.closing(sqlite3.connect(draft)) as copy,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import os
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -25,6 +26,9 @@ _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
 _SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
 _IDLE = 0.1  # s after which a connection has to prove that it is alive: no server restarts sooner
+_OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
+_HIDDEN = "***"
+"""In place of a password, and of options of an address other than the open ones: any may be a secret."""
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
@@ -46,8 +50,10 @@ class Database:
         Raises `InputError` for an address of another kind, `StoreError` where nothing can be opened.
         """
         url = _url(address)
-        self.name = url.render_as_string(hide_password=True)
+        self.name = _shown(url)
+        self._secrets = _secrets(url)
         self.sqlite = url.get_backend_name() == "sqlite"
+        self._file = _File(url.database) if self.sqlite and url.database else None
         self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite:
@@ -60,14 +66,24 @@ class Database:
     @contextlib.contextmanager
     def reading(self) -> Iterator[Connection]:
         """Enter a transaction that sees one state of the database and keeps no writer waiting."""
+        self._require_file()
         with self._told(), self._reader.begin() as connection:
             yield connection
 
     @contextlib.contextmanager
     def writing(self) -> Iterator[Connection]:
         """Enter a transaction that writes; committed at the end, taken back as a whole after an error."""
+        self._require_file()
         with self._told(), self.engine.begin() as connection:
             yield connection
+
+    def _require_file(self) -> None:
+        """Raise `StoreError` if the file was deleted or replaced: what is written into it now would be lost."""
+        if self._file is not None and not self._file.there():
+            raise StoreError(
+                f"the file of a store stays where it is while it is used; {self.name} was deleted, moved or replaced; "
+                "put it back, or stop what uses it and start again"
+            )
 
     @contextlib.contextmanager
     def _told(self) -> Iterator[None]:
@@ -77,8 +93,14 @@ class Database:
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
-                f"{_reason(error)}; see that it runs, that the disk has room and that you may write there"
+                f"{self._without_secrets(_reason(error))}; see that it runs, that the disk has room and that you may "
+                "write there"
             ) from error
+
+    def _without_secrets(self, text: str) -> str:
+        for secret in self._secrets:
+            text = text.replace(secret, _HIDDEN)
+        return text
 
     def _use_write_ahead_log(self) -> None:
         """Switch SQLite's log to WAL, which stays with the file; several processes may try at the same moment."""
@@ -98,6 +120,52 @@ class Database:
                 f"the file of a store must allow SQLite's write-ahead log; {self.name} has the log {mode}; "
                 "put it on a local disk"
             )
+
+
+class _File:
+    """The file of a store: made for its owner's eyes alone if it is new, and known again by its number."""
+
+    def __init__(self, path: str) -> None:
+        """Make it where it is not there; where that cannot be, opening it says why."""
+        self._path = Path(path)
+        with contextlib.suppress(OSError):
+            # The files beside it, of the write-ahead log, get its permissions.
+            os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
+        self._known = self._number()
+
+    def there(self) -> bool:
+        """Whether it is the same file still."""
+        return self._number() == self._known
+
+    def _number(self) -> tuple[int, int] | None:
+        try:
+            found = self._path.stat()
+        except OSError:
+            return None
+        return found.st_dev, found.st_ino
+
+
+def without_secrets(text: str) -> str:
+    """Return a word of a command line as it may be shown: an address, also after `--option=`, without its secrets."""
+    option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
+    if "://" not in value:
+        return text
+    try:
+        return option + equals + _shown(make_url(value))
+    except (ArgumentError, ValueError):
+        return f"{option}{equals}{value.partition('://')[0]}://{_HIDDEN}"
+
+
+def _shown(url: URL) -> str:
+    hidden = {name: value if name in _OPEN else _HIDDEN for name, value in url.query.items()}
+    return url.set(query=hidden).render_as_string(hide_password=True)
+
+
+def _secrets(url: URL) -> list[str]:
+    """Return what an address has that is not shown, the longest first."""
+    values = [value for name, value in url.query.items() if name not in _OPEN]
+    each = [url.password, *(one for value in values for one in ([value] if isinstance(value, str) else value))]
+    return sorted({str(one) for one in each if one}, key=len, reverse=True)
 
 
 def _url(address: str | PathLike[str]) -> URL:

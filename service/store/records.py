@@ -103,6 +103,10 @@ class Artefact:
     content: bytes
 
 
+SILENT = 120.0
+"""s; a worker with the default lease is heard of every 10 s."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Worker:
     """Who solves jobs. started, seen: when it began, and when it was heard of last. silent: seconds since then."""
@@ -111,6 +115,11 @@ class Worker:
     started: float
     seen: float
     silent: float
+
+    @property
+    def at_work(self) -> bool:
+        """Whether it was heard of lately."""
+        return self.silent <= SILENT
 
 
 def job_of(row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:

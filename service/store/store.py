@@ -57,6 +57,11 @@ class Store:
         """Close all connections."""
         self._database.close()
 
+    def require_writable(self) -> None:
+        """Raise `StoreError` where jobs cannot be put in."""
+        with self._database.writing() as connection:
+            take_turns(connection)
+
     def __enter__(self) -> Store:
         return self
 

@@ -1,13 +1,17 @@
 """Files that are no job files: refused before they are parsed, with the file's name and the reason."""
 
+import contextlib
 import json
 import os
+import time
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.optimise.job import load_job
+from slidercrank.optimise.job import load_job, parse_job
+from slidercrank.optimise.job.file import toml_tables
 
 
 def refusal(path: Path) -> str:
@@ -108,3 +112,44 @@ def test_a_job_file_full_of_unknown_keys_is_refused(tmp_path: Path) -> None:
     file.write_text(json.dumps({f"k{n}": n for n in range(60_000)}), encoding="utf-8")
     with pytest.raises(JobError, match="unknown key"):
         load_job(file)
+
+
+LONG_KEYS = {
+    "one key of 60,000 words": "a." * 60_000 + "a = 1",
+    "quoted words": "".join(("q" * 99 + ".") * 31 + "=1\n" for _ in range(300)),
+    "spaces and quotes": "a . 'b' .\t\"c\" . d.e.f.g.h.i = 1",
+    "in a header": "[a.b.c.d.e.f.g.h.i]",
+    "in an inline table": "x = { y = 1, a.b.c.d.e.f.g.h.i = 1 }",
+    "after texts": 'x = """a.b\n\\""" """\ny = \'\'\'"\'\'\'\nz = "\\"" # "\na.b.c.d.e.f.g.h.i = 1',
+}
+
+
+@pytest.mark.parametrize("text", LONG_KEYS.values(), ids=LONG_KEYS)
+def test_a_key_of_too_many_words_is_refused_at_once(text: str) -> None:
+    begin = time.process_time()
+    with pytest.raises(JobError, match="nest at most 8 deep"):
+        toml_tables(text)
+    assert time.process_time() - begin < 1.0  # over 60 s and 10 GB where tomllib reads the first
+
+
+def test_dots_that_are_no_keys_are_left_alone() -> None:
+    text = 'a.b.c.d.e.f.g.h = "a.b.c.d.e.f.g.h.i.j"\n# a.b.c.d.e.f.g.h.i.j\n'
+    text += "x = \"\"\"\na.b.c.d.e.f.g.h.i.j\n\"\"\"\ny = '''\na.b.c.d.e.f.g.h.i.j'''\nz = [0.1, 0.2, 0.3, .5]\n"
+    assert toml_tables(text.replace(", .5", ""))["a"]["b"]["c"]["d"]["e"]["f"]["g"]["h"] == "a.b.c.d.e.f.g.h.i.j"
+
+
+def test_long_texts_that_never_close_take_no_longer_than_others() -> None:
+    for part in ('"""\\', "'''a", '"', "a.b.c.d.e.f.g ", "\\", "#", "a" + " " * 500):
+        begin = time.process_time()
+        with contextlib.suppress(JobError):
+            toml_tables(part * (1_000_000 // len(part)))
+        assert time.process_time() - begin < 2.0, part
+
+
+def test_a_dotted_path_of_too_many_words_is_refused(pytestconfig: pytest.Config) -> None:
+    data = {
+        **tomllib.loads((pytestconfig.rootpath / "runs" / "feeder.toml").read_text()),
+        "variables": {"mechanism." * 10_000 + "a": ["1 mm", "2 mm"]},
+    }
+    with pytest.raises(JobError, match="a path has at most 8 words"):
+        parse_job(data)

@@ -61,7 +61,7 @@ def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Comm
     with Store(file) as store:
         add(store)
     code, found = looked_at(command)
-    assert (code, found["workers"][0]) == (2, "problem")
+    assert (code, found["workers"][0]) == (1, "problem")
     assert "1 jobs wait for one; start slidercrank serve or slidercrank worker" in found["workers"][1]
 
 
@@ -85,7 +85,7 @@ def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) 
 def test_what_is_no_database_is_a_problem(file: Path, command: Command) -> None:
     file.write_text("no database")
     code, found = looked_at(command)
-    assert (code, found["store"][0]) == (2, "problem")
+    assert (code, found["store"][0]) == (1, "problem")
     assert "file is not a database" in found["store"][1]
 
 
@@ -95,7 +95,7 @@ def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, 
         connection.execute("UPDATE alembic_version SET version_num = '9999'")
     connection.close()
     code, found = looked_at(command)
-    assert (code, found["tables"][0]) == (2, "problem")
+    assert (code, found["tables"][0]) == (1, "problem")
     assert "they have version 9999, this software knows" in found["tables"][1]
     with sqlite3.connect(file) as connection:
         assert connection.execute("SELECT version_num FROM alembic_version").fetchall() == [("9999",)]
@@ -113,12 +113,12 @@ def test_a_database_without_tables_is_noted_and_gets_none(file: Path, command: C
 
 def test_a_server_that_is_away_is_a_problem(command: Command) -> None:
     code, found = looked_at(command, "--store", "postgresql://nobody:secret@/none?host=/no/such/place")
-    assert (code, found["store"][0]) == (2, "problem")
+    assert (code, found["store"][0]) == (1, "problem")
     assert "must be a database that can be reached" in found["store"][1]
     assert "secret" not in found["store"][1]
 
 
-@pytest.mark.parametrize(("free", "grade", "code"), [(1e6, "problem", 2), (1e9, "note", 0), (1e10, "ok", 0)])
+@pytest.mark.parametrize(("free", "grade", "code"), [(1e6, "problem", 1), (1e9, "note", 0), (1e10, "ok", 0)])
 def test_a_full_disk_is_a_problem(
     free: float, grade: str, code: int, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -130,7 +130,7 @@ def test_a_full_disk_is_a_problem(
 
 def test_a_place_that_cannot_be_written_is_a_problem(command: Command) -> None:
     code, found = looked_at(command, "--runs", "/proc/none")
-    assert (code, found["runs"][0]) == (2, "problem")
+    assert (code, found["runs"][0]) == (1, "problem")
     assert "/proc/none cannot be written" in found["runs"][1]
 
 
@@ -139,7 +139,7 @@ def test_a_model_that_would_be_compiled_anew_every_time_is_a_problem(
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/proc/none")
     code, found = looked_at(command)
-    assert (code, found["compiled model"][0]) == (2, "problem")
+    assert (code, found["compiled model"][0]) == (1, "problem")
 
 
 def test_a_backup_is_made_and_checked_in_one_go(file: Path, tmp_path: Path, command: Command) -> None:
@@ -158,3 +158,27 @@ def test_without_a_store_there_is_no_backup(command: Command, tmp_path: Path) ->
     assert (done.exit_code, done.stdout) == (2, "")
     assert "there is no store at" in done.stderr
     assert not (tmp_path / "backup.db").exists()
+
+
+def test_a_store_that_was_deleted_is_a_problem(file: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Store(file) as store:
+        add(store)
+        file.unlink()
+        code, found = looked_at(command)
+        assert (code, found["store"][0]) == (1, "problem")
+        assert "is left of one that was deleted" in found["store"][1]
+    for left in file.parent.iterdir():
+        left.unlink()
+    assert looked_at(command)[0] == 0
+    assert looked_at(command, "--store", file)[0] == 1, "somebody says that there is one"
+    monkeypatch.setenv("SLIDERCRANK_STORE", str(file))
+    assert looked_at(command)[0] == 1
+
+
+def test_a_store_that_others_may_read_is_noted(file: Path, command: Command) -> None:
+    Store(file).close()
+    assert "permissions" not in looked_at(command)[1]
+    file.chmod(0o644)
+    code, found = looked_at(command)
+    assert (code, found["permissions"][0]) == (0, "note")
+    assert f"chmod 600 {file}" in found["permissions"][1]

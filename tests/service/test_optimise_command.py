@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -218,3 +219,21 @@ def test_the_table_marks_the_extremes_and_the_knee(
     header = " ".join(lines[2:8])
     assert all(word in header for word in ("crank", "mm", "peak", "torque", "N m", "deg"))
     assert len(lines[at + 1 : lines.index("", at)]) == len(front.trade_offs(front.knee()))
+
+
+def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
+    job: Path, runs: Path, command: Command, tmp_path: Path
+) -> None:
+    foreign = tmp_path / "foreign.db"
+    foreign.write_bytes(b"no database" * 1000)
+    for store in (foreign, "postgresql://clerk:geheim@127.0.0.1:1/jobs"):
+        done = command("optimise", job, "--no-figures", "--designs", 3, "--store", store)
+        assert done.exit_code == 0, done.stderr
+        assert "the run begins without the store: jobs does not list it" in done.stderr
+        (run,) = (path for path in runs.iterdir() if path.is_dir())
+        assert (run / "front.csv").exists()
+        assert "geheim" not in (run / "log.txt").read_text() + done.stderr
+        assert run.stat().st_mode & 0o777 == 0o700
+        shutil.rmtree(run)
+    assert foreign.read_bytes() == b"no database" * 1000
+    assert command("optimise", job, "--store", "mysql://clerk@host/x").exit_code == 2

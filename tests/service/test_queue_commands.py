@@ -279,3 +279,18 @@ def test_watching_waits_for_a_database_that_is_away(
     monkeypatch.setattr("slidercrank.service.commands.submit._AWAY", 0.0)
     assert [event.number for event in events_until_end(store, 1)] == [1, 2]
     assert capsys.readouterr().err == "slidercrank: the server restarts; trying again\n"
+
+
+def test_jobs_that_wait_for_a_worker_are_told_of(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle = "no worker is at work, so jobs wait; start one with: slidercrank serve"
+    assert idle in command("submit", job).stderr
+    assert idle in command("jobs").stderr
+    assert json.loads(command("jobs", "--json").stdout)[0]["state"] == "queued"
+    threading.Timer(0.5, lambda: store.cancel(1)).start()
+    assert idle in command("watch", "latest").stderr
+    assert idle not in command("jobs").stderr, "nothing waits"
+    store.greet("one")
+    assert idle not in command("submit", job).stderr
+    assert idle not in command("jobs").stderr

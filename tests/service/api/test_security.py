@@ -77,6 +77,9 @@ def test_the_printed_address_lets_a_browser_in_and_hides_the_token(guarded: http
     cookie = response.headers["set-cookie"]
     assert "HttpOnly" in cookie
     assert "SameSite=strict" in cookie
+    assert TOKEN not in cookie
+    session = guarded.cookies[cookie.partition("=")[0]]
+    refused(httpx.get(f"{guarded.base_url}jobs", headers={"Authorization": f"Bearer {session}"}), 401)
     assert guarded.get("/jobs").status_code == 200  # by the cookie that the client has now
     assert guarded.get(root(guarded)).status_code == 200
 
@@ -146,6 +149,32 @@ def test_what_goes_wrong_unexpectedly_is_logged_and_not_shown(
     assert response.headers["x-content-type-options"] == "nosniff"
 
 
+def test_a_store_deleted_or_replaced_while_it_is_served_is_noticed_at_once(
+    client: httpx.Client, store: Store, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert client.post("/jobs", json={"job": EXAMPLE}).status_code == 201
+    file = tmp_path / "store.db"
+    away = file.rename(tmp_path / "away.db")
+    assert "was deleted, moved or replaced" in refused(client.get("/health/ready"), 503)
+    refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
+    assert not file.exists(), "no empty one is made in its place"
+    assert "was deleted, moved or replaced" in caplog.text
+    Store(file).close()
+    refused(client.get("/jobs"), 503)
+    away.rename(file)
+    assert len(client.get("/jobs").json()["jobs"]) == 1
+
+
+def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:
+    for allowed in ((), ("own:jerk",)):
+        client = serve(allowed_quantities=frozenset(allowed))
+        functions: list[object] = [["os:system"], {"os": 1}, None, 1, True, {}, [[]]]
+        for function in functions:
+            job = {**EXAMPLE, "quantity": {"x": {"function": function}}}
+            for path in ("/jobs", "/check"):
+                assert "only functions that the operator allows" in refused(client.post(path, json={"job": job}), 422)
+
+
 def test_a_database_that_is_gone_is_told_with_when_to_come_again(
     client: httpx.Client, store: Store, tmp_path: Path
 ) -> None:
@@ -154,7 +183,7 @@ def test_a_database_that_is_gone_is_told_with_when_to_come_again(
         file.unlink()
     for path in ("/jobs", "/jobs/1", "/health/ready", "/metrics"):
         response = client.get(path)
-        assert "the store must be a database that can be reached" in refused(response, 503)
+        assert "was deleted, moved or replaced" in refused(response, 503)
         assert int(response.headers["retry-after"]) > 0
     assert client.get("/health/live").status_code == 200
 

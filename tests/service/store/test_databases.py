@@ -16,8 +16,9 @@ from sqlalchemy import Connection, text
 
 from slidercrank.model.errors import InputError, LeaseLost, StoreError
 from slidercrank.service.store import Artefact, Store
+from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.claiming import claim_next
-from slidercrank.service.store.database import Database, Unavailable
+from slidercrank.service.store.database import Database, Unavailable, without_secrets
 from slidercrank.service.store.schema import metadata
 from tests.service.store.contents import add, end_lease, everything, progress, result, search_record
 from tests.service.store.postgresql import Cluster
@@ -253,3 +254,48 @@ def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
         assert store.job(job.id).state == "done"
         rounds: list[Any] = [event.data["round"] for event in store.events(job.id) if event.kind == "progress"]
         assert rounds == [1, 2, 3]
+
+
+ADDRESS = "postgresql://clerk:geheim@127.0.0.1:1/jobs?password=verraten&sslpassword=auch&host=127.0.0.1&options=-ca%3Db"
+
+
+def test_nothing_secret_of_an_address_is_shown() -> None:
+    with contextlib.closing(Database(ADDRESS)) as database:
+        with pytest.raises(StoreError) as refused, database.reading():
+            pass
+        shown = f"{database.name} {refused.value} {without_secrets(ADDRESS)} {without_secrets('--store=' + ADDRESS)}"
+    for secret in ("geheim", "verraten", "auch", "-ca"):
+        assert secret not in shown
+    assert "clerk:***@127.0.0.1:1/jobs?" in shown
+    assert "host=127.0.0.1" in shown
+
+
+@pytest.mark.parametrize("text", ["runs/store.db", "--designs=3", "", "--store=a=b"])
+def test_what_is_no_address_is_shown_as_it_is(text: str) -> None:
+    assert without_secrets(text) == text
+
+
+def test_an_address_that_cannot_be_read_is_not_shown() -> None:
+    assert without_secrets("mysql://a:secret@host:port/x") == "mysql://***"
+    assert "secret" not in without_secrets("http://a:secret@host/x?b=secret")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="permissions as in POSIX")
+def test_a_new_store_and_its_copy_are_for_the_eyes_of_their_owner(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    with Store(file) as store:
+        add(store)
+        files = sorted(tmp_path.iterdir())
+        assert [path.name for path in files] == ["store.db", "store.db-shm", "store.db-wal"]
+        assert [path.stat().st_mode & 0o777 for path in files] == [0o600] * 3
+    with contextlib.closing(Database(file)) as database:
+        back_up(database, tmp_path / "copy.db")
+    assert (tmp_path / "copy.db").stat().st_mode & 0o777 == 0o600
+
+
+def test_a_store_that_is_there_keeps_its_permissions(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    Store(file).close()
+    file.chmod(0o660)
+    Store(file).close()
+    assert file.stat().st_mode & 0o777 == 0o660
