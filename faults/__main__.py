@@ -15,6 +15,7 @@ from typing import Annotated, Literal
 import typer
 
 from .commits import commits
+from .flood import flood
 from .full import full
 from .kills import kills
 from .pauses import pauses
@@ -42,6 +43,7 @@ def _all(context: typer.Context) -> None:
         lambda: _commits("sqlite"),
         lambda: _commits("postgresql"),
         _dask,
+        _flood,
     ]
     failed = False
     for run in everything:
@@ -95,6 +97,18 @@ def _dask(
     struck = strike(workers, schedulers, seed)
     print(f"dask, {time.monotonic() - begin:.0f} s: {struck.line()}", flush=True)
     if struck.violations or struck.lost or struck.doubled:
+        raise typer.Exit(1)
+
+
+@app.command("flood")
+def _flood(count: Annotated[int, typer.Option(help="How many of each kind.")] = 5, seed: Seed = 1) -> None:
+    """Send an API endless bodies, addresses and headers, and hold half-open connections."""
+    begin = time.monotonic()
+    flooded = flood(count, seed)
+    print(f"flood, {time.monotonic() - begin:.0f} s: {flooded.line()}", flush=True)
+    for violation in flooded.violations:
+        print(f"  {violation}")
+    if flooded.violations:
         raise typer.Exit(1)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import socket
 import subprocess
 import sys
@@ -17,13 +18,15 @@ TOKEN = "a-token-of-the-faults"
 
 
 class Api:
-    """A running API. url: where it is."""
+    """A running API. url, where: where it is."""
 
-    def __init__(self, address: str) -> None:
-        """Start it on a store."""
+    def __init__(self, address: str, files: int | None = None) -> None:
+        """Start it on a store. files: how many it may open."""
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = free.getsockname()[1]
+        self.where = ("127.0.0.1", port)
         self.url = f"http://127.0.0.1:{port}/"
+        self._files = files
         self._command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", str(port)]
         self._command += ["--workers", "0", "--submissions-per-minute", "0"]
         self._process = self._started()
@@ -52,14 +55,19 @@ class Api:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             env={**os.environ, "SLIDERCRANK_TOKEN": TOKEN},
-            preexec_fn=die_with_parent,
+            preexec_fn=self._prepare,
         )
+
+    def _prepare(self) -> None:
+        die_with_parent()
+        if self._files is not None:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (self._files, self._files))
 
 
 @contextmanager
-def api(address: str) -> Iterator[Api]:
+def api(address: str, files: int | None = None) -> Iterator[Api]:
     """Give an API while it is needed."""
-    started = Api(address)
+    started = Api(address, files)
     try:
         yield started
     finally:

@@ -8,6 +8,7 @@ import pytest
 
 from faults.commits import commits
 from faults.dask_faults import strike
+from faults.flood import flood
 from faults.full import full
 from faults.kills import kills
 from faults.pauses import pauses
@@ -58,3 +59,9 @@ def test_killed_dask_workers_and_schedulers_lose_no_evaluation() -> None:
     assert (struck.workers, struck.schedulers) == (2, 1)
     assert struck.violations == []
     assert (struck.lost, struck.doubled) == (0, 0)
+
+
+def test_no_flood_of_requests_keeps_others_out() -> None:
+    flooded = flood(1, seed=1, patience=5.0)  # other tests run beside it
+    assert flooded.violations == []
+    assert flooded.signs > 10

@@ -162,7 +162,7 @@ def test_a_store_deleted_or_replaced_while_it_is_served_is_noticed_at_once(
     Store(file).close()
     refused(client.get("/jobs"), 503)
     away.rename(file)
-    assert len(client.get("/jobs").json()["jobs"]) == 1
+    assert client.get("/jobs/1").json()["state"] == "queued"
 
 
 def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:

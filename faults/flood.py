@@ -1,0 +1,174 @@
+"""Clients that ask too much of an API: every sign of life comes within a second, and the others are answered."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+import resource
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import httpx
+
+from .api_process import TOKEN, Api, api
+from .places import place
+
+FILES = 1024
+"""Files that the API may open, as by `ulimit -n 1024`."""
+PATIENCE = 1.0
+"""s until a sign of life."""
+_JOB = (
+    b"Host: localhost\r\nAuthorization: Bearer "
+    + TOKEN.encode()
+    + b"\r\nContent-Type: %s\r\nContent-Length: %d\r\n\r\n"
+)
+
+
+@dataclass
+class Flooded:
+    """What came of floods. slowest: of all signs of life, s. violations: what must not be, in words."""
+
+    requests: int = 0
+    signs: int = 0
+    slowest: float = 0.0
+    violations: list[str] = field(default_factory=list)
+
+    def line(self) -> str:
+        """Return the figures."""
+        return (
+            f"{self.requests} requests, {len(self.violations)} violations; "
+            f"{self.signs} signs of life, the slowest after {self.slowest:.2f} s"
+        )
+
+
+def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
+    """Send so many requests of each kind to an API of its own and watch whether it answers all the time.
+
+    patience: until a sign of life, s; more on a machine that is busy with something else.
+    """
+    flooded, random_ = Flooded(), random.Random(seed)
+    with place("sqlite") as where, _many_files(), api(where.address, FILES) as served:
+        _wait_for(served)
+        over = threading.Event()
+        watch = threading.Thread(target=_watch, args=(served, over, flooded, patience))
+        watch.start()
+        kinds = [kind for kind in (_bodies, _addresses, _headers, _slow_bodies) for _ in range(count)]
+        random_.shuffle(kinds)
+        try:
+            _half_open(served, flooded, 1100)
+            for kind in kinds:
+                kind(served, flooded)
+            _half_open(served, flooded, 1100)
+        finally:
+            over.set()
+            watch.join()
+        if not served.answers():
+            flooded.violations.append("the API does not answer after the flood")
+    return flooded
+
+
+@contextlib.contextmanager
+def _many_files() -> Iterator[None]:
+    """Let this process open as many files as it may."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (before[1], before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+def _wait_for(served: Api) -> None:
+    end = time.monotonic() + 60.0
+    while not served.answers():
+        if time.monotonic() > end:
+            raise TimeoutError("the API did not start within a minute")
+        time.sleep(0.1)
+
+
+def _watch(served: Api, over: threading.Event, flooded: Flooded, patience: float) -> None:
+    """Ask for a sign of life all the time, each on a connection of its own."""
+    while not over.wait(0.05):
+        begin = time.monotonic()
+        try:
+            fine = httpx.get(f"{served.url}api/v1/health/live", trust_env=False, timeout=10.0).is_success
+        except httpx.TransportError as error:
+            fine = False
+            flooded.violations.append(f"no sign of life: {type(error).__name__}")
+        took = time.monotonic() - begin
+        flooded.signs += 1
+        flooded.slowest = max(flooded.slowest, took)
+        if fine and took > patience:
+            flooded.violations.append(f"a sign of life took {took:.2f} s")
+
+
+def _asked(served: Api, *parts: bytes) -> int:
+    """Send bytes and return the status of what is answered; 0 where the connection is just closed."""
+    content = b""
+    with contextlib.suppress(OSError), socket.create_connection(served.where, timeout=90.0) as there:
+        for part in parts:
+            there.sendall(part)
+        there.shutdown(socket.SHUT_WR)
+        while more := there.recv(65_536):
+            content += more
+    return int(content.split(maxsplit=2)[1]) if content.startswith(b"HTTP/1.1 ") else 0
+
+
+def _refused(served: Api, flooded: Flooded, what: str, *parts: bytes) -> None:
+    status = _asked(served, *parts)
+    flooded.requests += 1
+    if not (status == 0 or 400 <= status < 500):
+        flooded.violations.append(f"{what}: answered with {status}")
+
+
+def _posted(kind: bytes, body: bytes) -> bytes:
+    return b"POST /api/v1/jobs HTTP/1.1\r\n" + _JOB % (kind, len(body)) + body
+
+
+def _bodies(served: Api, flooded: Flooded) -> None:
+    words = b"a." * 500_000
+    tables = b"".join(b"[k%d.a.b.c]\n" % number for number in range(60_000))
+    keys = b'{"job": {' + b",".join(b'"k%d": 1' % number for number in range(60_000)) + b"}}"
+    for kind, body in (
+        (b"application/toml", (b"q" * 99 + b".") * 31 + b"=1\n"),
+        (b"application/toml", words + b"a = 1"),
+        (b"application/toml", tables),
+        (b"application/toml", b'"""\\' * 250_000),
+        (b"application/json", b"[" * 1_000_000),
+        (b"application/json", keys),
+        (b"application/json", b'{"job": ' + b"9" * 1_000_000 + b"}"),
+    ):
+        whole = body * max(1, 1_000_000 // len(body)) if len(body) < 10_000 else body
+        _refused(served, flooded, "body", _posted(kind, whole))
+
+
+def _addresses(served: Api, flooded: Flooded) -> None:
+    _refused(served, flooded, "address", b"GET /", b"a" * 40_000_000, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
+
+
+def _headers(served: Api, flooded: Flooded) -> None:
+    start = b"GET /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\n"
+    _refused(served, flooded, "headers", start, b"X: " + b"a" * 20_000_000, b"\r\n\r\n")
+    _refused(served, flooded, "headers", start, b"a: b\r\n" * 1_000_000, b"\r\n")
+
+
+def _slow_bodies(served: Api, flooded: Flooded) -> None:
+    """Begin bodies that never end, and leave."""
+    for _ in range(20):
+        with contextlib.suppress(OSError), socket.create_connection(served.where, timeout=5.0) as there:
+            there.sendall(b"POST /api/v1/jobs HTTP/1.1\r\n" + _JOB % (b"application/json", 1000) + b"{")
+        flooded.requests += 1
+
+
+def _half_open(served: Api, flooded: Flooded, count: int) -> None:
+    """Hold connections that have asked nothing, or half a question, while others ask."""
+    with contextlib.ExitStack() as held:
+        for number in range(count):
+            with contextlib.suppress(OSError):
+                there = held.enter_context(socket.create_connection(served.where, timeout=5.0))
+                there.sendall(b"GET /api/v1/jobs HTTP/1.1\r\nHost:"[: number % 30])
+            flooded.requests += 1
+        time.sleep(2.0)
