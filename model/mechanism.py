@@ -87,6 +87,12 @@ class Tolerances:
         if self.crank_angle.fraction:
             raise InputError("a tolerance of the crank angle is an angle, not a share; give it in rad or deg")
 
+    @property
+    def given(self) -> bool:
+        """Whether anything may be off: without tolerance and clearance a position error is not defined."""
+        sizes = (self.crank, self.rod, self.offset, self.crank_angle)
+        return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
+
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:

@@ -13,6 +13,7 @@ from ..model.mechanism import Mechanism
 from ..model.peaks import find_peaks
 from ..model.signals import Signal
 from .motion_deviation import MotionDeviation
+from .position_error import POSITION_ERRORS
 from .quantity import Array, Quantity
 from .registry import QUANTITIES
 from .varying_column import varying_column
@@ -24,7 +25,7 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
-    rotation. Raises `AssemblyError` for a linkage that does not turn fully.
+    rotation. Position errors are NaN without tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
@@ -51,6 +52,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     for quantity in (*QUANTITIES.values(), *own):
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
+    if not mechanism.fullest.tolerances.given:
+        columns |= dict.fromkeys((error.field for error in POSITION_ERRORS), np.nan)
     for quantity in own:
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)

@@ -14,3 +14,6 @@ POSITION_ERROR_RSS = CyclePeak(
     MILLIMETRE,
     Signal.POSITION_ERROR_RSS,
 )
+
+POSITION_ERRORS = (POSITION_ERROR, POSITION_ERROR_RSS)
+"""Quantities that come from tolerances: not defined without any, though the model gives them as zero."""

@@ -16,6 +16,7 @@ from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
 from ..model.tolerance.sources import limits
 from .average_torque import MEAN_TORQUE, RMS_TORQUE
+from .position_error import POSITION_ERRORS
 from .quantity import DEGREE, MILLIMETRE, Array, Unit
 from .registry import QUANTITIES
 
@@ -61,7 +62,7 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
       quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
     - <dimension>_tolerance: first-order change for the dimension's tolerance, in the shown unit.
-    A quantity that is infinite has NaN in all. Where it has a kink (two equal peaks; no offset, for what depends on the
+    A quantity that is infinite has NaN in all; so has one that is not defined, a position error without tolerances. Where it has a kink (two equal peaks; no offset, for what depends on the
     size of the offset) the derivative is that of one side: of the peak found, towards positive offsets.
     Raises `AssemblyError` unless the linkage turns fully.
     """
@@ -72,8 +73,10 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     for quantity in QUANTITIES.values():
         found = quantity.evaluate(mechanism, design, gradients=True)
         assert found.gradients is not None
-        entry = (quantity.name, quantity.title, quantity.unit, float(found.values[0]), found.gradients[0])
-        relative = not _balances_out(quantity.name, float(found.values[0]), float(rms))
+        undefined = quantity in POSITION_ERRORS and not mechanism.tolerances.given
+        value = math.nan if undefined else float(found.values[0])
+        entry = (quantity.name, quantity.title, quantity.unit, value, found.gradients[0])
+        relative = not _balances_out(quantity.name, value, float(rms))
         rows.append(_row(*entry, design[0], tolerances, relative))
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 from ...model.errors import JobError
 from ...model.links import Bar, Link
-from ...model.mechanism import Clearances
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
@@ -106,11 +105,8 @@ def _require_causes(problem: Problem) -> None:
     wanted = [(f"objectives.{o.quantity}", o.quantity) for o in problem.objectives]
     held = [(f"constraints.{c.quantity}", c.quantity) for c in problem.constraints]
     machine = problem.mechanism.fullest
-    t = machine.tolerances
-    exact = not any(x.absolute or x.fraction for x in (t.crank, t.rod, t.offset, t.crank_angle))
-    exact = exact and t.clearances == Clearances()
     for key, name in (*wanted, *held):
-        if name in _ERRORS and exact:
+        if name in _ERRORS and not machine.tolerances.given:
             raise JobError(
                 f"{key}: a position error comes from tolerances; got none; "
                 'add for example [tolerances] crank = "0.05 mm"'

@@ -11,7 +11,7 @@ from ...model.errors import InputError
 from ..designs.columns import find_column
 from ..designs.cycle_table import LEAST, MOST
 from ..designs.holding import held
-from ..designs.requirements import has_tolerances, names_of, ranges_of, requirements_of, speed_rpm
+from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
 from ..designs.trade_offs import trade_offs_of
 from ..designs.variation import variation_of, with_lengths
 from ..runs.result import finite
@@ -120,7 +120,7 @@ def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsMode
         requirements=asked,
         speed_rpm=speed_rpm(stored.mechanism),
         names=names_of(stored.part),
-        tolerances=has_tolerances(stored),
+        tolerances=stored.mechanism.tolerances.given,
     )
 
 

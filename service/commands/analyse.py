@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 _NEEDS_MASSES = ("torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
-_NEEDS_TOLERANCES = ("position_error",)
 _NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
@@ -190,7 +189,7 @@ def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
                 row[key] = None
 
     if alone:
-        drop(_NEEDS_MASSES + _NEEDS_TOLERANCES)
+        drop(_NEEDS_MASSES)
         notes.append("torque, forces and position error need masses, loads and tolerances: give a JOB")
         if not mechanism.speed:
             drop(_NEEDS_SPEED)

@@ -34,7 +34,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
 
     Without a crank speed, velocity and acceleration are those of one radian per second: per unit of crank speed.
     Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
-    (slider pin), and of the guide on the slider along +y. Raises `InputError` for too few or too many angles.
+    (slider pin), and of the guide on the slider along +y. Position errors are NaN without tolerances. Raises `InputError` for too few or too many angles.
     """
     import numpy as np
 
@@ -45,6 +45,9 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
     theta = np.arange(angles) * (2.0 * np.pi / angles)
     acting = cycle(mechanism, linkage, theta)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, theta)
+    if not mechanism.tolerances.given:
+        unknown = np.full(angles, np.nan)
+        acting = replace(acting, position_error=unknown, position_error_rss=unknown)
     return [
         CurveColumn(key, title, unit, (factor * values(moving if of_motion else acting)).tolist())
         for key, title, unit, factor, values, of_motion in _columns(static=not mechanism.speed)

@@ -63,15 +63,6 @@ def names_of(part: Problem) -> dict[str, str]:
     return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
 
 
-def has_tolerances(design: StoredDesign) -> bool:
-    """Return whether anything of a design has a tolerance or a clearance."""
-    import numpy as np
-
-    from ...model.tolerance.sources import limits
-
-    return bool(np.any(limits(design.mechanism, design.linkage)))
-
-
 def outside(part: Problem, row: Row) -> list[str]:
     """Return the columns of crank, rod and offset that are out of their ranges."""
     found = []

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ...model.linkage import Linkage
 from ...optimise.front import ParetoFront
-from .marks import marks
+from .marks import marks, short_title
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
@@ -53,5 +53,5 @@ def sheet_of(front: ParetoFront, row: int, label: str) -> Figure:
         {str(key): value for key, value in front.designs.iloc[row].items()},
         title=f"{front.problem.name}: {label}",
         subtitle=f"design {row + 1} of {len(front)}",
-        bold=[front.problem.quantity(objective.quantity).field for objective in front.objectives],
+        bold={of.field: short_title(of) for of in (front.problem.quantity(o.quantity) for o in front.objectives)},
     )

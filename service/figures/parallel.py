@@ -24,8 +24,8 @@ from .style import (
     colours,
     limits,
     new_figure,
+    on_scale,
     place,
-    shown,
     write,
 )
 
@@ -117,7 +117,7 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         panel.text(
             position - 0.05,
             at if axis.varies else at + 0.012,  # all lines meet in a value that is the only one
-            shown(tick, 6 if axis.varies else 4),
+            on_scale(tick, low, high, digits=6 if axis.varies else 4),
             ha="right",
             va="center" if axis.varies else "bottom",
             fontsize=SMALL,
@@ -127,8 +127,8 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         )
     if axis.varies:
         ends: dict[str, Any] = {"ha": "center", "fontsize": SMALL, "color": MUTED}
-        panel.text(position, -0.025, shown(low), va="top", **ends)
-        panel.text(position, 1.025, shown(high), va="bottom", **ends)
+        panel.text(position, -0.025, on_scale(low, low, high), va="top", **ends)
+        panel.text(position, 1.025, on_scale(high, low, high), va="bottom", **ends)
     panel.text(position, 1.0 + 0.24 / _HEIGHT, title, ha="center", va="bottom", fontsize=TEXT)
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
+from ..designs.columns import split_unit
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
 from .style import INK, MUTED, SMALL, TEXT, TITLE, new_figure, place, shown, unit_text, write
@@ -19,31 +21,30 @@ _LEFT, _SPLIT, _RIGHT, _TOP, _BOTTOM = 0.25, 6.55, 0.3, 0.75, 0.6
 _GAP = 0.34
 _TABLE = 2.05
 
-# Two columns of (title, column, unit), where there is a value.
-_NUMBERS = (
-    (
-        ("crank", "crank_mm", "mm"),
-        ("rod", "rod_mm", "mm"),
-        ("offset", "offset_mm", "mm"),
-        ("stroke", "stroke_mm", "mm"),
-        ("rod to crank", "rod_to_crank", ""),
-        ("rod to offset", "rod_to_offset", ""),
-        ("time ratio", "time_ratio", ""),
-        ("least transmission angle", "least_transmission_angle_deg", "deg"),
-        ("footprint", "footprint_m2", "m^2"),
-    ),
-    (
-        ("peak torque", "peak_torque_Nm", "N m"),
-        ("RMS torque", "rms_torque_Nm", "N m"),
-        ("position error", "position_error_mm", "mm"),
-        ("peak pivot force", "peak_pivot_force_N", "N"),
-        ("peak crank pin force", "peak_crank_pin_force_N", "N"),
-        ("peak slider pin force", "peak_slider_pin_force_N", "N"),
-        ("peak guide force", "peak_guide_force_N", "N"),
-        ("peak slider speed", "peak_slider_speed_m_s", "m/s"),
-        ("peak slider acceleration", "peak_slider_acceleration_m_s2", "m/s^2"),
-    ),
-)
+_ROWS = 9  # of each of two columns
+_LETTERS = 24  # of a title that fits beside its number
+
+# Columns that a designer asks for, with the titles that have room.
+_NUMBERS = {
+    "crank_mm": "crank",
+    "rod_mm": "rod",
+    "offset_mm": "offset",
+    "stroke_mm": "stroke",
+    "rod_to_crank": "rod to crank",
+    "rod_to_offset": "rod to offset",
+    "time_ratio": "time ratio",
+    "least_transmission_angle_deg": "least transmission angle",
+    "footprint_m2": "footprint",
+    "peak_torque_Nm": "peak torque",
+    "rms_torque_Nm": "RMS torque",
+    "position_error_mm": "position error",
+    "peak_pivot_force_N": "peak pivot force",
+    "peak_crank_pin_force_N": "peak crank pin force",
+    "peak_slider_pin_force_N": "peak slider pin force",
+    "peak_guide_force_N": "peak guide force",
+    "peak_slider_speed_m_s": "peak slider speed",
+    "peak_slider_acceleration_m_s2": "peak slider acceleration",
+}
 
 
 def design_sheet(
@@ -53,13 +54,13 @@ def design_sheet(
     *,
     title: str,
     subtitle: str = "",
-    bold: Collection[str] = (),
+    bold: Mapping[str, str] | None = None,
     torque: bool = True,
 ) -> Figure:
     """Return the sheet of one fully turning linkage.
 
-    numbers: its row of the table of quantities; those that are missing or None are left out. bold: columns printed
-    bold. torque: whether the drive torque is known.
+    numbers: its row of the table of quantities; those that are missing, None or NaN are left out. bold: columns that
+    are always there, in bold, with their titles: the objectives. torque: whether the drive torque is known.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
     title = textwrap.shorten(title, 120, placeholder=" ...")
@@ -70,8 +71,11 @@ def design_sheet(
     draw_mechanism(picture, mechanism, linkage)
     caption = "Drawn where the transmission angle is least; dead centres in grey outline."
     write(figure, _LEFT, _TABLE + 0.18, caption, fontsize=SMALL, color=MUTED)
-    for column, rows in enumerate(_NUMBERS):
-        _column(figure, _LEFT + 2.95 * column, rows, numbers, bold)
+    rows = _rows(numbers, bold or {})
+    tall = max(_ROWS, math.ceil(len(rows) / 2))
+    for column in range(2):
+        own = rows[tall * column : tall * (column + 1)]
+        _column(figure, _LEFT + 2.95 * column, 0.2 * _ROWS / tall, own, numbers, bold or {})
 
     curves = cycle_curves(mechanism, linkage, torque=torque)
     count = len(curves.curves)
@@ -82,22 +86,36 @@ def design_sheet(
     return figure
 
 
+def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return column and title of what the table shows: all objectives, and of the others those that fit."""
+
+    def there(key: str) -> bool:
+        value = numbers.get(key)
+        return value is not None and not math.isnan(float(value))
+
+    extra = {key: title for key, title in objectives.items() if key not in _NUMBERS}
+    usual = [key for key in _NUMBERS if there(key)]
+    room = 2 * _ROWS - len([key for key in extra if there(key)])
+    spare = [key for key in reversed(usual) if key not in objectives][: max(0, len(usual) - room)]
+    kept = {key: title for key, title in _NUMBERS.items() if key in usual and key not in spare}
+    return list((kept | {key: title for key, title in extra.items() if there(key)}).items())
+
+
 def _column(
     figure: Figure,
     x: float,
-    rows: tuple[tuple[str, str, str], ...],
+    step: float,
+    rows: Sequence[tuple[str, str]],
     numbers: Mapping[str, Any],
     bold: Collection[str],
 ) -> None:
     y = _TABLE - 0.12
-    for title, column, unit in rows:
-        value = numbers.get(column)
-        if value is None:
-            continue
-        weight = "bold" if column in bold else "normal"
-        style = {"fontsize": TEXT, "weight": weight, "color": INK}
-        write(figure, x, y, title, **style)
-        write(figure, x + 2.2, y, shown(float(value), 5, zeros=True), ha="right", **style)
+    for column, title in rows:
+        unit = split_unit(column)[1]
+        style = {"weight": "bold" if column in bold else "normal", "color": INK}
+        title = textwrap.shorten(title, 2 * _LETTERS, placeholder=" ...")
+        write(figure, x, y, title, fontsize=TEXT * min(1.0, _LETTERS / len(title)), **style)
+        write(figure, x + 2.38, y, shown(float(numbers[column]), 5, zeros=True), ha="right", **style)
         if unit:
-            write(figure, x + 2.26, y, unit_text(unit), **style)
-        y -= 0.2
+            write(figure, x + 2.44, y, unit_text(unit), **style)
+        y -= step

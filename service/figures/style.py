@@ -81,12 +81,13 @@ def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
     axes.set_axisbelow(True)
     axes.xaxis.set_major_locator(MaxNLocator(across, steps=[1, 2, 2.5, 5, 10]))
     axes.yaxis.set_major_locator(MaxNLocator(up, steps=[1, 2, 2.5, 5, 10]))
-    axes.xaxis.set_major_formatter(FuncFormatter(_tick))
-    axes.yaxis.set_major_formatter(FuncFormatter(_tick))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_xlim(), digits=6)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_ylim(), digits=6)))
 
 
-def _tick(value: float, _position: int | None = None) -> str:
-    return shown(value, 6)
+def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
+    """Return a number for people on an axis from low to high: a millionth of the axis is zero to every reader."""
+    return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
 def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:

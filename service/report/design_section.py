@@ -38,7 +38,7 @@ def numbers_section(subject: Subject) -> Section:
     rows = tuple(
         (
             column.title,
-            rounded(subject.row[column.key]),
+            "0" if column.key.startswith("slack_") and _active(subject, column) else rounded(subject.row[column.key]),
             unit_text(column.unit),
             as_stored(subject.row[column.key]),
             column.key,
@@ -56,7 +56,7 @@ def numbers_section(subject: Subject) -> Section:
                 "",
                 ("quantity", "value", "unit", "as stored", "column"),
                 rows,
-                (0.28, 0.12, 0.07, 0.23, 0.30),
+                (0.28, 0.13, 0.07, 0.22, 0.30),
                 frozenset({1, 3}),
                 frozenset(place for place, column in enumerate(columns) if column.key in objectives),
                 small=True,
@@ -77,10 +77,9 @@ def _rules(subject: Subject) -> list[Block]:
     rows, met = [], True
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
-        size = max(1.0, abs(value)) if isinstance(value, float) and math.isfinite(value) else 1.0
-        held = isinstance(slack, float) and slack >= -_MET * size
+        active = _active(subject, column)
+        held = active or (isinstance(slack, float) and slack >= 0.0)
         met = met and held
-        active = isinstance(slack, float) and abs(slack) <= _MET * size
         state = "met, active" if active and held else "met" if held else "not met"
         title = column.title.removeprefix("slack of ")
         distance = "0" if active else rounded(slack)
@@ -96,6 +95,13 @@ def _rules(subject: Subject) -> list[Block]:
             frozenset({1, 2}),
         ),
     ]
+
+
+def _active(subject: Subject, column: Column) -> bool:
+    """Whether a slack is zero to rounding."""
+    slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
+    size = max(1.0, abs(value)) if isinstance(value, float) and math.isfinite(value) else 1.0
+    return isinstance(slack, float) and abs(slack) <= _MET * size
 
 
 def _optimality(subject: Subject) -> list[Block]:
@@ -116,7 +122,7 @@ def _optimality(subject: Subject) -> list[Block]:
     except InputError as error:
         return [*blocks, Paragraph(f"Trade-off rates: {error}.", "note")]
     if sentences:
-        blocks.append(Paragraph("Trade-offs here, to first order: " + "; ".join(sentences) + "."))
+        blocks.append(Paragraph("Trade-offs here, to first order: " + unit_text("; ".join(sentences)) + "."))
     return blocks
 
 

@@ -71,12 +71,13 @@ def _marked(subject: Subject) -> Table:
         for place, words in labels.items()
     )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    share = 0.81 / len(columns)
+    lengths, name = 0.09, 0.16  # the heads of objectives are the longest words: "transmission"
+    share = (0.95 - name - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
     return Table(
         "Marked designs",
         ("no.", "what it is", *heads),
         rows,
-        (0.05, 0.14, *(share for _ in columns)),
+        (0.05, name, *(lengths for _ in DIMENSIONS), *(share for _ in columns[len(DIMENSIONS) :])),
         frozenset({0, *range(2, 2 + len(columns))}),
         bold=frozenset({0}),
         small=len(columns) > 5,

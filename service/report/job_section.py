@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..commands.summary import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Section
 from .subject import Subject
-from .wording import rounded
+from .wording import rounded, unit_text
 
 
 def job_section(subject: Subject) -> Section:
@@ -20,7 +20,7 @@ def job_section(subject: Subject) -> Section:
         ("Objectives", words["objectives"]),
         ("Freedom", [freedom_in_words(words)]),
     )
-    rows = tuple((title, tuple(map(str, lines))) for title, lines in parts if lines)
+    rows = tuple((title, tuple(unit_text(str(line)) for line in lines)) for title, lines in parts if lines)
     return Section("The job", (Facts(rows),))
 
 

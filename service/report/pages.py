@@ -98,7 +98,9 @@ class _Layout:
         self.lines([section.title], _HEAD, bold=True)
         self.rule("#c8c8c8", 0.8)
         self.y -= 0.04
-        for block in section.blocks:
+        for block, after in zip(section.blocks, (*section.blocks[1:], None), strict=True):
+            if isinstance(block, Paragraph) and isinstance(after, Table):
+                self.room(1.3)  # what is said of a table stays with it
             self.block(block)
 
     def block(self, block: Block) -> None:

@@ -60,8 +60,11 @@ def _photograph(figure: Figure, scale: float) -> Figure:
 def _draw(file: Any, figure: Figure, dots: int) -> None:
     """Draw a figure into the page that is open."""
     width, height = figure.get_size_inches()
-    before = figure.dpi
+    before, page = figure.dpi, (file.width, file.height)
     figure.dpi = _DOTS
+    # The backend leaves out what is beyond the size of the file's page, in the coordinates of the figure: it does not
+    # know that a figure wider than the page is scaled to fit.
+    file.width, file.height = width, height
     try:
         vectors: Any = RendererPdf(file, dots, height, width)  # type: ignore[no-untyped-call]
         renderer: Any = MixedModeRenderer(figure, width, height, dots, vectors)  # type: ignore[no-untyped-call]
@@ -69,3 +72,4 @@ def _draw(file: Any, figure: Figure, dots: int) -> None:
         renderer.finalize()
     finally:
         figure.dpi = before
+        file.width, file.height = page

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.mechanism import Clearances, Mechanism, Tolerances
+from slidercrank.model.varying import Varying
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, random_designs
@@ -58,6 +59,21 @@ def test_one_design_is_one_row() -> None:
     assert row["slow_stroke"] == "outward"
     assert row["least_transmission_angle_deg"] == pytest.approx(math.degrees(math.acos(60.0 / 64.0)), rel=1e-12)
     assert row["peak_torque_Nm"] == 0.0
+
+
+def test_without_tolerances_a_position_error_is_not_defined_rather_than_zero() -> None:
+    errors = ["position_error_mm", "position_error_rss_mm"]
+    table = analyse(Mechanism(speed=1.0), DESIGNS)
+    assert table[errors].isna().all(axis=None)
+    assert table.drop(columns=errors).notna().all(axis=None)
+    one = Tolerances(clearances=Clearances(guide=1e-5))
+    assert (analyse(Mechanism(speed=1.0, tolerances=one), DESIGNS)[errors] > 0.0).all(axis=None)
+    # A design that varies its tolerance down to none has an error of zero: the machine has tolerances.
+    varying = Mechanism(speed=1.0, varying=(Varying(name="crank", sets=(("tolerances.crank.absolute", 1.0),), lower=0.0, upper=1e-4),))
+    designs = np.column_stack([DESIGNS, np.linspace(0.0, 1e-4, len(DESIGNS))])
+    found = analyse(varying, designs)["position_error_mm"]
+    assert found[0] == 0.0
+    assert (found[1:] > 0.0).all()
 
 
 def test_slow_stroke_is_that_at_the_direction_of_rotation() -> None:

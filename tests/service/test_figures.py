@@ -16,17 +16,18 @@ from matplotlib.text import Text
 
 from slidercrank.model.cycle import cycle
 from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.analysis import analyse
+from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Objective
 from slidercrank.service.figures import draw_front
 from slidercrank.service.figures.curves import Curves, cycle_curves
-from slidercrank.service.figures.marks import marks
+from slidercrank.service.figures.marks import marks, short_title
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
 from slidercrank.service.figures.sheet import design_sheet
-from slidercrank.service.figures.style import colours, shown
+from slidercrank.service.figures.style import colours, dress, new_figure, place, shown
 from tests.service import fronts
 
 LINKAGES = {
@@ -201,10 +202,52 @@ def test_no_two_texts_of_a_design_sheet_overlap(name: str) -> None:
     linkage = LINKAGES[name]
     row = analyse(machine(linkage), np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
     numbers = {str(key): value for key, value in row.items()}
-    bold = ["position_error_mm", "least_transmission_angle_deg"]
+    bold = {"position_error_mm": "position error", "least_transmission_angle_deg": "least transmission angle"}
     title = "A job with a name of the greatest length that is allowed, which is 80 characters: best this, best that"
     figure = design_sheet(machine(linkage), linkage, numbers, title=title, subtitle="design 1 of 2", bold=bold)
     assert overlaps(figure) == []
+
+
+def test_the_table_of_a_sheet_has_every_objective_of_the_job() -> None:
+    linkage = LINKAGES["offset"]
+    row = analyse(machine(linkage), np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
+    numbers = {str(key): value for key, value in row.items()} | {"wear_of_the_bush": -1.2345e-7}
+    few = {"time_ratio": "time ratio", "peak_power_W": "peak power", "wear_of_the_bush": "wear of the bush"}
+    every = {of.field: short_title(of) for of in list(QUANTITIES.values())[-20:]}
+    for bold in (few, every):
+        figure = design_sheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
+        printed = [text.get_text() for text in figure.texts if text.get_weight() == "bold"]
+        assert set(bold.values()) <= set(printed)
+        assert {shown(float(numbers[key]), 5, zeros=True) for key in bold} <= set(printed)
+        assert overlaps(figure) == []
+
+
+def test_a_sheet_without_tolerances_has_no_position_error() -> None:
+    linkage = LINKAGES["offset"]
+    bare = replace(machine(linkage), tolerances=Tolerances())
+    row = analyse(bare, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
+    figure = design_sheet(bare, linkage, {str(key): value for key, value in row.items()}, title="A job")
+    texts = [text.get_text() for text in figure.texts]
+    assert "peak torque" in texts
+    assert not [text for text in texts if "error" in text or text in ("0", "–", "nan")]
+
+
+def test_ends_and_ticks_of_axes_show_no_rounding_noise() -> None:
+    front = fronts.front()
+    table = front.designs.copy()
+    dimensions = front.dimensions.copy()
+    dimensions[:, 2] -= dimensions[:, 2].min() - 1e-11
+    noisy = replace(front, designs=table, dimensions=dimensions)
+    said = [text.get_text() for text in parallel_coordinates(noisy).findobj(Text)]
+    assert not [text for text in said if "e−" in text]
+    figure = new_figure(2.0, 2.0)
+    axes = place(figure, 0.2, 0.2, 1.0, 1.0)
+    dress(axes)
+    axes.set_xlim(-1.0, 5.0)
+    axes.set_ylim(0.0, 3e-7)
+    form = axes.xaxis.get_major_formatter()
+    assert [form(1e-8), form(-5.55e-17), form(2.5), form(-0.5)] == ["0", "0", "2.5", "−0.5"]
+    assert axes.yaxis.get_major_formatter()(1e-8) == "1e−08"
 
 
 def test_every_design_is_a_point_and_a_line() -> None:

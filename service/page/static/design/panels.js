@@ -19,9 +19,9 @@ export function withResultants({ curves, columns }) {
   return { curves: more, columns: known };
 }
 
-/** Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero in all designs. */
+/** Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero or not defined in all designs. */
 export function panelsOf(columns, designs) {
-  const some = ({ key }) => designs.some(({ curves }) => curves[key]?.some((value) => value !== 0));
+  const some = ({ key }) => designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
   const found = ORDER.map((start) => columns.find(({ key }) => key.startsWith(start))).filter((column) => column && some(column));
   return found.map(({ key, title, unit }) => ({ key, title: title.charAt(0).toUpperCase() + title.slice(1), unit }));
 }

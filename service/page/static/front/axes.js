@@ -1,7 +1,7 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
 import { fill, h } from "../lib/dom.js";
-import { fromShown, text } from "../lib/numbers.js";
+import { ends, fromShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
 
 const MOST_WORDS = 8; // as ticks; the rest stays in the table
@@ -42,9 +42,9 @@ export function axisFields(explorer) {
     const column = explorer.data.column(key);
     const words = explorer.data.words(key);
     if (words) return ofWords(key, column, words.slice(0, MOST_WORDS));
-    const { low, high } = explorer.data.range(key);
+    const [low, high] = ends(explorer.data.range(key), column.unit);
     const input = (side, placeholder, label) =>
-      h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder: text(placeholder, column.unit, 4), "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
+      h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder, "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
     const least = input("min", low, "At least");
     const most = input("max", high, "At most");
     function take() {

@@ -1,7 +1,7 @@
 /** The scatter with what it shows: which quantities, the legend of its colours, the design that is pointed at. */
 
 import { fill, h } from "../lib/dom.js";
-import { text, withUnit } from "../lib/numbers.js";
+import { ends, withUnit } from "../lib/numbers.js";
 import { headed } from "./columns.js";
 
 /** Return {place, draw(), legend(), point()} around the scatter of an explorer. */
@@ -46,8 +46,8 @@ export function scatterPanel(explorer, dots) {
       fill(key, h("span", {}, `${column.title}:`), words.map((word, index) => h("span", {}, patch(inks[index % inks.length]), ` ${word}`)));
       return;
     }
-    const { low, high } = data.range(chosen.colour);
-    fill(key, h("span", {}, headed(column)), h("span", {}, text(low, column.unit, 4)), h("span", { class: "shades" }, inks.map((ink) => patch(ink, true))), h("span", {}, text(high, column.unit, 4)));
+    const [low, high] = ends(data.range(chosen.colour), column.unit);
+    fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
   }
 
   /** Say which design is pointed at. */

@@ -61,6 +61,11 @@ export function withUnit(value, unit = "", digits = 5) {
   return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
 }
 
+/** Return the ends of an axis as text: a millionth of the axis is zero to every reader. */
+export function ends({ low, high }, unit, digits = 4) {
+  return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
+}
+
 /** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. */
 export function grouped(count) {
   return String(count).replace(/\B(?=(\d{3})+$)/g, ",");

@@ -1,0 +1,122 @@
+"""Figures of the PDF as another program draws them: nothing of a figure is missing on paper."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pypdfium2
+from matplotlib.collections import PathCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from slidercrank.service.figures.style import BLUE, INK
+from slidercrank.service.report.design_report import design_report
+from slidercrank.service.report.pages import HEIGHT, Inset, pages
+from slidercrank.service.report.pdf import pdf_file
+from slidercrank.service.report.subject import subject_of
+from slidercrank.service.runs.result import result_of
+from tests.service import fronts
+
+Image = NDArray[np.float64]
+
+DOTS = 144  # an inch
+_BLOCK = 8  # dots: text and lines of two programs differ by less
+_FINER = 3  # a screen rounds small letters to whole dots
+
+
+@cache
+def figures() -> dict[str, tuple[Figure, Inset, Image]]:
+    """Return each figure of a report with its place and the picture of it (h, w, 3), from 0 to 1, on paper."""
+    front = fronts.front(designs=20)
+    result = result_of(front, "kept")
+    report = design_report(subject_of(front.problem, result, 3, run="kept", versions={}), made=0.0)
+    paper = pypdfium2.PdfDocument(pdf_file(report))
+    titles = [block.title for section in report.sections for block in section.blocks if hasattr(block, "draw")]
+    found = {}
+    for page, drawn in zip(paper, pages(report), strict=True):
+        whole = page.render(scale=DOTS / 72, rev_byteorder=True).to_numpy()[:, :, :3] / 255.0
+        for inset in drawn.insets:
+            width, height = inset.scale * inset.figure.get_size_inches()
+            top, left = round((HEIGHT - inset.bottom - height) * DOTS), round(inset.left * DOTS)
+            picture = whole[top : top + round(height * DOTS), left : left + round(width * DOTS)]
+            found[titles[len(found)]] = (inset.figure, inset, picture)
+    assert list(found) == titles
+    return found
+
+
+def screen(figure: Figure, scale: float) -> Image:
+    """Return a figure as matplotlib draws it on a screen, (h, w, 3), in dots a third as large as those of the paper."""
+    figure.set_dpi(_FINER * DOTS * scale)
+    figure.canvas.draw()
+    return np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0  # type: ignore[attr-defined]
+
+
+def ink(picture: Image, block: int) -> Image:
+    """Return the share of ink in square blocks of a picture, `block` dots wide."""
+    rows, columns = (size // block * block for size in picture.shape[:2])
+    grey = 1.0 - picture[:rows, :columns].mean(axis=2)
+    return grey.reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
+
+
+def around(blocks: Image) -> Image:
+    """Return the most of each block and its neighbours."""
+    padded = np.pad(blocks, 1)
+    rows, columns = blocks.shape
+    shifted = [padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
+    return np.asarray(np.max(shifted, axis=0))
+
+
+def seen(figure: Figure, inset: Inset, picture: Image, axes: int, x: float, y: float, colour: str) -> bool:
+    """Return whether a colour is on paper within two dots of a point of the axes of a figure."""
+    figure.set_dpi(DOTS * inset.scale)
+    across, up = figure.axes[axes].transData.transform((x, y))
+    row, column = round(picture.shape[0] - up), round(across)
+    near = picture[row - 2 : row + 3, column - 2 : column + 3]
+    return bool((np.abs(near - to_rgb(colour)).max(axis=2) < 0.3).any())
+
+
+def test_all_that_a_figure_draws_is_on_paper() -> None:
+    for title, (figure, inset, picture) in figures().items():
+        asked, got = ink(screen(figure, inset.scale), _FINER * _BLOCK), ink(picture, _BLOCK)
+        rows, columns = (min(one, other) for one, other in zip(asked.shape, got.shape, strict=True))
+        missing = (asked[:rows, :columns] > 0.04) & (around(got[:rows, :columns]) < 0.4 * asked[:rows, :columns])
+        assert not missing.any(), (title, np.argwhere(missing)[:5])
+
+
+def test_curves_over_the_cycle_reach_their_end() -> None:
+    figure, inset, picture = figures()["The design over a turn of the crank"]
+    curves = [
+        (place, line)
+        for place, axes in enumerate(figure.axes)
+        for line in axes.lines
+        if len(line.get_xdata()) > 100 and line.get_color() == BLUE  # type: ignore[arg-type]
+    ]
+    assert len(curves) == 5
+    for place, line in curves:
+        assert isinstance(line, Line2D)
+        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        for angle in (100.0, 200.0, 350.0):
+            assert seen(figure, inset, picture, place, angle, float(np.interp(angle, x, y)), BLUE), angle
+
+
+def test_every_design_is_a_point_in_every_panel_of_the_scatter_matrix() -> None:
+    figure, inset, picture = figures()["Every pair of objectives"]
+    clouds = [
+        (place, points)
+        for place, axes in enumerate(figure.axes)
+        for points in axes.collections
+        if isinstance(points, PathCollection)
+    ]
+    assert len(clouds) == 6
+    for place, points in clouds:
+        offsets = np.asarray(points.get_offsets())
+        transform = figure.axes[place].transData.transform
+        marked = [transform((line.get_xdata()[0], line.get_ydata()[0])) for line in figure.axes[place].lines]  # type: ignore[index]
+        bare = [point for point in offsets if np.hypot(*(transform(point) - marked).T).min() > 12.0]
+        assert len(offsets) == 20
+        assert len(bare) >= 10
+        for x, y in bare:
+            assert seen(figure, inset, picture, place, x, y, INK), (place, x, y)
