@@ -69,7 +69,9 @@ def test_without_tolerances_a_position_error_is_not_defined_rather_than_zero() -
     one = Tolerances(clearances=Clearances(guide=1e-5))
     assert (analyse(Mechanism(speed=1.0, tolerances=one), DESIGNS)[errors] > 0.0).all(axis=None)
     # A design that varies its tolerance down to none has an error of zero: the machine has tolerances.
-    varying = Mechanism(speed=1.0, varying=(Varying(name="crank", sets=(("tolerances.crank.absolute", 1.0),), lower=0.0, upper=1e-4),))
+    varying = Mechanism(
+        speed=1.0, varying=(Varying(name="crank", sets=(("tolerances.crank.absolute", 1.0),), lower=0.0, upper=1e-4),)
+    )
     designs = np.column_stack([DESIGNS, np.linspace(0.0, 1e-4, len(DESIGNS))])
     found = analyse(varying, designs)["position_error_mm"]
     assert found[0] == 0.0
