@@ -62,8 +62,9 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
       quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
     - <dimension>_tolerance: first-order change for the dimension's tolerance, in the shown unit.
-    A quantity that is infinite has NaN in all; so has one that is not defined, a position error without tolerances. Where it has a kink (two equal peaks; no offset, for what depends on the
-    size of the offset) the derivative is that of one side: of the peak found, towards positive offsets.
+    A quantity that is infinite has NaN in all; so has a position error without tolerances, which is not defined. Where
+    it has a kink (two equal peaks; no offset, for what depends on the size of the offset) the derivative is that of one
+    side: of the peak found, towards positive offsets.
     Raises `AssemblyError` unless the linkage turns fully.
     """
     design = np.asarray(dimensions, dtype=np.float64).reshape(1, 3)

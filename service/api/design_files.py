@@ -1,4 +1,4 @@
-"""Single designs as files: the linkage for CAD, its motion, and the report for a review."""
+"""Single designs as files: the linkage for CAD, its motion, and the report for a review; as they are, or changed."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from .figures import require_figures
 from .problems import problem_responses
+from .shown_designs import ShownDep, ShownDesign
 from .state import StoreDep
-from .stored_fronts import DesignNumber, FrontDep, StoredFront
 from .turns import DRAWING
 
 if TYPE_CHECKING:
@@ -42,84 +42,74 @@ def _kind(media_type: str) -> dict[str, Any]:
 
 
 def _file(
-    found: StoredFront,
-    design: int,
-    ending: str,
-    media_type: str,
-    content: bytes,
-    *,
-    policy: str = _SEALED,
-    label: str = "",
+    shown: ShownDesign, ending: str, media_type: str, content: bytes, *, policy: str = _SEALED, label: str = ""
 ) -> Response:
-    name = f"{slug(found.result.name)}-{found.job.id}-design-{design}{label}.{ending}"
+    name = f"{slug(shown.found.result.name)}-{shown.found.job.id}-{shown.stem}{label}.{ending}"
     headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Security-Policy": policy}
     return Response(content, media_type=media_type, headers=headers)
 
 
-def _drawing(found: StoredFront, design: int, crank_angle_deg: float) -> Drawing:
-    of = found.design(design)
-    angle = math.radians(crank_angle_deg)
-    return linkage_drawing(of.mechanism, of.linkage, name=found.result.name, number=design, crank_angle=angle)
+def _drawing(shown: ShownDesign, crank_angle_deg: float) -> Drawing:
+    name, of, angle = shown.found.result.name, shown.design, math.radians(crank_angle_deg)
+    return linkage_drawing(of.mechanism, of.linkage, name=name, design=shown.words, crank_angle=angle)
 
 
 @router.get("/linkage.dxf", **_kind("image/vnd.dxf"))
-def draw_dxf(found: FrontDep, design: DesignNumber, crank_angle_deg: CrankAngle = 60.0) -> Response:
+def draw_dxf(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
     """Give the linkage of a design at true scale for CAD, in millimetres: see docs/drawings.md for its layers."""
-    return _file(found, design, "dxf", "image/vnd.dxf", dxf_file(_drawing(found, design, crank_angle_deg)))
+    return _file(shown, "dxf", "image/vnd.dxf", dxf_file(_drawing(shown, crank_angle_deg)))
 
 
 @router.get("/linkage.svg", **_kind("image/svg+xml"))
-def draw_linkage(found: FrontDep, design: DesignNumber, crank_angle_deg: CrankAngle = 60.0) -> Response:
+def draw_linkage(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
     """Give the same drawing as SVG."""
-    return _file(found, design, "svg", "image/svg+xml", svg_file(_drawing(found, design, crank_angle_deg)))
+    return _file(shown, "svg", "image/svg+xml", svg_file(_drawing(shown, crank_angle_deg)))
 
 
 @router.get("/motion.html", **_kind("text/html"))
-def show_motion(found: FrontDep, design: DesignNumber) -> Response:
+def show_motion(shown: ShownDep) -> Response:
     """Give the moving linkage as one HTML file with its own script, which fetches nothing."""
     from ..motion.player_page import player_page
 
-    of = found.design(design)
-    content = player_page(of.mechanism, of.linkage, name=found.result.name, number=design)
-    return _file(found, design, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
+    of = shown.design
+    content = player_page(of.mechanism, of.linkage, name=shown.found.result.name, design=shown.words)
+    return _file(shown, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **_kind("image/gif"))
-def animate_linkage(found: FrontDep, design: DesignNumber) -> Response:
+def animate_linkage(shown: ShownDep) -> Response:
     """Give the moving linkage as an animated GIF of one turn of the crank."""
     from ..motion.animated_gif import animated_gif
 
-    of = found.design(design)
-    content = _made(
-        found, design, "gif", lambda: animated_gif(of.mechanism, of.linkage, name=found.result.name, number=design)
-    )
-    return _file(found, design, "gif", "image/gif", content, label="-motion")
+    of, name = shown.design, shown.found.result.name
+    content = _made(shown, "gif", lambda: animated_gif(of.mechanism, of.linkage, name=name, design=shown.words))
+    return _file(shown, "gif", "image/gif", content, label="-motion")
 
 
 @router.get("/report.html", dependencies=[Depends(require_figures)], **_kind("text/html"))
-def report_design(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+def report_design(shown: ShownDep, store: StoreDep) -> Response:
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
 
-    content = _made(found, design, "report", lambda: html_file(_report(found, design, store)))
-    return _file(found, design, "html", "text/html; charset=utf-8", content, label="-report")
+    content = _made(shown, "report", lambda: html_file(_report(shown, store)))
+    return _file(shown, "html", "text/html; charset=utf-8", content, label="-report")
 
 
 @router.get("/report.pdf", dependencies=[Depends(require_figures)], **_kind("application/pdf"))
-def print_report(found: FrontDep, design: DesignNumber, store: StoreDep) -> Response:
+def print_report(shown: ShownDep, store: StoreDep) -> Response:
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file
 
-    content = _made(found, design, "pdf", lambda: pdf_file(_report(found, design, store)))
-    return _file(found, design, "pdf", "application/pdf", content, label="-report")
+    content = _made(shown, "pdf", lambda: pdf_file(_report(shown, store)))
+    return _file(shown, "pdf", "application/pdf", content, label="-report")
 
 
-def _report(found: StoredFront, design: int, store: Store) -> Report:
+def _report(shown: ShownDesign, store: Store) -> Report:
     """Return the report of a design, with what the store keeps beside the result."""
     from ..report.design_report import design_report
     from ..report.subject import subject_of
 
-    found.row(design)
+    found = shown.found
     job = found.job.id
     kept = set(store.artefacts(job))
     versions, certificate = (
@@ -129,21 +119,22 @@ def _report(found: StoredFront, design: int, store: Store) -> Report:
     subject = subject_of(
         found.problem,
         found.result,
-        design,
+        shown.number,
         run=found.job.run,
         versions=versions or {},
         certificate=certificate,
         front=found.front,
+        changed=shown.variation(),
     )
     return design_report(subject)
 
 
-def _made(found: StoredFront, design: int, kind: str, make: Callable[[], bytes]) -> bytes:
+def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:
     """Return what takes a while to draw; what was drawn before is kept with the front."""
-    name = f"design_{design}"
-    content = found.image(name, kind)
+    found = shown.found
+    content = found.image(shown.key, kind)
     if content is None:
         with DRAWING.turn():
-            content = found.image(name, kind) or make()  # by whoever was first
-            found.keep_image([name], kind, content)
+            content = found.image(shown.key, kind) or make()  # by whoever was first
+            found.keep_image([shown.key], kind, content)
     return content

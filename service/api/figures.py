@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Literal
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
-from ...model.errors import NotFound
+from ...model.errors import InputError, NotFound
+from ..runs.run_folder import slug
 from .problems import problem_responses
+from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
 from .turns import DRAWING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..figures.of_front import FrontFigure
 
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
@@ -65,9 +73,10 @@ def list_figures(found: FrontDep) -> FiguresModel:
     response_class=Response,
     responses={200: {"content": {"image/png": {}}}},
 )
-def draw_png(found: FrontDep, name: Name) -> Response:
-    """Draw a figure."""
-    return Response(_image(found, name, "png"), media_type="image/png")
+def draw_png(found: FrontDep, name: Name, lengths: LengthsDep) -> Response:
+    """Draw a figure; the sheet of a design also with other lengths."""
+    content, headers = _image(found, name, "png", lengths)
+    return Response(content, media_type="image/png", headers=headers)
 
 
 @router.get(
@@ -75,42 +84,65 @@ def draw_png(found: FrontDep, name: Name) -> Response:
     response_class=Response,
     responses={200: {"content": {"image/svg+xml": {}}}},
 )
-def draw_svg(found: FrontDep, name: Name) -> Response:
-    """Draw a figure."""
+def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep) -> Response:
+    """Draw a figure; the sheet of a design also with other lengths."""
+    content, headers = _image(found, name, "svg", lengths)
     # Opened by itself it is a document: it runs nothing and fetches nothing.
     policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}
-    return Response(_image(found, name, "svg"), media_type="image/svg+xml", headers=policy)
+    return Response(content, media_type="image/svg+xml", headers={**headers, **policy})
 
 
-def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
-    """Return a figure as a file; what was drawn before is kept with the front."""
-    from ..figures.of_front import FrontFigure, front_figures, sheet_of
-    from ..figures.style import image
+def _image(
+    found: StoredFront, name: str, kind: Literal["png", "svg"], lengths: Lengths | None
+) -> tuple[bytes, dict[str, str]]:
+    """Return a figure and the headers that name its file; what was drawn before is kept with the front."""
+    from ..figures.of_front import FrontFigure
 
     single = _DESIGN.fullmatch(name)
-    if single is not None:
-        row = int(single[1]) - 1
-        found.row(row + 1)
-    elif not found.result.designs:
-        raise _unknown(name, [])
-    drawn = found.image(name, kind)
+    if single is None:
+        if lengths is not None:
+            rule = "other lengths are those of a single design"
+            raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
+        return _made(found, name, kind, lambda: _of_front(found, name)), {}
+    shown = shown_design(found, int(single[1]), lengths)
+    file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
+    drawn = _made(found, shown.key, kind, lambda: FrontFigure((shown.key,), "", lambda: _sheet(shown)))
+    return drawn, {"Content-Disposition": f'inline; filename="{file}"'}
+
+
+def _made(found: StoredFront, key: str, kind: Literal["png", "svg"], figure: Callable[[], FrontFigure]) -> bytes:
+    from ..figures.style import image
+
+    drawn = found.image(key, kind)
     if drawn is not None:
         return drawn
     with DRAWING.turn():
-        drawn = found.image(name, kind)  # by whoever was first
-        if drawn is not None:
-            return drawn
-        if single is not None:
-            figure = FrontFigure((name,), "", lambda: sheet_of(found.front, row, f"design {row + 1}"))
-        else:
-            listed = front_figures(found.front)
-            named = next((item for item in listed if name in item.names), None)
-            if named is None:
-                raise _unknown(name, [name for item in listed for name in item.names])
-            figure = named
-        content = image(figure.draw(), kind)
-        found.keep_image(figure.names, kind, content)
-        return content
+        drawn = found.image(key, kind)  # by whoever was first
+        if drawn is None:
+            named = figure()
+            drawn = image(named.draw(), kind)
+            found.keep_image(named.names, kind, drawn)
+        return drawn
+
+
+def _of_front(found: StoredFront, name: str) -> FrontFigure:
+    """Return a figure of a whole front. Raises `NotFound` with those that there are."""
+    from ..figures.of_front import front_figures
+
+    listed = front_figures(found.front) if found.result.designs else []
+    named = next((item for item in listed if name in item.names), None)
+    if named is None:
+        raise _unknown(name, [name for item in listed for name in item.names])
+    return named
+
+
+def _sheet(shown: ShownDesign) -> Figure:
+    from ..figures.of_front import sheet_of, sheet_of_changed
+
+    variation, front = shown.variation(), shown.found.front
+    if variation is None:
+        return sheet_of(front, shown.number - 1, shown.words)
+    return sheet_of_changed(front, shown.design, variation.row, shown.words)
 
 
 def _unknown(name: str, names: list[str]) -> NotFound:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
@@ -18,16 +18,13 @@ from ..runs.result import finite
 from .analysis import CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, column_model
 from .problems import problem_responses
+from .shown_designs import LONGEST, Length
 from .stored_fronts import DesignNumber, FrontDep
 from .turns import SIMULATING
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
 _MOST_NUMBERS = 20
-_LONGEST = 1e7  # mm
-_SHORTEST = 1e-4  # mm
-
-Length = Annotated[float, Field(ge=_SHORTEST, le=_LONGEST)]
 
 
 class RequirementModel(BaseModel):
@@ -81,7 +78,7 @@ class OtherLengths(BaseModel):
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
-    offset_mm: float = Field(ge=-_LONGEST, le=_LONGEST, examples=[20.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, examples=[20.0])
     angles: int = Field(180, ge=0, le=MOST)
     hold: Literal["crank", "rod", "offset"] | None = None
 

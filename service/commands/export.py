@@ -121,23 +121,27 @@ def _dxf(found: StoredDesign, name: str, number: int, angle: float) -> bytes:
     from ..drawings.dxf import dxf_file
     from ..drawings.linkage_drawing import linkage_drawing
 
-    return dxf_file(linkage_drawing(found.mechanism, found.linkage, name=name, number=number, crank_angle=angle))
+    return dxf_file(
+        linkage_drawing(found.mechanism, found.linkage, name=name, design=f"design {number}", crank_angle=angle)
+    )
 
 
 def _svg(found: StoredDesign, name: str, number: int, angle: float) -> bytes:
     from ..drawings.linkage_drawing import linkage_drawing
     from ..drawings.svg import svg_file
 
-    return svg_file(linkage_drawing(found.mechanism, found.linkage, name=name, number=number, crank_angle=angle))
+    return svg_file(
+        linkage_drawing(found.mechanism, found.linkage, name=name, design=f"design {number}", crank_angle=angle)
+    )
 
 
 def _motion(found: StoredDesign, name: str, number: int) -> bytes:
     from ..motion.player_page import player_page
 
-    return player_page(found.mechanism, found.linkage, name=name, number=number)
+    return player_page(found.mechanism, found.linkage, name=name, design=f"design {number}")
 
 
 def _gif(found: StoredDesign, name: str, number: int) -> bytes:
     from ..motion.animated_gif import animated_gif
 
-    return animated_gif(found.mechanism, found.linkage, name=name, number=number)
+    return animated_gif(found.mechanism, found.linkage, name=name, design=f"design {number}")

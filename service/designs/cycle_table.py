@@ -34,7 +34,8 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
 
     Without a crank speed, velocity and acceleration are those of one radian per second: per unit of crank speed.
     Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
-    (slider pin), and of the guide on the slider along +y. Position errors are NaN without tolerances. Raises `InputError` for too few or too many angles.
+    (slider pin), and of the guide on the slider along +y. Position errors are NaN without tolerances.
+    Raises `InputError` for too few or too many angles.
     """
     import numpy as np
 

@@ -10,7 +10,6 @@ from ..runs.result import Row
 if TYPE_CHECKING:
     from ...model.mechanism import Mechanism
     from ...optimise.problem import Problem, Range
-    from .stored_designs import StoredDesign
 
 _RPM = 9.549296585513721  # in one rad/s
 _MET = 1e-8  # of a bound: designs meet their constraints to this

@@ -20,13 +20,14 @@ _TEXT = 0.022  # height of dimensions, of the drawing's size
 
 
 def linkage_drawing(
-    mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None, crank_angle: float = CRANK_ANGLE
+    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", crank_angle: float = CRANK_ANGLE
 ) -> Drawing:
     """Return one fully turning linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
     Pivots, paths, dead centres and dimensions are exact. Links that the machine describes by their section have their
-    true width; other widths, pins and slider are for show, in proportion. name, number: of run and design, for the
-    title. crank_angle: where it is drawn, rad. Raises `AssemblyError` for a linkage that does not turn fully.
+    true width; other widths, pins and slider are for show, in proportion. name: of the run. design: which of it,
+    "design 3", for the title. crank_angle: where it is drawn, rad. Raises `AssemblyError` for a linkage that does not
+    turn fully.
     """
     sizes = sizes_of(linkage)
     shown = proportions(mechanism, sizes)
@@ -40,7 +41,7 @@ def linkage_drawing(
         Line(on.SKELETON, pin, slider),
         *_dimensions(pin, slider, sizes, left=left, shown=shown, height=_TEXT * size),
     ]
-    title = f"{name}, design {number}" if number is not None else name
+    title = f"{name}, {design}" if design else name
     notes = _notes(linkage, crank_angle, shown)
     y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
     shapes.append(Label(on.NOTES, title, (left, y), 1.2 * _TEXT * size))

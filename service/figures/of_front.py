@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
 
@@ -14,6 +15,10 @@ from .marks import marks, short_title
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
+
+if TYPE_CHECKING:
+    from ...model.mechanism import Mechanism
+    from ..designs.stored_designs import StoredDesign
 
 
 @dataclass(frozen=True)
@@ -47,11 +52,35 @@ def sheet_of(front: ParetoFront, row: int, label: str) -> Figure:
     """Return the sheet of a design of a front. label: what it is among the others."""
     mechanism = front.mechanism(row)
     crank, rod, offset = front.dimensions[row, :3]
-    return design_sheet(
+    return _sheet(
+        front,
         mechanism,
         Linkage(crank, rod, offset, mechanism.branch),
         {str(key): value for key, value in front.designs.iloc[row].items()},
+        label,
+        f"design {row + 1} of {len(front)}",
+    )
+
+
+def sheet_of_changed(front: ParetoFront, design: StoredDesign, numbers: Mapping[str, Any], label: str) -> Figure:
+    """Return the sheet of a design with other lengths than any of the front. numbers: its row of a table of designs."""
+    return _sheet(front, design.mechanism, design.linkage, numbers, label, "other lengths than those found")
+
+
+def _sheet(
+    front: ParetoFront,
+    mechanism: Mechanism,
+    linkage: Linkage,
+    numbers: Mapping[str, Any],
+    label: str,
+    subtitle: str,
+) -> Figure:
+    wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
+    return design_sheet(
+        mechanism,
+        linkage,
+        numbers,
         title=f"{front.problem.name}: {label}",
-        subtitle=f"design {row + 1} of {len(front)}",
-        bold={of.field: short_title(of) for of in (front.problem.quantity(o.quantity) for o in front.objectives)},
+        subtitle=subtitle,
+        bold={of.field: short_title(of) for of in wanted},
     )

@@ -22,12 +22,12 @@ _COLOURS = 32
 _WHITE = 246  # of 255; the fill of the slider is just below
 
 
-def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None) -> bytes:
+def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "") -> bytes:
     """Return one fully turning linkage as an animated GIF, which turns as the machine does.
 
-    name, number: of run and design. Raises `AssemblyError` for a linkage that does not turn fully.
+    name: of the run. design: which of it, "design 3". Raises `AssemblyError` for a linkage that does not turn fully.
     """
-    frames = _frames(mechanism, linkage, f"{name}, design {number}" if number is not None else name)
+    frames = _frames(mechanism, linkage, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
     frames[0].save(out, format="GIF", save_all=True, disposal=1, **options)

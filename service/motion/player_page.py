@@ -44,15 +44,15 @@ class Moving:
     shapes: tuple[Shape, ...]
 
 
-def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, number: int | None = None) -> bytes:
+def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "") -> bytes:
     """Return one fully turning linkage as an HTML file that plays its motion.
 
-    The script turns the crank and looks up everything else, one degree apart, in curves that are in the file. name,
-    number: of run and design. Raises `AssemblyError` for a linkage that does not turn fully.
+    The script turns the crank and looks up everything else, one degree apart, in curves that are in the file. name: of
+    the run. design: which of it, "design 3". Raises `AssemblyError` for a linkage that does not turn fully.
     """
     curves = cycle_table(mechanism, linkage, angles=ANGLES)
     shown = [column for key in _READOUT for column in curves if column.key.startswith(key)]
-    title = f"{name}, design {number}" if number is not None else name
+    title = f"{name}, {design}" if design else name
     inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
     template = Template((_PLAYER / "player.html").read_text(encoding="utf-8"))
     page = template.substitute(

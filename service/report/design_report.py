@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
 from ..designs.columns import DIMENSIONS
+from ..designs.variation import Variation
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
 from .front_section import front_section
 from .job_section import job_section, search_section
 from .subject import Subject
-from .wording import with_unit
+from .wording import rounded, with_unit
 
 _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
@@ -52,6 +53,9 @@ def _summary(subject: Subject) -> Section:
     chosen = [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")]
     if chosen:
         rows.append(("Choices", tuple(chosen)))
+    if subject.changed is not None:
+        rows.append(("What it is", tuple(_changed(subject, subject.changed))))
+        return Section("Summary", (Facts(tuple(rows)),))
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
     words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
@@ -59,6 +63,25 @@ def _summary(subject: Subject) -> Section:
     if words:
         rows.append(("What it is", tuple(words)))
     return Section("Summary", (Facts(tuple(rows)),))
+
+
+def _changed(subject: Subject, changed: Variation) -> list[str]:
+    """Return what was changed of a design of the front, and where that leaves it."""
+    before = subject.result.designs[subject.number - 1]
+    other = [
+        f"{name} {with_unit(changed.row[key], 'mm')} instead of {with_unit(before[key], 'mm')}"
+        for name, key in ((name, f"{name}_mm") for name in DIMENSIONS)
+        if rounded(changed.row[key]) != rounded(before[key])
+    ]
+    found = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(other)}"]
+    if changed.outside:
+        found.append(f"out of the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}")
+    if changed.broken:
+        found.append("breaks rules of the job: see below")
+    better = len(changed.dominated_by)
+    if better:
+        found.append(f"{better} design{'s' if better > 1 else ''} of the front at least as good in every objective")
+    return found
 
 
 def _versions(subject: Subject, when: str) -> Section:

@@ -22,7 +22,7 @@ _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 def design_section(subject: Subject) -> Section:
     """Return drawing, rules, stationarity and trade-offs of the design."""
     return Section(
-        f"Design {subject.number}",
+        subject.label.capitalize(),
         (
             Picture("The linkage, to scale", partial(_drawing, subject)),
             *_rules(subject),
@@ -107,6 +107,8 @@ def _active(subject: Subject, column: Column) -> bool:
 def _optimality(subject: Subject) -> list[Block]:
     residual, status = subject.row.get("residual"), subject.row.get("status")
     blocks: list[Block] = []
+    if subject.changed is not None:
+        blocks.append(Paragraph("Not a design of the front: whether it could be better was not searched for.", "note"))
     if status == "stationary":
         text = (
             f"Stationary: no small change betters every objective while the rules hold (residual {rounded(residual)})."
@@ -115,7 +117,7 @@ def _optimality(subject: Subject) -> list[Block]:
     elif status is not None:
         text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."
         blocks.append(Paragraph(text, "plain"))
-    if len(subject.result.objectives) < 2:
+    if len(subject.result.objectives) < 2 or subject.changed is not None:
         return blocks
     try:
         sentences = trade_offs_of(subject.front, subject.number - 1, subject.design)
@@ -132,11 +134,13 @@ def _drawing(subject: Subject) -> Figure:
 
     design = subject.design
     return drawing_figure(
-        linkage_drawing(design.mechanism, design.linkage, name=subject.result.name, number=subject.number)
+        linkage_drawing(design.mechanism, design.linkage, name=subject.result.name, design=subject.label)
     )
 
 
 def _sheet(subject: Subject) -> Figure:
-    from ..figures.of_front import sheet_of
+    from ..figures.of_front import sheet_of, sheet_of_changed
 
-    return sheet_of(subject.front, subject.number - 1, "the chosen design")
+    if subject.changed is None:
+        return sheet_of(subject.front, subject.number - 1, "the chosen design")
+    return sheet_of_changed(subject.front, subject.design, subject.row, subject.label)

@@ -41,9 +41,19 @@ def _ranges(subject: Subject) -> Table:
         value = subject.row[wanted.column]
         place = 1 + sum(wanted.rank(row) < wanted.rank(subject.row) for row in ranked)
         numbers = (rounded(value), rounded(best), rounded(worst))
-        rows.append((wanted.title, _sense(wanted), *numbers, unit_text(wanted.unit), f"{place} of {len(ranked)}"))
+        rows.append(
+            (
+                wanted.title,
+                _sense(wanted),
+                *numbers,
+                unit_text(wanted.unit),
+                f"{place} of {len(ranked) + (subject.changed is not None)}",
+            )
+        )
     return Table(
-        f"Objectives: design {subject.number} within the front",
+        f"Objectives: {subject.label}, within the front"
+        if subject.changed
+        else f"Objectives: {subject.label} within the front",
         ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
         tuple(rows),
         (0.29, 0.13, 0.13, 0.12, 0.12, 0.08, 0.13),
@@ -59,7 +69,7 @@ def _marked(subject: Subject) -> Table:
     """Return this design beside the best in each objective and the knee."""
     result = subject.result
     titles = {wanted.quantity: wanted.title for wanted in result.objectives}
-    labels: dict[int, list[str]] = {subject.number - 1: ["this design"]}
+    labels: dict[int, list[str]] = {subject.number - 1: ["this design" if subject.changed is None else "unchanged"]}
     for name, place in result.extremes.items():
         labels.setdefault(place, []).append(f"best {titles[name]}")
     if result.knee is not None and len(result.objectives) > 1:
@@ -70,6 +80,8 @@ def _marked(subject: Subject) -> Table:
         (str(place + 1), ", ".join(words), *(rounded(result.designs[place][column.key]) for column in columns))
         for place, words in labels.items()
     )
+    if subject.changed is not None:
+        rows = (("", "this design", *(rounded(subject.row[column.key]) for column in columns)), *rows)
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
     lengths, name = 0.09, 0.16  # the heads of objectives are the longest words: "transmission"
     share = (0.95 - name - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..designs.stored_designs import StoredDesign, design_of, front_of
+from ..designs.variation import Variation, with_lengths
 from ..runs.result import Result, Row
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ class Subject:
     """One design of a run. number: of the design, from 1. run: what the run is called.
 
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
+    changed: the design with other lengths than it has in the front; None for the design as it is.
     """
 
     result: Result
@@ -29,16 +31,22 @@ class Subject:
     design: StoredDesign
     versions: Mapping[str, str]
     certificate: Mapping[str, Any] | None = None
+    changed: Variation | None = None
 
     @property
     def row(self) -> Row:
         """All numbers of the design."""
-        return self.result.designs[self.number - 1]
+        return self.result.designs[self.number - 1] if self.changed is None else self.changed.row
+
+    @property
+    def label(self) -> str:
+        """The design by its number."""
+        return f"design {self.number}" + ("" if self.changed is None else ", changed")
 
     @property
     def name(self) -> str:
         """The design among the others."""
-        return f"design {self.number} of {len(self.result.designs)}"
+        return f"{self.label} of {len(self.result.designs)}" if self.changed is None else self.label
 
 
 def subject_of(
@@ -50,18 +58,26 @@ def subject_of(
     versions: Mapping[str, str],
     certificate: Mapping[str, Any] | None = None,
     front: ParetoFront | None = None,
+    changed: Variation | None = None,
 ) -> Subject:
-    """Return the subject of a report. front: of the result, where there is one already.
+    """Return the subject of a report.
 
+    front: of the result, where there is one already. changed: the design with other lengths, if it has others.
     Raises `RunError` for a design that does not belong to the problem.
     """
+    design = design_of(problem, result.designs[number - 1])
+    if changed is not None:
+        linkage = changed.linkage
+        lengths = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
+        design = with_lengths(design, lengths)
     return Subject(
         result=result,
         number=number,
         run=run,
         problem=problem,
         front=front_of(problem, result) if front is None else front,
-        design=design_of(problem, result.designs[number - 1]),
+        design=design,
         versions=versions,
         certificate=certificate,
+        changed=changed,
     )

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import httpx
+import pypdfium2
 import pytest
 from ezdxf.filemanagement import read as read_dxf
 
@@ -77,6 +78,8 @@ def test_the_report_has_the_numbers_of_the_api_and_of_the_csv(solved: Solved, cl
     for key, value in design.items():
         if isinstance(value, float):
             assert float(stored[key]) == value == table[key], key
+        elif value is None:  # not defined, as a position error without tolerances
+            assert (stored[key], str(table[key])) == ("", "nan"), key
         else:
             assert (stored[key], value) == ("", table[key]), key
     versions = client.get(f"{solved.path}/files/versions.json").json()
@@ -108,6 +111,92 @@ def test_a_service_without_figures_draws_for_cad_all_the_same(solved: Solved) ->
         assert client.get(f"{solved.path}/designs/1/linkage.dxf").status_code == 200
         for name in ("motion.gif", "report.html", "report.pdf"):
             assert "draws no figures" in refused(client.get(f"{solved.path}/designs/1/{name}"), 404)
+
+
+def changed(solved: Solved) -> dict[str, float]:
+    """Return lengths that design 3 does not have, near its own."""
+    row = solved.result.designs[2]
+    return {
+        name: float(row[name] or 0.0) * factor
+        for name, factor in (("crank_mm", 0.98), ("rod_mm", 1.03), ("offset_mm", 1.01))
+    }
+
+
+@pytest.fixture(scope="module")
+def files_of_changed(solved: Solved, client: httpx.Client) -> dict[str, httpx.Response]:
+    """Return every file of design 3 with other lengths."""
+    names = (*(f"designs/3/{name}" for name in KINDS), "figures/design_3.png", "figures/design_3.svg")
+    return {name: client.get(f"{solved.path}/{name}", params=changed(solved)) for name in names}
+
+
+def test_files_of_changed_lengths_say_so_in_name_and_title(
+    files_of_changed: dict[str, httpx.Response], solved: Solved, client: httpx.Client
+) -> None:
+    for name, answer in files_of_changed.items():
+        assert answer.status_code == 200, (name, answer.text)
+        file = answer.headers["content-disposition"]
+        assert f"short-test-job-{solved.number}-design-3-changed" in file, name
+    for name in ("designs/3/linkage.svg", "designs/3/motion.gif"):
+        unchanged = client.get(f"{solved.path}/{name}")
+        assert files_of_changed[name].content != unchanged.content, name
+        assert "changed" not in unchanged.headers["content-disposition"]
+    for name in ("designs/3/linkage.svg", "designs/3/motion.html", "designs/3/report.html"):
+        assert "design 3, changed" in files_of_changed[name].text, name
+    document = read_dxf(io.StringIO(files_of_changed["designs/3/linkage.dxf"].text))
+    assert any("design 3, changed" in text.dxf.text for text in document.modelspace().query("TEXT"))
+    paper = pypdfium2.PdfDocument(files_of_changed["designs/3/report.pdf"].content)
+    assert paper.get_metadata_dict()["Title"] == "Short test [job]: design 3, changed"
+
+
+def test_files_of_changed_lengths_have_their_numbers(
+    files_of_changed: dict[str, httpx.Response], solved: Solved, client: httpx.Client
+) -> None:
+    lengths = changed(solved)
+    design = client.post(f"{solved.path}/designs/3/what-if", json=lengths).json()["design"]
+    document = read_dxf(io.StringIO(files_of_changed["designs/3/linkage.dxf"].text))
+    drawn = sorted(
+        (line.dxf.end - line.dxf.start).magnitude for line in document.modelspace().query('LINE[layer=="SKELETON"]')
+    )
+    assert drawn == pytest.approx([lengths["crank_mm"], lengths["rod_mm"]], rel=1e-12)
+    page = files_of_changed["designs/3/report.html"].text
+    cells = re.findall(r'<td class="right">([^<]*)</td><td>([a-zA-Z0-9_]+)</td></tr>', page)
+    stored = {key: text for text, key in cells}
+    assert list(stored) == list(design)
+    for key, value in design.items():
+        assert (float(stored[key]) == value) if isinstance(value, float) else stored[key] == "", key
+    assert "Not all rules are met" in page
+    assert f"crank {lengths['crank_mm']:.6g} mm instead of" in page
+    for name, digits in (("designs/3/linkage.svg", 7), ("designs/3/motion.html", 6)):
+        assert f"crank {lengths['crank_mm']:.{digits}g} mm" in files_of_changed[name].text, name
+
+
+def test_the_lengths_of_the_design_itself_change_nothing(solved: Solved, client: httpx.Client) -> None:
+    own = {name: solved.result.designs[2][name] for name in ("crank_mm", "rod_mm", "offset_mm")}
+    answer = client.get(f"{solved.path}/designs/3/linkage.svg", params=own)  # type: ignore[arg-type]
+    assert answer.text == client.get(f"{solved.path}/designs/3/linkage.svg").text
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ({"crank_mm": 100}, "come together, crank_mm, rod_mm and offset_mm; got none for rod_mm and offset_mm"),
+        ({"crank_mm": 100, "rod_mm": 90, "offset_mm": 0}, "rod must exceed crank + |offset| for full rotation"),
+        ({"crank_mm": "nan", "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
+        ({"crank_mm": 0, "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
+        ({"crank_mm": 10, "rod_mm": 300, "offset_mm": "inf"}, "offset_mm"),
+        ({"crank_mm": "long", "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
+    ],
+)
+@pytest.mark.parametrize("name", ["designs/3/linkage.dxf", "designs/3/report.pdf", "figures/design_3.png"])
+def test_lengths_that_make_no_design_are_refused(
+    name: str, query: dict[str, object], said: str, solved: Solved, client: httpx.Client
+) -> None:
+    assert said in refused(client.get(f"{solved.path}/{name}", params=query), 422)  # type: ignore[arg-type]
+
+
+def test_other_lengths_are_those_of_one_design(solved: Solved, client: httpx.Client) -> None:
+    answer = client.get(f"{solved.path}/figures/parallel_coordinates.png", params=changed(solved))
+    assert "other lengths are those of a single design" in refused(answer, 422)
 
 
 def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> None:

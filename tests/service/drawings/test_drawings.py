@@ -57,7 +57,7 @@ def linkages(draw: st.DrawFn) -> Linkage:
 
 
 def drawing_of(linkage: Linkage, angle: float = math.radians(60.0)) -> Drawing:
-    return linkage_drawing(Mechanism(), linkage, name="Sieve", number=3, crank_angle=angle)
+    return linkage_drawing(Mechanism(), linkage, name="Sieve", design="design 3", crank_angle=angle)
 
 
 def read(drawing: Drawing) -> Document:
@@ -240,7 +240,7 @@ def test_links_of_a_section_have_their_width() -> None:
 
 @pytest.mark.parametrize("name", [r"$\frac{ <script>&amp; 50 %%u \P {x;y} ^J", "Größe 寸法\nline", "", "\\U+0041"])
 def test_any_name_can_be_drawn(name: str) -> None:
-    drawing = linkage_drawing(Mechanism(), LINKAGES["offset"], name=name, number=1)
+    drawing = linkage_drawing(Mechanism(), LINKAGES["offset"], name=name, design="design 1")
     assert read(drawing).audit().errors == []
     root = ElementTree.fromstring(svg_file(drawing))
     title = root.find("{*}title")

@@ -45,7 +45,7 @@ def data_of(page: bytes) -> dict[str, Any]:
 @pytest.mark.parametrize("name", LINKAGES)
 def test_the_page_has_the_curves_of_the_model(name: str) -> None:
     linkage = LINKAGES[name]
-    data = data_of(player_page(machine(linkage), linkage, name="Sieve", number=3))
+    data = data_of(player_page(machine(linkage), linkage, name="Sieve", design="design 3"))
     table = {column.key: column.values for column in cycle_table(machine(linkage), linkage, angles=360)}
     curves = data["curves"]
     assert len(curves) == 5
@@ -64,7 +64,7 @@ def test_the_page_has_the_curves_of_the_model(name: str) -> None:
 
 @pytest.mark.parametrize("name", [r"$\frac{ <script>alert(1)</script> &amp; ${data} $title", "Größe 寸法", ""])
 def test_any_name_can_be_shown(name: str) -> None:
-    page = player_page(Mechanism(), LINKAGES["offset"], name=name, number=1).decode()
+    page = player_page(Mechanism(), LINKAGES["offset"], name=name, design="design 1").decode()
     assert page.count("<script") == 2
     assert "<title>" in page
 

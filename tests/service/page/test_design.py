@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import ezdxf.filemanagement
 import httpx
 import numpy as np
 import pytest
@@ -291,6 +292,31 @@ def test_everything_to_take_away_is_linked(opened: Opened, solved: Solved) -> No
         *(f"{design}/{name}" for name in ("report.html", "report.pdf")),
         *(f"api/v1/jobs/{solved.number}/figures/design_3.{kind}" for kind in ("png", "svg")),
     ]
+
+
+def test_what_is_taken_away_is_the_design_on_the_screen(opened: Opened, solved: Solved, service: str) -> None:
+    page = opened()
+    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    bare = links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))")
+    row = solved.result.designs[2]
+    page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
+    expect(page.get_by_role("navigation", name="Take away")).to_contain_text("of design 3, changed")
+    expect(page.locator(".numbers td[data-design='What if'][data-key='crank_mm']")).to_be_visible()
+    shown = dict(page.locator(".numbers td[data-design='What if'][data-value]").evaluate_all(NUMBERS))
+    href = page.get_by_role("link", name="DXF").get_attribute("href")
+    document = ezdxf.filemanagement.read(io.StringIO(httpx.get(f"{service}/{href}").text))
+    skeleton = document.modelspace().query('LINE[layer=="SKELETON"]')
+    drawn = sorted((line.dxf.end - line.dxf.start).magnitude for line in skeleton)
+    assert drawn == pytest.approx([float(shown["crank_mm"]), float(shown["rod_mm"])], rel=1e-9)
+    assert drawn[0] != pytest.approx(row["crank_mm"], rel=1e-3)
+    with page.expect_download() as taken:
+        page.get_by_role("link", name="Sheet SVG").click()
+    assert taken.value.suggested_filename == f"short-test-job-{solved.number}-design-3-changed-sheet.svg"
+    for link in links.all():
+        assert "crank_mm=" in str(link.get_attribute("href"))
+    page.get_by_role("button", name="Reset").click()
+    expect(page.get_by_role("navigation", name="Take away")).not_to_contain_text("changed")
+    assert links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))") == bare
 
 
 def test_a_design_that_is_not_there_is_said(open_page: Open, solved: Solved) -> None:

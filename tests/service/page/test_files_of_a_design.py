@@ -28,7 +28,7 @@ def test_the_page_plays_in_a_browser_and_fetches_nothing(browser: Browser, tmp_p
     linkage = BELOW
     mechanism = replace(fronts.MACHINE, speed=-4.0)
     file = tmp_path / "motion.html"
-    file.write_bytes(player_page(mechanism, linkage, name="Sieve", number=3))
+    file.write_bytes(player_page(mechanism, linkage, name="Sieve", design="design 3"))
     page = browser.new_page()
     wrong: list[str] = []
     asked: list[str] = []
@@ -82,7 +82,7 @@ def test_the_files_are_accessible_and_as_wide_as_the_window(browser: Browser, tm
     ]
     files = {
         "report": html_file(replace(report, sections=tuple(part for part in sections if part.blocks))),
-        "motion": player_page(fronts.MACHINE, BELOW, name="Sieve", number=3),
+        "motion": player_page(fronts.MACHINE, BELOW, name="Sieve", design="design 3"),
     }
     for name, content in files.items():
         file = tmp_path / f"{name}.html"

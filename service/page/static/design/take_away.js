@@ -13,14 +13,24 @@ const FILES = [
   ["report.pdf", "PDF", "The report to print"],
 ];
 
-/** Return the links; job, number: of the design. */
+/**
+ * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
+ * itself again with null.
+ */
 export function takeAway(job, number) {
-  const files = FILES.map(([file, title, words]) =>
-    h("a", { class: "button", href: address(`jobs/${job}/designs/${number}/${file}`), download: "", title: words }, title));
-  const sheet = ["png", "svg"].map((kind) =>
-    h("a", { class: "button", href: address(`jobs/${job}/figures/design_${number}.${kind}`), download: "", title: "All curves on one sheet" }, `Sheet ${kind.toUpperCase()}`));
+  const anchor = (path, title, words) => h("a", { class: "button", "data-path": path, download: "", title: words }, title);
+  const links = [
+    ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),
+    ...["png", "svg"].map((kind) => anchor(`jobs/${job}/figures/design_${number}.${kind}`, `Sheet ${kind.toUpperCase()}`, "All curves on one sheet")),
+  ];
+  const said = h("span", { class: "quiet", role: "status" });
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
-  return h("nav", { class: "take-away row", "aria-label": "Take away" }, files, sheet, copy);
+  const show = (lengths) => {
+    for (const link of links) link.href = address(link.dataset.path, lengths ?? {});
+    said.textContent = lengths ? `of design ${number}, changed` : "";
+  };
+  show(null);
+  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, links, copy, said), show };
 }
 
 async function copyLink() {

@@ -43,7 +43,8 @@ export async function show(place, { parts, query, signal }) {
     if (!angle.playing) angle.set(at);
   };
   const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
-  fill(place, top(shared), takeAway(job, number), places.objectives,
+  const files = takeAway(job, number);
+  fill(place, top(shared), files.node, places.objectives,
     h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places.topics);
   for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
   const machines = stage(places.stage, angle);
@@ -71,6 +72,7 @@ export async function show(place, { parts, query, signal }) {
       changed = answer;
       clearTimeout(later);
       later = setTimeout(draw(), SOON); // the tables, once the length rests
+      files.show(lengths ?? null);
       keep({ beside: others.map((one) => one.number).join(","), ...(lengths ?? {}) });
     },
     refused: () => machines.fade(true),
