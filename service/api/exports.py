@@ -15,6 +15,11 @@ from .stored_fronts import FrontDep, StoredFront
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 
+def formats() -> list[str]:
+    """Return the endings of the files that a front is given as here: Parquet where pyarrow is installed."""
+    return ["csv", "json", *(["parquet"] if find_spec("pyarrow") else [])]
+
+
 def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
     name = f"{slug(found.result.name)}-{found.job.id}.{ending}"
     return Response(content, media_type=media_type, headers={"Content-Disposition": f'attachment; filename="{name}"'})
@@ -53,7 +58,7 @@ def export_json(found: FrontDep) -> Response:
 )
 def export_parquet(found: FrontDep) -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
-    if find_spec("pyarrow") is None:
+    if "parquet" not in formats():
         raise HTTPException(
             501, "Parquet needs pyarrow, which is not installed; install slidercrank[parquet], or take CSV"
         )

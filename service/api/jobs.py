@@ -15,6 +15,7 @@ from ...model.errors import InputError, NotFound
 from ..job_record import job_record
 from ..store import Job, State, Store
 from ..submission import submit
+from .exports import formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, require_no_file, within
 from .merge_patch import merged
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
@@ -115,8 +116,8 @@ def show_tables(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 
 @router.get("/jobs/{number}/files", response_model=JobFiles)
 def list_files(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Return the names of a job's files."""
-    return {"files": store.artefacts(number)}
+    """Return the names of a job's files, and what its front is exported as."""
+    return {"files": store.artefacts(number), "exports": formats()}
 
 
 @router.get("/jobs/{number}/files/{name}", response_class=Response, responses=_FILE)

@@ -133,3 +133,4 @@ class JobFiles(Shown):
     """The files of a job."""
 
     files: list[str] = Field(examples=[["job.toml", "versions.json"]])
+    exports: list[str] = Field(description="what its front is given as, /jobs/{number}/export.csv", examples=[["csv"]])

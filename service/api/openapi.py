@@ -6,6 +6,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from .exports import formats
 from .job_requests import EXAMPLE, JSON, TOML, Submission
 from .problems import Problem
 
@@ -42,6 +43,8 @@ def describe(app: FastAPI) -> None:
 
 
 def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
+    if "parquet" not in formats():
+        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it says what to install
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})
     shapes["Problem"] = Problem.model_json_schema()

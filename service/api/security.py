@@ -97,10 +97,10 @@ class Guard:
         if self.token is None or scope["path"] == OPEN:
             return None
         if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
-            return self._let_in(scope)
+            return self._let_in(connection)
         if not self._knows(connection):
             if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
-                return locked_page()
+                return locked_page(connection)
             return problem(
                 HTTPStatus.UNAUTHORIZED,
                 "a request carries the token of the service; got none or a wrong "
@@ -109,10 +109,13 @@ class Guard:
             )
         return None
 
-    def _let_in(self, scope: Scope) -> Response:
+    def _let_in(self, connection: HTTPConnection) -> Response:
         """Return the answer to an address with a token: a cookie, and the same address without it."""
+        scope = connection.scope
         given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
         if len(given) != 1 or not self._right(given[0]):
+            if "text/html" in connection.headers.get("accept", ""):
+                return locked_page(connection, wrong=True)
             return problem(
                 HTTPStatus.UNAUTHORIZED,
                 "the address carries the token of the service; got a wrong one; "

@@ -1,16 +1,65 @@
-"""What a browser is shown that does not carry the token."""
+"""A page for browsers that do not carry the token: it asks for it."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+from functools import cache
+from html import escape
 from http import HTTPStatus
 from pathlib import Path
+from string import Template
 
+from starlette.requests import HTTPConnection
 from starlette.responses import HTMLResponse
 
-_FILE = Path(__file__).parent / "static" / "locked.html"
+_STATIC = Path(__file__).parent / "static"
+_STYLE = """
+.locked { max-width: 40rem; padding-top: 3rem; }
+.locked input { width: 20rem; }
+.locked code { overflow-wrap: anywhere; }
+"""
+# A view is named after the #, which a browser keeps to itself: it goes along with the form, and the redirect keeps it.
+_SCRIPT = """
+document.documentElement.dataset.scheme = localStorage.getItem("scheme") ?? "auto";
+document.forms[0].addEventListener("submit", ({ target }) => { target.action = `/${location.hash}`; });
+"""
+_WRONG = '<p class="error" role="alert">That was not the token of this service.</p>'
 
 
-def locked_page() -> HTMLResponse:
-    """Return the page that says how to get in, with status 401."""
-    headers = {"WWW-Authenticate": "Bearer"}
-    return HTMLResponse(_FILE.read_bytes(), HTTPStatus.UNAUTHORIZED, headers)
+def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLResponse:
+    """Return the page that asks for the token, with status 401. wrong: another token was given.
+
+    The address is that of the connection, whose Host is one of the service's names.
+    """
+    page = Template((_STATIC / "locked.html").read_text(encoding="utf-8"))
+    address = f"{connection.scope.get('scheme', 'http')}://{connection.headers.get('host', '')}/?token=…"
+    content = page.substitute(
+        address=escape(address),
+        refused=_WRONG if wrong else "",
+        icon=base64.b64encode((_STATIC / "icon.svg").read_bytes()).decode(),
+        style=_style(),
+        script=_SCRIPT,
+    )
+    headers = {"WWW-Authenticate": "Bearer", "Content-Security-Policy": _policy()}
+    return HTMLResponse(content, HTTPStatus.UNAUTHORIZED, headers)
+
+
+@cache
+def _style() -> str:
+    """Return the style of all views, and the page's own: its files are not for who has no token."""
+    return (_STATIC / "style" / "shell.css").read_text(encoding="utf-8") + _STYLE
+
+
+@cache
+def _policy() -> str:
+    """Return what the page may do: this very style and script, and send its form to the service itself."""
+    style, script = (_digest(text) for text in (_style(), _SCRIPT))
+    return (
+        f"default-src 'none'; style-src {style}; script-src {script}; img-src data:; form-action 'self'; "
+        "base-uri 'none'; frame-ancestors 'none'"
+    )
+
+
+def _digest(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -97,6 +97,17 @@ def test_parquet_without_pyarrow_says_what_to_install(
     assert "install slidercrank[parquet]" in answer.json()["detail"]
 
 
+def test_parquet_is_offered_only_where_pyarrow_is(solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
+    for there, expected in ((True, ["csv", "json", "parquet"]), (False, ["csv", "json"])):
+        monkeypatch.setattr(exports, "find_spec", lambda name, there=there: there or None)
+        with client_of(solved.store) as client:
+            assert client.get(f"{solved.path}/files").json()["exports"] == expected
+            schema = client.get(f"{API}/openapi.json").json()
+            assert (f"{API}/jobs/{{number}}/export.parquet" in schema["paths"]) == there
+            links = schema["paths"][f"{API}/jobs"]["post"]["responses"]["201"]["links"]
+            assert ("export_parquet" in links) == there
+
+
 def test_figures_are_listed_and_drawn(solved: Solved, client: httpx.Client) -> None:
     listed = [figure["name"] for figure in client.get(f"{solved.path}/figures").json()["figures"]]
     assert set(listed) == set(NAMES)

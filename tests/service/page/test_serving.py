@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from urllib.parse import urlsplit
+
 import httpx
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
 from playwright.sync_api import expect
 
 from slidercrank.service.api.settings import Settings
@@ -33,7 +36,49 @@ def test_nothing_but_the_files_of_the_page_is_served(store: Store) -> None:
 
 def test_without_the_token_a_browser_is_told_where_it_is(open_page: Open, store: Store) -> None:
     page = open_page(store, settings=Settings(token=TOKEN), expected=("401",))
-    expect(page.get_by_role("heading")).to_have_text("Open the address that the service printed")
+    expect(page.get_by_role("heading")).to_have_text("This service asks for its token")
+    host = urlsplit(page.url).netloc
+    expect(page.get_by_role("main")).to_contain_text(f"http://{host}/?token=…")
+    expect(page.locator(".masthead .brand")).to_have_css("display", "flex")
+
+
+def test_who_gives_the_token_comes_to_the_view_that_was_asked_for(open_page: Open, store: Store) -> None:
+    page = open_page(store, "#/help/peak_torque", settings=Settings(token=TOKEN), expected=("401",))
+    page.get_by_label("Token").fill("wrong")
+    page.get_by_role("button", name="Open").click()
+    expect(page.get_by_role("alert")).to_have_text("That was not the token of this service.")
+    page.get_by_label("Token").fill(TOKEN)
+    page.get_by_role("button", name="Open").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("peak torque", ignore_case=True)
+    assert page.url.endswith("/#/help/peak_torque")
+    # Whoever loses the cookie, as when the service starts anew, is asked once more, and comes back.
+    page.context.clear_cookies()
+    page.evaluate("location.hash = '#/'")
+    expect(page.get_by_role("heading")).to_have_text("This service asks for its token")
+    page.get_by_label("Token").fill(TOKEN)
+    page.get_by_role("button", name="Open").click()
+    expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+
+
+def test_the_page_that_asks_for_the_token_is_for_everybody(open_page: Open, store: Store) -> None:
+    page = open_page(store, "#/jobs/7", settings=Settings(token=TOKEN), expected=("401",))
+    assert Axe().run(page).violations_count == 0
+    page.evaluate("localStorage.setItem('scheme', 'dark')")
+    page.reload()
+    expect(page.locator("html")).to_have_attribute("data-scheme", "dark")
+
+
+def test_the_token_leads_nowhere_else(store: Store) -> None:
+    with (
+        served(store, Settings(token=TOKEN, hosts=("*",))) as address,
+        httpx.Client(base_url=address, headers={"Accept": "text/html"}) as client,
+    ):
+        for rest in ("&next=http://attacker.example", "&next=//attacker.example", "#//attacker.example"):
+            assert client.get(f"/?token={TOKEN}{rest}").headers["location"] == "/"
+        client.cookies.clear()
+        asked = client.get("/", headers={"Host": '"><script>alert(1)</script>'})
+        assert asked.status_code == 401
+        assert "<script>alert" not in asked.text
 
 
 def test_the_printed_address_lets_in_also_to_a_view_of_a_link(open_page: Open, store: Store) -> None:

@@ -3,15 +3,16 @@
 import { address, get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 
-const FRONT = [["export.csv", "Designs as CSV"], ["export.json", "Front as JSON"], ["export.parquet", "Designs as Parquet"]];
+const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs as Parquet" };
 
 /** Return a list of files behind a button; those that have to be asked for are asked for when it opens. */
 export function downloads(job, { designs, signal }) {
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
   const files = h("ul");
+  const exported = h("ul");
   const figures = h("ul");
   const list = h("div", { class: "chooser-list panel" },
-    designs && [h("h2", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => file(path, name)))],
+    designs && [h("h2", {}, "Front"), exported],
     h("h2", {}, "Files of the job"), files,
     designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;
@@ -24,6 +25,7 @@ export function downloads(job, { designs, signal }) {
   async function listFiles() {
     try {
       const found = await get(`jobs/${job.id}/files`, {}, signal);
+      fill(exported, found.exports.map((ending) => file(`export.${ending}`, FRONT[ending])));
       fill(files, found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)));
     } catch (problem) {
       fill(files, h("li", {}, problem.message));

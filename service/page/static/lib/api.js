@@ -50,6 +50,7 @@ async function ask(method, url, body, signal, headers = {}) {
     if (error.name === "AbortError") throw error;
     throw new Problem(0, "The service does not answer; the page goes on when it is back.");
   }
+  if (response.status === 401) location.reload(); // the service asks for its token, and comes back to this view
   if (response.status === 204) return null;
   const text = await response.text();
   let answer = null;
