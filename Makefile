@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test lint benchmark requests faults clean
+.PHONY: run test lint benchmark pictures requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed $(VENV)/.kernels
@@ -21,6 +21,10 @@ lint: $(VENV)/.installed-test
 
 benchmark: $(VENV)/.installed-benchmark $(VENV)/.kernels
 	$(BIN)/python -m benchmarks
+
+# The pictures of README and docs, on a quiet machine: their times are seen.
+pictures: $(VENV)/.installed-benchmark $(VENV)/.kernels
+	$(BIN)/python -m benchmarks.pictures
 
 # Requests made from the description of the API: about twenty minutes.
 requests: $(VENV)/.installed-test $(VENV)/.kernels

@@ -1,0 +1,125 @@
+"""The pictures of README and docs, made anew: `make pictures`, or `python -m benchmarks.pictures [NAME ...]`.
+
+On a quiet machine: a run's time is on the pictures of the page, and the courses of methods are measured (minutes).
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+import tomllib
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from slidercrank.optimise.job import load_job
+from slidercrank.optimise.solve import solve
+from slidercrank.service.figures import draw_front
+from slidercrank.service.store import Store
+from slidercrank.service.submission import submit
+from slidercrank.service.workers.worker import work
+
+from .browser import address_of, chromium
+from .service_process import service
+
+FOLDER = Path(__file__).parents[1] / "docs"
+MOST_SECONDS = 5.0
+"""Time of the feeder's search that is shown at most: on a quiet machine it takes about one."""
+_JOB = Path(__file__).parents[1] / "runs" / "feeder.toml"
+_KNEE_ANGLE = 120  # deg, where all forces of the feeder are clear of each other
+
+
+def require_quick(seconds: float) -> None:
+    """End the program if a search took longer than it does on a quiet machine: readers would take it for the rule."""
+    if not seconds <= MOST_SECONDS:
+        raise SystemExit(
+            f"a search that is shown takes {MOST_SECONDS:g} s at most; got {seconds:.1f} s; "
+            "end what else runs on this machine, and make the pictures again"
+        )
+
+
+def knee(folder: Path) -> None:
+    """Draw the sheet of the feeder's knee."""
+    with tempfile.TemporaryDirectory() as place:
+        (file,) = (file for file in draw_front(solve(load_job(_JOB)), Path(place)) if file.stem == "knee")
+        shutil.copyfile(file, folder / "feeder_knee.png")
+
+
+def page(folder: Path) -> None:
+    """Take the run and its knee on the page."""
+    with _feeder() as (opened, job, design):
+        opened(f"jobs/{job}", 1130, _explorer).screenshot(path=folder / "page_front.png")
+        opened(f"jobs/{job}/designs/{design}", 1000, _with_forces).screenshot(path=folder / "page_design.png")
+
+
+def methods(folder: Path) -> None:
+    """Measure every method on the shipped jobs."""
+    from . import methods as measured  # its peers are of the benchmark extra
+
+    measured.compare()
+    shutil.copyfile(measured.FIGURE, folder / "methods.png")
+
+
+PICTURES: dict[str, Callable[[Path], None]] = {
+    "feeder_knee.png": knee,
+    "page_front.png": page,
+    "page_design.png": page,
+    "methods.png": methods,
+}
+
+
+@contextmanager
+def _feeder() -> Iterator[tuple[Callable[[str, int, Callable[[Page], None]], Page], int, int]]:
+    """Solve the feeder; give what opens a view of it in a window of a height, its job and its knee."""
+    tables = tomllib.loads(_JOB.read_text(encoding="utf-8"))
+    with tempfile.TemporaryDirectory() as place, chromium() as browser:
+        file = Path(place) / "store.db"
+        solve(load_job(_JOB))  # the first search of a process loads what is compiled
+        with Store(file) as store:
+            job = submit(store, tables).id
+            work(store, drain=True)
+            result = store.result(job)
+        require_quick(result.seconds)
+        with service(str(file), Path(place), workers=0) as running:
+
+            def opened(view: str, height: int, ready: Callable[[Page], None]) -> Page:
+                context = browser.new_context(
+                    viewport={"width": 1280, "height": height}, reduced_motion="reduce", color_scheme="light"
+                )
+                shown = context.new_page()
+                shown.goto(address_of(running, view))
+                ready(shown)
+                return shown
+
+            yield opened, job, 1 + (result.knee or 0)
+
+
+def _explorer(shown: Page) -> None:
+    expect(shown.locator(".run-head time")).to_have_text("just now")
+    expect(shown.locator(".trade-offs li").first).to_be_visible(timeout=30_000)
+
+
+def _with_forces(shown: Page) -> None:
+    expect(shown.locator(".trade-offs li").first).to_be_visible(timeout=30_000)
+    shown.get_by_role("checkbox", name="Forces").check()
+    angle = shown.get_by_role("slider", name="Crank angle")
+    angle.evaluate(f"(node) => {{ node.value = {_KNEE_ANGLE}; node.dispatchEvent(new Event('input')); }}")
+    shown.mouse.move(0, 0)
+
+
+def main(names: Iterable[str]) -> None:
+    """Make the pictures of these names, all by default."""
+    chosen = list(names) or list(PICTURES)
+    unknown = [name for name in chosen if name not in PICTURES]
+    if unknown:
+        raise SystemExit(f"the pictures are {', '.join(PICTURES)}; got {', '.join(unknown)}; choose some of them")
+    for make in dict.fromkeys(PICTURES[name] for name in chosen):
+        make(FOLDER)
+    print(f"made {', '.join(chosen)} in {FOLDER}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
