@@ -83,7 +83,7 @@ def _marked(subject: Subject) -> Table:
     if subject.changed is not None:
         rows = (("", "this design", *(rounded(subject.row[column.key]) for column in columns)), *rows)
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    lengths, name = 0.09, 0.16  # the heads of objectives are the longest words: "transmission"
+    lengths, name = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
     share = (0.95 - name - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
     return Table(
         "Marked designs",

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from matplotlib.text import Text
 
+from slidercrank.optimise.problem import Range
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
@@ -271,6 +272,27 @@ def test_lines_are_broken_where_they_have_to_be() -> None:
     broken = wrapped("x" * 100, 10.0, 1.0)
     assert len(broken) > 3
     assert "".join(broken) == "x" * 100
+
+
+def test_no_word_of_a_table_is_broken() -> None:
+    found = fronts.front(designs=6)
+    below = found.dimensions * (1.0, 1.0, -1.0)  # signs are a letter more
+    table = found.designs.assign(offset_mm=-found.designs["offset_mm"], slack_least_transmission_angle_deg=-1.5e-14)
+    result = result_of(replace(found, designs=table, dimensions=below), "kept")
+    of = subject_of(replace(found.problem, offset=Range(lower=-0.15, upper=0.0)), result, 2, run="kept", versions={})
+    sections = [
+        replace(part, blocks=tuple(block for block in part.blocks if isinstance(block, Table)))
+        for part in design_report(of, made=0.0).sections
+    ]
+    tables = replace(report(), sections=tuple(part for part in sections if part.blocks))
+    written = {word for page in pages(tables) for item in page.figure.findobj(Text) for word in item.get_text().split()}
+    for part in tables.sections:
+        for block in part.blocks:
+            assert isinstance(block, Table)
+            words = {word for row in (block.heads, *block.rows) for cell in row for word in cell.split()}
+            assert words <= written, words - written
+    (slack,) = (row for part in tables.sections for block in part.blocks for row in block.rows if "slack_" in row[-1])
+    assert slack[1] == "0"
 
 
 def test_a_large_front_is_drawn_as_points(monkeypatch: pytest.MonkeyPatch) -> None:
