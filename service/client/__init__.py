@@ -178,7 +178,9 @@ class Client:
             if not page["designs"] or len(rows) >= page["chosen"]:
                 break
         keys = [column["key"] for column in page["columns"]]
-        return pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
+        found = pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
+        undefined = [key for key in keys if rows and found[key].isna().all()]
+        return found.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is no number
 
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number in the front, counted from 1."""

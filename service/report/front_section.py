@@ -83,13 +83,13 @@ def _marked(subject: Subject) -> Table:
     if subject.changed is not None:
         rows = (("", "this design", *(rounded(subject.row[column.key]) for column in columns)), *rows)
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    lengths, name = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
-    share = (0.95 - name - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
+    lengths, what = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
+    share = (0.95 - what - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
     return Table(
         "Marked designs",
         ("no.", "what it is", *heads),
         rows,
-        (0.05, name, *(lengths for _ in DIMENSIONS), *(share for _ in columns[len(DIMENSIONS) :])),
+        (0.05, what, *(lengths for _ in DIMENSIONS), *(share for _ in columns[len(DIMENSIONS) :])),
         frozenset({0, *range(2, 2 + len(columns))}),
         bold=frozenset({0}),
         small=len(columns) > 5,

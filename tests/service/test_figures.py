@@ -216,7 +216,7 @@ def test_the_table_of_a_sheet_has_every_objective_of_the_job() -> None:
     every = {of.field: short_title(of) for of in list(QUANTITIES.values())[-20:]}
     for bold in (few, every):
         figure = design_sheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
-        printed = [text.get_text() for text in figure.texts if text.get_weight() == "bold"]
+        printed = [text.get_text() for text in figure.texts if text.get_fontweight() == "bold"]
         assert set(bold.values()) <= set(printed)
         assert {shown(float(numbers[key]), 5, zeros=True) for key in bold} <= set(printed)
         assert overlaps(figure) == []

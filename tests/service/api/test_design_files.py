@@ -172,7 +172,7 @@ def test_files_of_changed_lengths_have_their_numbers(
 
 def test_the_lengths_of_the_design_itself_change_nothing(solved: Solved, client: httpx.Client) -> None:
     own = {name: solved.result.designs[2][name] for name in ("crank_mm", "rod_mm", "offset_mm")}
-    answer = client.get(f"{solved.path}/designs/3/linkage.svg", params=own)  # type: ignore[arg-type]
+    answer = client.get(f"{solved.path}/designs/3/linkage.svg", params=own)
     assert answer.text == client.get(f"{solved.path}/designs/3/linkage.svg").text
 
 

@@ -60,7 +60,8 @@ def _with(route: Route, changes: dict[str, Any]) -> None:
 
 def test_bars_are_as_long_as_their_values(open_page: Open, solved: Solved) -> None:
     row = solved.result.designs[2]
-    linkage = Linkage(*(float(row[f"{name}_mm"] or 0.0) / 1e3 for name in ("crank", "rod", "offset")))
+    crank, rod, offset = (float(row[f"{name}_mm"] or 0.0) / 1e3 for name in ("crank", "rod", "offset"))
+    linkage = Linkage(crank, rod, offset)
     found = {"tolerances": numbers(fronts.MACHINE, linkage, samples=200)}
     assert min(part["share_of_variance_percent"] for part in found["tolerances"]["contributions"]) < 5.0
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from slidercrank.service.figures.style import BLUE, INK
 from slidercrank.service.report.design_report import design_report
+from slidercrank.service.report.document import Picture
 from slidercrank.service.report.pages import HEIGHT, Inset, pages
 from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import subject_of
@@ -34,8 +35,8 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
     result = result_of(front, "kept")
     report = design_report(subject_of(front.problem, result, 3, run="kept", versions={}), made=0.0)
     paper = pypdfium2.PdfDocument(pdf_file(report))
-    titles = [block.title for section in report.sections for block in section.blocks if hasattr(block, "draw")]
-    found = {}
+    titles = [block.title for section in report.sections for block in section.blocks if isinstance(block, Picture)]
+    found: dict[str, tuple[Figure, Inset, Image]] = {}
     for page, drawn in zip(paper, pages(report), strict=True):
         whole = page.render(scale=DOTS / 72, rev_byteorder=True).to_numpy()[:, :, :3] / 255.0
         for inset in drawn.insets:
@@ -51,7 +52,8 @@ def screen(figure: Figure, scale: float) -> Image:
     """Return a figure as matplotlib draws it on a screen, (h, w, 3), in dots a third as large as those of the paper."""
     figure.set_dpi(_FINER * DOTS * scale)
     figure.canvas.draw()
-    return np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0  # type: ignore[attr-defined]
+    dots: Image = np.asarray(figure.canvas.buffer_rgba(), dtype=np.float64)  # type: ignore[attr-defined]
+    return dots[:, :, :3] / 255.0
 
 
 def ink(picture: Image, block: int) -> Image:
@@ -113,8 +115,9 @@ def test_every_design_is_a_point_in_every_panel_of_the_scatter_matrix() -> None:
     assert len(clouds) == 6
     for place, points in clouds:
         offsets = np.asarray(points.get_offsets())
+        figure.set_dpi(DOTS * inset.scale)
         transform = figure.axes[place].transData.transform
-        marked = [transform((line.get_xdata()[0], line.get_ydata()[0])) for line in figure.axes[place].lines]  # type: ignore[index]
+        marked = [transform(np.ravel(line.get_xydata())) for line in figure.axes[place].lines]
         bare = [point for point in offsets if np.hypot(*(transform(point) - marked).T).min() > 12.0]
         assert len(offsets) == 20
         assert len(bare) >= 10

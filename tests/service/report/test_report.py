@@ -291,8 +291,8 @@ def test_no_word_of_a_table_is_broken() -> None:
             assert isinstance(block, Table)
             words = {word for row in (block.heads, *block.rows) for cell in row for word in cell.split()}
             assert words <= written, words - written
-    (slack,) = (row for part in tables.sections for block in part.blocks for row in block.rows if "slack_" in row[-1])
-    assert slack[1] == "0"
+            for row in block.rows:
+                assert "slack_" not in row[-1] or row[1] == "0"
 
 
 def test_a_large_front_is_drawn_as_points(monkeypatch: pytest.MonkeyPatch) -> None:
