@@ -144,20 +144,25 @@ def _require_within(constraint: Constraint, box: Box, problem: Problem) -> None:
 
 
 def _possible(problem: Problem, constraint: Constraint) -> str:
-    """Return in words what is possible of a quantity that the ranges do not give as it is asked for."""
+    """Return in words what is possible of a quantity that the ranges do not give as it is asked for.
+
+    With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
+    """
     ranges = "within the ranges of crank, rod and offset"
-    found, kept = _nearest(problem, constraint, (constraint,))
+    narrowing = tuple(c for c in problem.constraints if c.quantity == "rod_to_offset" and c is not constraint)
+    found, kept = _nearest(problem, constraint, (constraint, *narrowing))
     if found is None:
         return f"{ranges} it is not possible"
-    return f"{ranges}{_AND_OTHERS if kept > 1 else ''} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
+    rules = "" if len(kept) == 1 else _AND_OTHERS if kept != (constraint, *narrowing) else " and constraints.rod_to_offset"
+    return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
 
 
 def _nearest(
     problem: Problem, constraint: Constraint, alone: tuple[Constraint, ...]
-) -> tuple[Relaxation | None, int]:
-    """Return what can be had in place of a constraint on the dimensions, and how many of these were kept.
+) -> tuple[Relaxation | None, tuple[Constraint, ...]]:
+    """Return what can be had in place of a constraint on the dimensions, and the constraints that were kept for that.
 
-    Where the others contradict each other too, they are left out, but for those that are kept `alone`.
+    Where all of them contradict each other even then, those that are kept `alone`.
     """
     from ..best import best_on_dimensions, rules_on_dimensions
     from ..relaxation import Relaxation, relaxations
@@ -165,8 +170,8 @@ def _nearest(
     for kept in (rules_on_dimensions(problem), alone):
         for found in relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions):
             if isinstance(found, Relaxation):
-                return found, len(kept)
-    return None, 0
+                return found, kept
+    return None, ()
 
 
 def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
@@ -185,7 +190,7 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     if ratios is None or angles is None:
         return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
     return (
-        f"{held}{_AND_OTHERS if kept > 2 else ''} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, or lower "
+        f"{held}{_AND_OTHERS if len(kept) > 2 else ''} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, or lower "
         f"constraints.transmission_angle to {angles.with_unit} at most"
     )
 

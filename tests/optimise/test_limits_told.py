@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import math
 import re
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -49,13 +48,11 @@ def random_job(random: np.random.Generator) -> Job:
     }
     rules: Job = {}
     for name in random.choice(CLOSED, size=random.integers(1, 4), replace=False):
-        value = sizes[name] * random.choice([1.0, random.uniform(0.7, 1.5)])
+        value = sizes[name] * random.uniform(0.7, 1.5)
         value = max(value, 1.001) if name == "time_ratio" else min(value, 85.0) if "angle" in name else max(value, 1.01)
         word = random.choice(["min", "max", "equals"], p=[0.5, 0.3, 0.2])
         rules[str(name)] = {str(word): typed(name, f"{value:.4g}")}
-    if random.random() < 0.1:
-        rules[str(random.choice(["peak_torque", "rms_torque"]))] = {"max": f"{10.0 ** random.uniform(-1.0, 1.0):.3g} N m"}
-    job: Job = {
+    return {
         "name": "random",
         "mechanism": {"speed": "100 rpm", "slider": {"mass": "2 kg"}},
         "variables": variables,
@@ -63,10 +60,6 @@ def random_job(random: np.random.Generator) -> Job:
         "objectives": {next(name for name in CLOSED if name not in rules): "minimise"},
         "optimiser": {"samples": 2048, "designs": 2},
     }
-    if random.random() < 0.1:
-        job["friction"] = {"guide": 0.1}
-        rules["self_locking_margin"] = {"min": f"{random.uniform(20.0, 80.0):.3g} deg"}
-    return job
 
 
 def typed(name: str, number: str) -> str | float:
@@ -76,15 +69,15 @@ def typed(name: str, number: str) -> str | float:
 
 
 NUMBER = r"(-?[\d.]+(?:e[+-]?\d+)?)"
-REFUSED = re.compile(rf"constraints\.(\w+): .*(at most|at least) {NUMBER}(?: deg| mm)? is possible; got")
+POSSIBLE = re.compile(rf"constraints\.(\w+): .* at (?:most|least) {NUMBER}(?: deg| mm)? is possible; got")
 BOTH = re.compile(rf"it is at most {NUMBER}; .* constraints\.transmission_angle to {NUMBER} deg at most")
-HAD = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (most|least|the nearest) {NUMBER}[^;]* can be had")
+HAD = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* can be had")
 TOGETHER = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) {NUMBER}[^;]*? instead of")
-WORDS = {"at least": "min", "at most": "max", "exactly": "equals"}
+KEYS = {"at least": "min", "at most": "max", "exactly": "equals"}
 
 
-def outcome(job: Job) -> str:
-    """Return what is said of a job that cannot be met, an empty text if it can."""
+def said_of(job: Job) -> str:
+    """Return what is said of a job that cannot be met, nothing if it can."""
     try:
         front = solve(parse_job(job))
     except JobError as error:
@@ -92,26 +85,83 @@ def outcome(job: Job) -> str:
     return "" if front.status == "done" else front.message
 
 
-def told(job: Job, message: str) -> Iterator[tuple[Job, str, str, str]]:
-    """Yield each number of a message: the job with the rules that it speaks of, the quantity, the key, the number."""
-    of_dimensions = {name: rule for name, rule in job["constraints"].items() if name in CLOSED}
-    both, refused = BOTH.search(message), REFUSED.search(message)
+def alternatives(job: Job, message: str) -> Iterator[Job]:
+    """Yield the job, with the rules that a message speaks of, once for each number in it, asking for that."""
+    rules = job["constraints"]
+    both, possible = BOTH.search(message), POSSIBLE.search(message)
     if both:
+        kept = rules if "other rules" in message else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
         for name, number in (("time_ratio", both[1]), ("transmission_angle", both[2])):
-            rules = of_dimensions if "other rules" in message else {k: of_dimensions[k] for k in ("time_ratio", "transmission_angle")}
-            yield {**job, "constraints": rules}, name, next(iter(rules[name])), number
-    elif refused:
-        name = refused[1]
-        rules = of_dimensions if "other rules" in message else {name: of_dimensions[name]}
-        key = next(iter(rules[name]))
-        yield {**job, "constraints": rules}, name, key, refused[3]
+            yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number)
+    elif possible:
+        name = possible[1]
+        narrowed = {"rod_to_offset": rules["rod_to_offset"]} if "and constraints.rod_to_offset" in message else {}
+        kept = rules if "other rules" in message else {name: rules[name], **narrowed}
+        yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), possible[2])
     else:
-        for title, relation, _, number in HAD.findall(message):
-            yield job, TITLES[title.strip().removeprefix("and ")], WORDS[relation], number
+        for title, relation, number in HAD.findall(message):
+            yield asking(job, TITLES[title.strip()], KEYS[relation], number)
+        together = copy.deepcopy(job)
+        for title, relation, number in TOGETHER.findall(message):
+            together = asking(together, TITLES[title.strip().removeprefix("and ").removeprefix("ask for ")], KEYS[relation], number)
+        if together != job:
+            yield together
 
 
 def asking(job: Job, name: str, key: str, number: str) -> Job:
+    """Return the job with another number in one of its rules."""
     changed = copy.deepcopy(job)
-    changed["constraints"].setdefault(name, {}).pop(key, None)
-    changed["constraints"][name][key] = typed(name, number)
+    changed["constraints"].setdefault(name, {})[key] = typed(name, number)
     return changed
+
+
+def tightened(job: Job, asked: Job) -> Job:
+    """Return a job of `alternatives` with 0.1 % more asked for, towards what was asked at first."""
+    changed = copy.deepcopy(job)
+    for name, rule in job["constraints"].items():
+        for key, value in rule.items():
+            first = asked["constraints"].get(name, {}).get(key)
+            if value != first:
+                size, wanted = number_of(value), FLOOR if first is None else number_of(first)
+                more = size * (1.001 if wanted > size else 0.999)
+                more = min(more, wanted, key=lambda end: abs(end - size)) if key == "equals" else more
+                changed = asking(changed, name, key, f"{more:.12g}")
+    return changed
+
+
+FLOOR = 10.0
+"""Degrees of the transmission angle that hold where a job sets none."""
+
+
+def number_of(value: str | float) -> float:
+    """Return the number of a value as it is typed."""
+    return float(value.split()[0]) if isinstance(value, str) else value
+
+
+def impossible(job: Job) -> bool:
+    """Return whether a job is refused, proven to have no design, or has none that the search finds."""
+    try:
+        problem = parse_job(job)
+    except JobError:
+        return True
+    return prove_infeasible(problem, seconds=0.5) or solve(problem).status == "infeasible"
+
+
+def tried(job: Job) -> int:
+    """Try every number that is told of a job; return how many there were."""
+    message, count = said_of(job), 0
+    for other in alternatives(job, message):
+        assert said_of(other) == "", (job, message, other["constraints"])
+        assert impossible(tightened(other, job)), (job, message, other["constraints"])
+        count += 1
+    assert bool(message) == bool(count), (job, message)
+    return count
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_every_number_that_is_told_can_be_had_and_no_more(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 200 random jobs: refused by the parser, or searched in vain. A proof would add to the message and take long."""
+    monkeypatch.setattr(solving, "prove_infeasible", lambda *_, **__: False)
+    random = np.random.default_rng(seed)
+    counts = [tried(random_job(random)) for _ in range(50)]
+    assert sum(count > 0 for count in counts) >= 12
