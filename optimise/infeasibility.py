@@ -120,7 +120,9 @@ def _together(problem: Problem, variant: int, design: Array) -> str:
             item = missed(part, constraint, relation, bound, value)
             if item is not None:
                 found.append(replace(item, alone=constraint.equality).instead())
-    chosen = "".join(f"{name} {label}, " for name, label in zip(problem.choices, _labels(problem, variant), strict=True))
+    chosen = "".join(
+        f"{name} {label}, " for name, label in zip(problem.choices, _labels(problem, variant), strict=True)
+    )
     sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
     return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
 

@@ -12,7 +12,7 @@ Side = Literal["down", "up"]
 """Where what is possible lies: below the greatest value ("down") or above the least ("up")."""
 
 DIGITS = 6
-"""Significant digits of a limit: it gives away less than 1e-5 of what there is, far below any tolerance of manufacture."""
+"""Significant digits of a limit: less than 1e-5 of it is given away, far below any tolerance of manufacture."""
 _EXACT = 12
 _ROUNDING = 1e-10
 """Relative: a value nearer than this to a shorter number is that number; a tenth of what counts as violated."""

@@ -153,7 +153,9 @@ def _possible(problem: Problem, constraint: Constraint) -> str:
     found, kept = _nearest(problem, constraint, (constraint, *narrowing))
     if found is None:
         return f"{ranges} it is not possible"
-    rules = "" if len(kept) == 1 else _AND_OTHERS if kept != (constraint, *narrowing) else " and constraints.rod_to_offset"
+    rules = (
+        "" if len(kept) == 1 else _AND_OTHERS if kept != (constraint, *narrowing) else " and constraints.rod_to_offset"
+    )
     return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
 
 
@@ -183,15 +185,19 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     ratio, angle = asked.get("time_ratio"), asked.get("transmission_angle")
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
-    if not 0.0 < angle.lower < 0.5 * math.pi or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * _SLACK:
+    if (
+        not 0.0 < angle.lower < 0.5 * math.pi
+        or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * _SLACK
+    ):
         return None
     held = f"with a least transmission angle of {_shown(angle.quantity, angle.lower)}"
     (ratios, kept), (angles, _) = (_nearest(problem, item, (ratio, angle)) for item in (ratio, angle))
     if ratios is None or angles is None:
         return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
+    held += _AND_OTHERS if len(kept) > 2 else ""
     return (
-        f"{held}{_AND_OTHERS if len(kept) > 2 else ''} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, or lower "
-        f"constraints.transmission_angle to {angles.with_unit} at most"
+        f"{held} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, "
+        f"or lower constraints.transmission_angle to {angles.with_unit} at most"
     )
 
 

@@ -46,10 +46,11 @@ class Possible:
     """What the ranges allow. turning: share of the designs in the box that turn fully.
 
     stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
-    the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these. feasible: share of the `sampled` designs that meet every requirement that was
-    checked. hardest: the requirement that the fewest designs meet which turn fully, and that share. example: crank, rod
-    and offset, m, near the middle of what is feasible, else the nearest to it; None if nothing turns. unchecked:
-    requirements that would have taken longer than a moment.
+    the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
+    feasible: share of the `sampled` designs that meet every requirement that was checked. hardest: the requirement that
+    the fewest designs meet which turn fully, and that share. example: crank, rod and offset, m, near the middle of what
+    is feasible, else the nearest to it; None if nothing turns. unchecked: requirements that would have taken longer
+    than a moment.
     """
 
     turning: float
@@ -154,7 +155,6 @@ def _screened(problem: Problem) -> tuple[Array, Array]:
 def _reach(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
     from ...optimise.elimination import sheets
-
     from ...optimise.evaluation import constraints_of
     from ...optimise.problem import Constraint
 

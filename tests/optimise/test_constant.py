@@ -87,6 +87,8 @@ def test_a_slack_of_rounding_is_zero(bits: int) -> None:
         table = table_of(asked, np.zeros(1, dtype=np.int64), design, lambda: None)
         assert table["slack_stroke_mm"].tolist() == [0.0]
         assert len(constraints_of(asked)) == 2
-    apart = replace(given, constraints=problem({"peak_torque": "minimise"}, {"stroke": (stroke - 1e-7, None)}).constraints)
+    apart = replace(
+        given, constraints=problem({"peak_torque": "minimise"}, {"stroke": (stroke - 1e-7, None)}).constraints
+    )
     table = table_of(apart, np.zeros(1, dtype=np.int64), design, lambda: None)
     assert table["slack_stroke_mm"][0] == pytest.approx(1e-4, rel=1e-6)

@@ -174,14 +174,18 @@ def test_trade_offs_stay_within_the_front(name: str) -> None:
     assert told > 10
     for quantity, row in front.extremes().items():
         title = front.problem.quantity(quantity).title
-        assert any(re.fullmatch(f"no design of the front has (less|more) {title}", said) for said in front.trade_offs(row))
+        assert any(
+            re.fullmatch(f"no design of the front has (less|more) {title}", said) for said in front.trade_offs(row)
+        )
 
 
 def test_what_is_the_same_in_all_designs_is_not_traded() -> None:
     front = pair()
     bits = np.spacing(abs(front.values[0, 1])) * (np.arange(len(front)) % 3)
     flat = replace(front, values=np.column_stack([front.values[:, 0], front.values[0, 1] + bits]))
-    assert not any("time ratio" in said.split(" costs ")[0] for row in range(len(flat)) for said in flat.trade_offs(row))
+    assert not any(
+        "time ratio" in said.split(" costs ")[0] for row in range(len(flat)) for said in flat.trade_offs(row)
+    )
 
 
 def test_trade_offs_are_the_rates_in_words() -> None:

@@ -71,7 +71,9 @@ def typed(name: str, number: str) -> str | float:
 NUMBER = r"(-?[\d.]+(?:e[+-]?\d+)?)"
 POSSIBLE = re.compile(rf"constraints\.(\w+): .* at (?:most|least) {NUMBER}(?: deg| mm)? is possible; got")
 BOTH = re.compile(rf"it is at most {NUMBER}; .* constraints\.transmission_angle to {NUMBER} deg at most")
-HAD = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* can be had")
+HAD = re.compile(
+    rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* can be had"
+)
 TOGETHER = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) {NUMBER}[^;]*? instead of")
 KEYS = {"at least": "min", "at most": "max", "exactly": "equals"}
 
@@ -90,7 +92,9 @@ def alternatives(job: Job, message: str) -> Iterator[Job]:
     rules = job["constraints"]
     both, possible = BOTH.search(message), POSSIBLE.search(message)
     if both:
-        kept = rules if "other rules" in message else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
+        kept = (
+            rules if "other rules" in message else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
+        )
         for name, number in (("time_ratio", both[1]), ("transmission_angle", both[2])):
             yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number)
     elif possible:
@@ -103,7 +107,9 @@ def alternatives(job: Job, message: str) -> Iterator[Job]:
             yield asking(job, TITLES[title.strip()], KEYS[relation], number)
         together = copy.deepcopy(job)
         for title, relation, number in TOGETHER.findall(message):
-            together = asking(together, TITLES[title.strip().removeprefix("and ").removeprefix("ask for ")], KEYS[relation], number)
+            together = asking(
+                together, TITLES[title.strip().removeprefix("and ").removeprefix("ask for ")], KEYS[relation], number
+            )
         if together != job:
             yield together
 
@@ -160,7 +166,7 @@ def tried(job: Job) -> int:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_number_that_is_told_can_be_had_and_no_more(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of 200 random jobs: refused by the parser, or searched in vain. A proof would add to the message and take long."""
+    """Of 200 random jobs, refused by the parser or searched in vain; a proof would only add to the message."""
     monkeypatch.setattr(solving, "prove_infeasible", lambda *_, **__: False)
     random = np.random.default_rng(seed)
     counts = [tried(random_job(random)) for _ in range(50)]

@@ -148,7 +148,9 @@ def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Sol
     expect(page).to_have_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
 
 
-@pytest.mark.parametrize("query", ["?axes=stroke_mm%2Crod_mm", "?x=stroke_mm&y=rod_mm&colour=stroke_mm", "?columns=stroke_mm"])
+@pytest.mark.parametrize(
+    "query", ["?axes=stroke_mm%2Crod_mm", "?x=stroke_mm&y=rod_mm&colour=stroke_mm", "?columns=stroke_mm"]
+)
 def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
     open_page: Open, solved: Solved, tmp_path: Path, query: str
 ) -> None:
