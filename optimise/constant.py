@@ -20,7 +20,7 @@ def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.bool_
     The spread is compared with the greatest magnitude, at least with `size`: of a distance from a target that is the
     target. NaN and infinity do not count; a column without numbers is constant. Zero needs a size: nothing is near it.
     """
-    return spread(values, size=size) == 0.0
+    return np.asarray(spread(values, size=size) == 0.0)
 
 
 def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.float64]:
