@@ -45,7 +45,7 @@ def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
         beyond = {"at least": bound > nearest, "at most": bound < nearest, "exactly": True}[relation]
         item = missed(problem, constraint, relation, bound, nearest) if beyond else None
         if item is not None:
-            found.append(replace(item, alone=is_constant(ends)).sentence(kept=_REST))
+            found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
     return found
 
 
