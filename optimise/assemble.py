@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ..objectives.analysis import analyse
+from .constant import is_constant
 from .evaluation import Evaluator, constraints_of
 from .front import ParetoFront, Status
 from .gradients import without_gradient
@@ -113,13 +114,19 @@ def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
         values = quantity.evaluate(problem.mechanism, dimensions).values
         slack = np.full(len(values), np.inf)
         if constraint.equality:
-            slack = -np.abs(values - float(constraint.lower or 0.0))
+            slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
         else:
             if constraint.upper is not None:
-                slack = np.minimum(slack, constraint.upper - values)
+                slack = np.minimum(slack, _clear(values, constraint.upper, constraint.upper - values))
             if constraint.lower is not None:
-                slack = np.minimum(slack, values - constraint.lower)
+                slack = np.minimum(slack, _clear(values, constraint.lower, values - constraint.lower))
         table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+
+
+def _clear(values: Array, bound: float | None, slack: Array) -> Array:
+    """Return distances from a bound; 0 where a value differs from it by rounding."""
+    on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
+    return np.where(on_it, 0.0, slack)
 
 
 def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:

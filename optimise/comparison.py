@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.errors import InputError
+from .constant import spread
 from .hypervolume import hypervolume, nondominated, scaling
 from .stationarity import Array
 
@@ -98,8 +99,8 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
 def _scaling(everything: Array) -> tuple[Array, Array]:
     """Return ideal and range of the union front; the range of all designs where it has none."""
     best = everything[nondominated(everything)]
-    ideal, reach = best.min(axis=0), np.ptp(best, axis=0)
-    return ideal, np.where(reach > 1e-12 * np.abs(ideal), reach, scaling(everything)[1])
+    reach = spread(best)
+    return best.min(axis=0), np.where(reach > 0.0, reach, scaling(everything)[1])
 
 
 def _undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:

@@ -24,6 +24,8 @@ LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
 """Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
 LEAST_SELF_LOCKING_MARGIN = np.radians(5.0)
 """Least self-locking margin of a machine with friction where the problem sets none: forces grow as 1 / sin(margin)."""
+FLOORS = {"transmission_angle": LEAST_TRANSMISSION_ANGLE, "self_locking_margin": LEAST_SELF_LOCKING_MARGIN}
+"""Floors that hold where a problem sets none, rad."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +53,9 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
 
     They are on the transmission angle and, where there is friction, on the self-locking margin.
     """
-    found = _with_floor(problem.constraints, "transmission_angle", LEAST_TRANSMISSION_ANGLE)
+    found = _with_floor(problem.constraints, "transmission_angle", FLOORS["transmission_angle"])
     if problem.mechanism.fullest.friction.acts:
-        found = _with_floor(found, "self_locking_margin", LEAST_SELF_LOCKING_MARGIN)
+        found = _with_floor(found, "self_locking_margin", FLOORS["self_locking_margin"])
     return found
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from .constant import spread
 from .hypervolume import scaling
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .pile import STATIONARY
@@ -19,7 +20,8 @@ from .problem import Constraint, Objective, Problem
 from .stationarity import multipliers
 
 Array = NDArray[np.float64]
-_NOTHING = 1e-7  # of a range per range: a loss below is rounding
+_NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
+_LEAST = 1e-4  # of a range: a step that is worth telling
 Status = Literal["done", "cancelled", "infeasible"]
 
 
@@ -90,7 +92,7 @@ class ParetoFront:
 
     def extremes(self) -> dict[str, int]:
         """Return for each objective the row of its best design; ties go to the better in the other objectives."""
-        scaled = by_range(self.values)
+        scaled = by_range(self.values, size=self._sizes)
         best = {}
         for index, objective in enumerate(self.objectives):
             least = np.flatnonzero(scaled[:, index] <= scaled[:, index].min() + 1e-9)
@@ -99,7 +101,7 @@ class ParetoFront:
 
     def knee(self) -> int:
         """Return the row nearest to the ideal point, every objective scaled by its range over the front."""
-        return knee(self.values)
+        return knee(self.values, size=self._sizes)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
         """Return the row that weights of the objectives choose, see `picking.closeness`; those not named have none.
@@ -108,7 +110,7 @@ class ParetoFront:
         """
         columns = {self._column(name): weight for name, weight in weights.items()}
         shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
-        return topsis(self.values, shares, normalisation=normalisation)
+        return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
     def lexicographic(self, *priorities: Priority | str) -> int:
         """Return the row that is left when objectives decide in turn, see `picking.lexicographic`.
@@ -117,7 +119,13 @@ class ParetoFront:
         a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
-        return lexicographic(self.values, [(self._column(item.quantity), item.absolute, item.share) for item in order])
+        given = [(self._column(item.quantity), item.absolute, item.share) for item in order]
+        return lexicographic(self.values, given, size=self._sizes)
+
+    @property
+    def _sizes(self) -> list[float]:
+        """The targets, SI, 0 without: what distances from them are rounded against."""
+        return [abs(objective.target or 0.0) for objective in self.objectives]
 
     def _column(self, name: str) -> int:
         names = [objective.quantity for objective in self.objectives]
@@ -165,12 +173,14 @@ class ParetoFront:
 
         To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
         of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
-        b is NaN where b cannot gain at all.
+        b is NaN where b cannot gain at all, and where no design of the front is better in it.
         """
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
-        spans = units * np.where(np.ptp(self.values, axis=0) > 0.0, np.ptp(self.values, axis=0), 1.0)
+        reach = spread(self.values, size=self._sizes)
+        spans = units * np.where(reach > 0.0, reach, 1.0)
+        left = self.values[row] - self.values.min(axis=0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
         if residual <= STATIONARY:
@@ -179,24 +189,45 @@ class ParetoFront:
             slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
         for b in range(m):
-            losses = _cheapest(slopes, owner, self.active[row], b, m) if k else None
+            gains = k and left[b] > _NOTHING * reach[b]
+            losses = _cheapest(slopes, owner, self.active[row], b, m) if gains else None
             if losses is not None:
                 rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]
                 rates[b, b] = np.nan
         return rates
 
     def trade_offs(self, row: int) -> list[str]:
-        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ..."."""
-        rates = self.rates(row)
+        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
+
+        Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. Of an objective
+        that has nothing left to gain this is said; one that is the same in all designs is left out.
+        """
+        rates, reach = self.rates(row), spread(self.values, size=self._sizes)
+        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
+        better = (self.values[row] - self.values.min(axis=0)) * units
+        worse = (self.values.max(axis=0) - self.values[row]) * units
         sentences = []
         for b, gain in enumerate(self.objectives):
-            span = np.ptp(self.values[:, b]) * self.problem.quantity(gain.quantity).unit.factor
-            step = 10.0 ** np.floor(np.log10(0.1 * span)) if span > 0.0 else 1.0  # a readable step within the range
             payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
-            if payers:
-                costs = " and ".join(self._change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)
-                sentences.append(f"{self._change(gain, step, gain=True)} costs {costs}")
+            span = reach[b] * units[b]
+            if span == 0.0:
+                continue
+            if better[b] <= _NOTHING * span:
+                sentences.append(self._best(gain))
+            elif payers:
+                most = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
+                if most > _LEAST * span:
+                    step = 10.0 ** np.floor(np.log10(most))  # a readable one
+                    costs = [self._change(self.objectives[a], step * rates[a, b], gain=False) for a in payers]
+                    sentences.append(f"{self._change(gain, step, gain=True)} costs {' and '.join(costs)}")
         return sentences
+
+    def _best(self, objective: Objective) -> str:
+        """Return in words that no design of the front is better in an objective."""
+        title = self.problem.quantity(objective.quantity).title
+        if objective.sense == "target":
+            return f"no design of the front is nearer to the target of {title}"
+        return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
     def _change(self, objective: Objective, amount: float, *, gain: bool) -> str:
         """Return a change of an objective in words."""

@@ -9,6 +9,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
+from .constant import spread
 from .stationarity import Array
 
 REFERENCE = 1.1
@@ -16,11 +17,9 @@ REFERENCE = 1.1
 
 
 def scaling(values: Array) -> tuple[Array, Array]:
-    """Return ideal and range of objective values (n, m); the range of an objective that does not vary is 1."""
-    ideal = values.min(axis=0)
-    span = values.max(axis=0) - ideal
-    tiny = span <= 1e-12 * np.maximum(np.abs(ideal), 1e-300)
-    return ideal, np.where(tiny, np.maximum(np.abs(ideal), 1e-12), span)
+    """Return ideal and range of objective values (n, m); of an objective that is constant, its size for a range."""
+    ideal, span = values.min(axis=0), spread(values)
+    return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
 def nondominated(values: Array) -> NDArray[np.int64]:

@@ -8,39 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .best import Best
 from .elimination import sheets
 from .engine.engine import Engine
 from .evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from .ledger import Ledger, floats
-from .problem import Constraint, Objective, Problem, Sense, Settings
+from .problem import Problem
 from .recorded import polished
-from .sampling import first_samples
+from .relaxation import Relaxation, missed, relaxations, sides
+from .sampling import apart, first_samples
 from .stationarity import Array
 
 _SAMPLES = 16384
 _RANKED = 2048
 _STARTS = 24
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """One requirement that alone stands in the way, and what can be had when all others are kept (shown units)."""
-
-    quantity: str
-    relation: str
-    asked: float
-    reachable: float
-    unit: str
-    title: str
-
-    def sentence(self) -> str:
-        """Return the relaxation in words."""
-        unit = f" {self.unit}" if self.unit else ""
-        reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
-        return (
-            f"{self.title} {self.relation} {self.asked:.6g}{unit} is asked, "
-            f"{reach} {self.reachable:.6g}{unit} can be had with all else kept"
-        )
 
 
 @dataclass(frozen=True)
@@ -74,17 +55,17 @@ class _Violations:
 
 def diagnose(
     problem: Problem,
-    best: Callable[[Problem], float | None],
+    best: Callable[[Problem], Best | None],
     ledger: Ledger | None = None,
     engine: Engine | None = None,
 ) -> Diagnosis:
     """Return feasible designs after all, or which requirements contradict each other.
 
-    best: gives the best value (SI) of a problem with one objective, None if it is infeasible too. ledger, engine: of
-    the search that wants to know it. First the greatest relative violation is minimised from many starts, without
-    eliminating anything. If it stays positive, each requirement in turn becomes the objective of the problem without
-    it. Both searches are local from many starts: strong evidence; `certificate.infeasible` gives the proof where it
-    can.
+    best: gives the best of a problem with one objective, None if it is infeasible too. ledger, engine: of the search
+    that wants to know it. First the greatest relative violation is minimised from many starts, without eliminating
+    anything. If it stays positive, each requirement in turn becomes the objective of the problem without it; one that
+    is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
+    `certificate.infeasible` gives the proof where it can.
     """
     feasible, turning, nearest = _least_violation(problem, ledger, engine)
     if len(feasible):
@@ -92,36 +73,17 @@ def diagnose(
     if not turning:
         message = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
         return Diagnosis(feasible, (), message)
-    relaxations = []
+    found = []
     for constraint in constraints_of(problem):
-        others = tuple(item for item in constraints_of(problem) if item is not constraint)
-        for relation, sense, bound in _sides(constraint):
-            target = bound if sense == "target" else None
-            wanted = Objective(quantity=constraint.quantity, sense=sense, target=target)
-            reached = best(
-                replace(
-                    problem,
-                    constraints=others,
-                    objectives=(wanted,),
-                    settings=Settings(designs=1, seed=problem.settings.seed),
-                )
-            )
-            of = problem.quantity(constraint.quantity)
-            unit = of.unit
-            if reached is not None and not _meets(relation, reached, bound):
-                relaxations.append(
-                    Relaxation(
-                        constraint.quantity, relation, bound * unit.factor, reached * unit.factor, unit.symbol, of.title
-                    )
-                )
-    if relaxations:
-        message = "no design meets all requirements: " + "; ".join(item.sentence() for item in relaxations)
+        for item in relaxations(problem, constraint, best):
+            if not isinstance(item, Relaxation):
+                return Diagnosis(item[None], (), "")
+            found.append(item)
+    if found:
+        message = "no design meets all requirements: " + "; ".join(item.sentence() for item in found)
     else:
-        message = (
-            "no design meets all requirements, and giving up any single one is not enough; "
-            f"nearest to all of them is {nearest}; widen the ranges of crank, rod and offset or relax several"
-        )
-    return Diagnosis(feasible, tuple(relaxations), message)
+        message = f"no design meets all requirements, and giving up any single one is not enough; {nearest}"
+    return Diagnosis(feasible, tuple(found), message)
 
 
 def _least_violation(problem: Problem, ledger: Ledger | None, engine: Engine | None) -> tuple[Array, bool, str]:
@@ -137,15 +99,36 @@ def _least_violation(problem: Problem, ledger: Ledger | None, engine: Engine | N
             continue
         turning = True
         u = u[:: max(1, len(u) // _RANKED)]
-        starts = u[np.argsort(_greatest(evaluator, u), kind="stable")[:_STARTS]]
+        starts = u[apart(_greatest(evaluator, u), u, np.zeros(len(u), np.int64), _STARTS)]
         found = polished(evaluator, starts, np.ones(1), shown=_Violations(evaluator))
         dimensions = sheet.dimensions(found.u)
         feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
-            nearest = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * dimensions[row, :3]))
+            nearest = _together(problem, sheet.variant, dimensions[row])
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest
+
+
+def _together(problem: Problem, variant: int, design: Array) -> str:
+    """Return a design and what it meets in place of the requirements that it misses, in words."""
+    part = problem.part(variant)
+    found = []
+    for constraint in constraints_of(part):
+        value = float(part.quantity(constraint.quantity).evaluate(part.mechanism, design[None]).values[0])
+        for relation, _, bound in sides(constraint):
+            item = missed(part, constraint, relation, bound, value)
+            if item is not None:
+                found.append(replace(item, alone=constraint.equality).instead())
+    chosen = "".join(
+        f"{name} {label}, " for name, label in zip(problem.choices, _labels(problem, variant), strict=True)
+    )
+    sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
+    return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
+
+
+def _labels(problem: Problem, variant: int) -> tuple[str, ...]:
+    return problem.variants[variant].labels if problem.variants else ()
 
 
 def _greatest(evaluator: Evaluator, u: Array) -> Array:
@@ -155,24 +138,3 @@ def _greatest(evaluator: Evaluator, u: Array) -> Array:
         return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
 
     return floats(evaluator.ledger.step("violation", (u,), greatest, evaluator)[0])
-
-
-def _sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:
-    """Return the sides of a constraint: relation, how to come nearest to it, bound (SI)."""
-    if constraint.equality and constraint.lower is not None:
-        return [("exactly", "target", constraint.lower)]
-    sides: list[tuple[str, Sense, float]] = []
-    if constraint.lower is not None:
-        sides.append(("at least", "maximise", constraint.lower))
-    if constraint.upper is not None:
-        sides.append(("at most", "minimise", constraint.upper))
-    return sides
-
-
-def _meets(relation: str, reached: float, bound: float) -> bool:
-    slack = FEASIBLE * (abs(bound) or 1.0)
-    if relation == "at least":
-        return reached >= bound - slack
-    if relation == "at most":
-        return reached <= bound + slack
-    return abs(reached - bound) <= slack

@@ -1,6 +1,7 @@
 """Choosing one design of a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
 
 Everything works on objective values (n, m) as they are minimised, in any units: it depends on proportions only.
+size: (m,), what the values of an objective are rounded against besides their own magnitude: a target, of distances.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..model.errors import InputError
+from .constant import spread
 from .stationarity import Array
 
 Normalisation = Literal["range", "vector"]
@@ -36,19 +39,23 @@ class Priority:
                 raise InputError(f"the tolerance of {self.quantity} must be zero or more; got {value:g}; leave it out")
 
 
-def by_range(values: Array) -> Array:
+def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
     """Return objectives scaled by their range over the designs: 0 is best, 1 worst; 0 where all are the same."""
     _require_designs(values)
-    low, high = values.min(axis=0), values.max(axis=0)
-    return np.asarray((values - low) / np.where(high > low, high - low, 1.0))
+    span = spread(values, size=size)
+    scaled = np.where(span > 0.0, values - values.min(axis=0), 0.0) / np.where(span > 0.0, span, 1.0)
+    return np.where(np.isfinite(values), scaled, values)
 
 
-def knee(values: Array) -> int:
+def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
     """Return the row nearest to the ideal point, every objective scaled by its range over the designs."""
-    return int(np.argmin(np.linalg.norm(by_range(values), axis=1)))
+    apart = np.linalg.norm(by_range(values, size=size), axis=1)
+    return int(np.flatnonzero(apart <= apart.min() + _TIE)[0])
 
 
-def closeness(values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range") -> Array:
+def closeness(
+    values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
+) -> Array:
     """Return the relative closeness (n,) of designs to the ideal, 0 to 1, greatest best (TOPSIS).
 
     C = d_worst / (d_best + d_worst), where d are Euclidean distances of the weighted normalised objectives from the
@@ -68,7 +75,7 @@ def closeness(values: Array, weights: Sequence[float], *, normalisation: Normali
             f"got {', '.join(f'{item:g}' for item in share.ravel())}"
         )
     if normalisation == "range":
-        scaled = by_range(values)
+        scaled = by_range(values, size=size)
     else:
         norms = np.linalg.norm(values, axis=0)
         scaled = values / np.where(norms > 0.0, norms, 1.0)
@@ -79,13 +86,15 @@ def closeness(values: Array, weights: Sequence[float], *, normalisation: Normali
     return np.where(whole > 0.0, worst / np.where(whole > 0.0, whole, 1.0), 1.0)
 
 
-def topsis(values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range") -> int:
+def topsis(
+    values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
+) -> int:
     """Return the row of the greatest `closeness`; ties go to the better in the other objectives."""
-    found = closeness(values, weights, normalisation=normalisation)
-    return _first(values, np.flatnonzero(found >= found.max() - _TIE))
+    found = closeness(values, weights, normalisation=normalisation, size=size)
+    return _first(values, np.flatnonzero(found >= found.max() - _TIE), size)
 
 
-def lexicographic(values: Array, order: Sequence[tuple[int, float, float]]) -> int:
+def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
     """Return the row that is left when objectives decide in turn.
 
     order: objectives as (column, absolute, share). Each in turn keeps those of the designs left that lose at most
@@ -98,18 +107,19 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]]) -> i
     columns = [column for column, _, _ in order]
     if not columns or len(set(columns)) < len(columns):
         raise InputError("a ranking names at least one objective, each once; name what matters most first")
-    span = np.ptp(values, axis=0)
+    span, scaled = spread(values, size=size), by_range(values, size=size)
     rows = np.arange(len(values))
     for place, (column, absolute, share) in enumerate(order):
         last = place == len(order) - 1
-        slack = _TIE * span[column] + (0.0 if last else absolute + share * span[column])
-        own = values[rows, column]
-        rows = rows[own <= own.min() + slack]
-    return _first(values, rows)
+        if span[column] > 0.0:
+            own = scaled[rows, column]
+            rows = rows[own <= own.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
+    return _first(values, rows, size)
 
 
-def _first(values: Array, rows: np.ndarray) -> int:
-    return int(rows[np.argmin(by_range(values)[rows].sum(axis=1))])
+def _first(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
+    worth = by_range(values, size=size)[rows].sum(axis=1)
+    return int(rows[np.flatnonzero(worth <= worth.min() + _TIE)[0]])
 
 
 def _require_designs(values: Array) -> None:

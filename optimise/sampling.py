@@ -28,7 +28,7 @@ def apart(worth: Array, points: Array, sheet: NDArray[np.int64], count: int) -> 
     while len(rows) and len(chosen) < count:
         best = int(rows[0])
         chosen.append(best)
-        far = np.abs(points[rows] - points[best]).max(axis=1) >= APART
+        far = np.abs(points[rows] - points[best]).max(axis=1, initial=0.0) >= APART
         rows = rows[far | (sheet[rows] != sheet[best])]
     return np.array(chosen, dtype=np.int64)
 

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from .assemble import empty
+from .best import Best, best_of
 from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, planned
 from .elimination import Sheet, sheets
@@ -104,20 +105,11 @@ _MISSED = (
 )
 
 
-def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float | None:
-    """Return the best value (SI) of a problem's only objective, None where nothing is feasible.
-
-    run, evaluators: of the search that wants to know it.
-    """
-    own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
-    inner = Run(problem, 1, ledger=run.ledger)
-    archive = explore(problem, own, inner)
-    front = deliver(problem, own, archive, inner) if len(archive) else None
+def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
+    """Return the best of a problem's only objective for the search that wants to know it."""
+    found = best_of(problem, run.ledger, evaluators[0].engine)
     run.tell("diagnosing", evaluators, Archive.empty(len(run.problem.objectives)))
-    if front is None:
-        return None
-    quantity = problem.quantity(problem.objectives[0].quantity)
-    return float(quantity.evaluate(front.part(0).mechanism, front.dimensions[:1]).values[0])
+    return found
 
 
 def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:

@@ -12,18 +12,24 @@ else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from ...model import geometry
 from ...model.errors import JobError
 from ...objectives.registry import QUANTITIES
 from ..problem import Constraint, Problem, Range
 
+if TYPE_CHECKING:
+    from ..relaxation import Relaxation
+
 _SLACK = 1.0 + 1e-9
 """What is asked at the very edge is left to the optimiser: rounding must not make it a contradiction."""
 _CLEAR = 1.0 + 1e-12
 """Closer to locking than this, rounding decides."""
 _CELLS = 10_000
+_AND_OTHERS = " and the other rules on the dimensions"
+_ANY = Range(lower=0.0, upper=1.0)
 
 _MORE = {
     "stroke": "raise the upper end of crank or of offset",
@@ -91,21 +97,22 @@ def require_reachable(problem: Problem) -> None:
         )
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     if "rod_to_offset" in constraints:
-        box = _with_rod_to_offset(box, constraints["rod_to_offset"])
+        box = _with_rod_to_offset(box, constraints["rod_to_offset"], problem)
     for name in ("rod_to_crank", "stroke", "time_ratio", "transmission_angle"):
         if name in constraints:
-            _require_within(constraints[name], box)
-    if "time_ratio" in constraints and "transmission_angle" in constraints:
-        _require_both(constraints["time_ratio"], constraints["transmission_angle"], box)
+            _require_within(constraints[name], box, problem)
+    wrong = beyond_both(problem, box.share)
+    if wrong:
+        raise JobError(f"constraints.time_ratio: {wrong}")
 
 
-def _with_rod_to_offset(box: Box, constraint: Constraint) -> Box:
+def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
     if box.offset.upper == 0.0:
         raise JobError(
             "constraints.rod_to_offset: it needs an offset; got offset fixed at 0; give variables.offset a range"
         )
-    _require_within(constraint, box)
+    _require_within(constraint, box, problem)
     least, greatest = constraint.lower or 0.0, constraint.upper or math.inf
     l0, l1 = box.rod.lower, box.rod.upper
     a0, a1 = box.offset.lower, box.offset.upper
@@ -125,40 +132,72 @@ def _with_rod_to_offset(box: Box, constraint: Constraint) -> Box:
     return narrowed
 
 
-def _require_within(constraint: Constraint, box: Box) -> None:
+def _require_within(constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise JobError unless the constraint and what is possible meet."""
     name = constraint.quantity
     least, greatest = box.possible(name)
-    within = "within the ranges of crank, rod and offset"
     got = f"got {_bounds(constraint)}"
     if constraint.lower is not None and constraint.lower > greatest * _SLACK:
-        raise JobError(
-            f"constraints.{name}: {within} at most {_shown(name, greatest)} is possible; {got}; "
-            f"{_MORE[name]}, or ask for less"
-        )
+        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {_MORE[name]}, or ask for less")
     if constraint.upper is not None and constraint.upper * _SLACK < least:
-        raise JobError(
-            f"constraints.{name}: {within} at least {_shown(name, least)} is possible; {got}; "
-            f"{_LESS[name]}, or ask for more"
-        )
+        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {_LESS[name]}, or ask for more")
 
 
-def _require_both(ratio: Constraint, angle: Constraint, box: Box) -> None:
-    """Raise JobError if no linkage has both the time ratio and the transmission angle."""
-    if ratio.lower is None or angle.lower is None:
-        return
-    cap = greatest_time_ratio(math.cos(angle.lower), box.share)
-    if ratio.lower <= cap * _SLACK:
-        return
-    low, high = math.cos(angle.lower), 1.0
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        enough = greatest_time_ratio(middle, box.share) >= ratio.lower
-        low, high = (low, middle) if enough else (middle, high)
-    raise JobError(
-        f"constraints.time_ratio: with a least transmission angle of {_shown('transmission_angle', angle.lower)} "
-        f"it stays below {cap:.4g}; got {_bounds(ratio)}; lower it, or lower "
-        f"constraints.transmission_angle to {_shown('transmission_angle', math.acos(high))} at most"
+def _possible(problem: Problem, constraint: Constraint) -> str:
+    """Return in words what is possible of a quantity that the ranges do not give as it is asked for.
+
+    With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
+    """
+    ranges = "within the ranges of crank, rod and offset"
+    narrowing = tuple(c for c in problem.constraints if c.quantity == "rod_to_offset" and c is not constraint)
+    found, kept = _nearest(problem, constraint, (constraint, *narrowing))
+    if found is None:
+        return f"{ranges} it is not possible"
+    rules = (
+        "" if len(kept) == 1 else _AND_OTHERS if kept != (constraint, *narrowing) else " and constraints.rod_to_offset"
+    )
+    return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
+
+
+def _nearest(
+    problem: Problem, constraint: Constraint, alone: tuple[Constraint, ...]
+) -> tuple[Relaxation | None, tuple[Constraint, ...]]:
+    """Return what can be had in place of a constraint on the dimensions, and the constraints that were kept for that.
+
+    Where all of them contradict each other even then, those that are kept `alone`.
+    """
+    from ..best import best_on_dimensions, rules_on_dimensions
+    from ..relaxation import Relaxation, relaxations
+
+    for kept in (rules_on_dimensions(problem), alone):
+        for found in relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions):
+            if isinstance(found, Relaxation):
+                return found, kept
+    return None, ()
+
+
+def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
+    """Return in words why no linkage has the time ratio with the transmission angle that are asked; None if one may.
+
+    share: where offset / rod may lie.
+    """
+    asked = {constraint.quantity: constraint for constraint in problem.constraints}
+    ratio, angle = asked.get("time_ratio"), asked.get("transmission_angle")
+    if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
+        return None
+    if (
+        not 0.0 < angle.lower < 0.5 * math.pi
+        or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * _SLACK
+    ):
+        return None
+    held = f"with a least transmission angle of {_shown(angle.quantity, angle.lower)}"
+    (ratios, kept), (angles, _) = (_nearest(problem, item, (ratio, angle)) for item in (ratio, angle))
+    if ratios is None or angles is None:
+        return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
+    held += _AND_OTHERS if len(kept) > 2 else ""
+    return (
+        f"{held} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, "
+        f"or lower constraints.transmission_angle to {angles.with_unit} at most"
     )
 
 

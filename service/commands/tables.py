@@ -80,6 +80,8 @@ def print_table(screen: Console, table: Table) -> None:
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
+    from ...optimise.constant import is_constant
+
     keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []
@@ -87,8 +89,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         column = find_column(key, result.designs[0])
         values = [row[key] for row in result.designs]
         numbers = [value for value in values if isinstance(value, float)]
-        same = len(numbers) > 1 and max(numbers) - min(numbers) <= 1e-9 * abs(max(numbers, key=abs))
-        if same and key not in {wanted.column for wanted in result.objectives}:
+        if len(numbers) > 1 and is_constant(numbers) and key not in {wanted.column for wanted in result.objectives}:
             constant.append(f"{column.title} {numbers[0]:.6g} {column.unit}".rstrip())
         else:
             columns.append(column)

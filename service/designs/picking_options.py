@@ -35,12 +35,12 @@ def picked_row(
     order = None if lexicographic is None else _order(lexicographic, result.objectives)
     if not rows:
         return None
-    values = minimised_values(result)[list(rows)]
+    values, sizes = minimised_values(result)[list(rows)], sizes_of(result)
     if weights is not None:
-        return rows[picking.topsis(values, weights)]
+        return rows[picking.topsis(values, weights, size=sizes)]
     if order is not None:
-        return rows[picking.lexicographic(values, order)]
-    return rows[picking.knee(values)]
+        return rows[picking.lexicographic(values, order, size=sizes)]
+    return rows[picking.knee(values, size=sizes)]
 
 
 def minimised_values(result: Result) -> Array:
@@ -49,6 +49,11 @@ def minimised_values(result: Result) -> Array:
 
     values = [[wanted.rank(row) for wanted in result.objectives] for row in result.designs]
     return np.array(values, dtype=np.float64).reshape(len(result.designs), len(result.objectives))
+
+
+def sizes_of(result: Result) -> list[float]:
+    """Return the targets of objectives, in shown units, 0 without: what distances from them are rounded against."""
+    return [abs(wanted.target or 0.0) for wanted in result.objectives]
 
 
 def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...model.linkage import Linkage
 from ..runs.result import Result, Row, rows_of
-from .picking_options import minimised_values
+from .picking_options import minimised_values, sizes_of
 from .requirements import outside, requirements_of
 from .stored_designs import StoredDesign
 
@@ -70,6 +70,8 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
     import numpy as np
 
+    from ...optimise.constant import spread
+
     own = minimised_values(replace(result, designs=[row]))[0]
     if not len(minimised) or not np.isfinite(own).all():
         return {"dominated_by": [], "dominates": []}
@@ -77,7 +79,7 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     bounded = np.isfinite(finite).all(axis=1)
     if not bounded.any():
         return {"dominated_by": [], "dominates": []}
-    span = np.ptp(finite[bounded], axis=0)
+    span = spread(finite[bounded], size=sizes_of(result))
     gain = (own - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
     found = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):

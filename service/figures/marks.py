@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...objectives.quantity import Quantity
 from ...objectives.varying_column import varying_column
+from ...optimise.constant import is_constant
 from ...optimise.front import ParetoFront
 from ...optimise.problem import Objective
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
@@ -60,7 +61,7 @@ class Axis:
     @property
     def varies(self) -> bool:
         """Whether the designs differ in it, beyond rounding."""
-        return bool(np.ptp(self.values) > 1e-9 * np.abs(self.values).max())
+        return not is_constant(self.values)
 
 
 def marks(front: ParetoFront) -> list[Mark]:

@@ -18,6 +18,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from ...optimise.constant import is_constant
+
 DPI = 130
 TITLE, TEXT, SMALL = 11.0, 8.5, 7.5  # points
 
@@ -116,7 +118,7 @@ def with_unit(title: str, symbol: str) -> str:
 def limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:
     """Return axis limits around a range of values, also around a single one."""
     span = high - low
-    if span <= 1e-9 * max(abs(low), abs(high)):
+    if is_constant((low, high)):
         span = 0.1 * abs(high) or 1.0
     return low - margin * span, high + margin * span
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...objectives.quantity import Quantity
 from ...objectives.registry import quantity
 from ...objectives.sweep import Axis
+from ...optimise.constant import is_constant
 from .style import (
     BLUE,
     INK,
@@ -123,7 +124,7 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: 
     panel.set_facecolor(SHADE)
     panel.grid(False)
     shown: Any = np.ma.masked_invalid(values.T)
-    if np.ptp(shown.compressed()) == 0.0:
+    if is_constant(shown.compressed()):
         panel.figure.colorbar(panel.pcolormesh(*grids, shown, cmap=colours(), shading="nearest"), cax=scale)
     else:
         filled = panel.contourf(*grids, shown, levels=_LEVELS, cmap=colours())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from html import escape
 
+from ...optimise.constant import is_constant
 from ..designs.cycle_table import CurveColumn
 from ..figures.style import shown, unit_text
 
@@ -15,7 +16,7 @@ def curve_strip(column: CurveColumn, inner: float, outer: float) -> str:
     """Return the picture as HTML. inner, outer: dead centres, deg."""
     known = [value for value in column.values if math.isfinite(value)]
     low, high = (min(known), max(known)) if known else (0.0, 1.0)
-    span = (high - low) or abs(high) or 1.0
+    span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
     lines = [
         f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_HEIGHT:g}"/>' for angle in (inner, outer)
     ]

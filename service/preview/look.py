@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -55,7 +54,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
         stated = None
     beyond = None if stated is None else _beyond(stated)
     try:
-        # The parser would search for the nearest way out for a long moment; the rest of the job is checked without it.
+        # It is said once; the rest of the job is checked without it.
         whole = read(tables if beyond is None else _without_time_ratio(tables))
         if beyond is None and stated is not None:
             stated = geometry(tables, whole)
@@ -91,23 +90,10 @@ def _unread(_tables: Mapping[str, Any]) -> Problem:
 
 def _beyond(stated: Problem) -> Wrong | None:
     """Return what is wrong if no linkage at all has the time ratio with the transmission angle that are asked."""
-    from ...optimise.job.box import greatest_time_ratio
-    from ...optimise.problem import Range
+    from ...optimise.job.box import beyond_both
 
-    asked = {constraint.quantity: constraint for constraint in stated.constraints}
-    ratio, angle = asked.get("time_ratio"), asked.get("transmission_angle")
-    if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
-        return None
-    if not 0.0 < angle.lower < 0.5 * math.pi:
-        return None
-    cap = greatest_time_ratio(math.cos(angle.lower), Range(lower=0.0, upper=1.0))
-    if ratio.lower <= cap * (1.0 + 1e-9):
-        return None
-    return Wrong(
-        "constraints.time_ratio",
-        f"with a least transmission angle of {math.degrees(angle.lower):.5g} deg it stays below {cap:.4g} whatever the "
-        f"dimensions; got at least {ratio.lower:.5g}; lower it, or lower the transmission angle",
-    )
+    sentence = beyond_both(stated)
+    return None if sentence is None else Wrong("constraints.time_ratio", sentence)
 
 
 def _without_time_ratio(tables: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,11 +1,12 @@
 """What the ranges of a job allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
 
 A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
-samples lie where the search looks. Extremes are looked for around the best samples, and come within about one percent.
+samples lie where the search looks. Extremes are looked for around the best samples and polished: a design has each.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -33,6 +34,9 @@ _WIDTHS = (0.1, 0.05, 0.025, 0.012, 0.006, 0.003, 0.0015)
 _ON_EDGE = 128
 _PARENTS, _CHILDREN = 12, 12
 _STAYS = 0.4
+_POLISHED = 4  # of the best designs found for an end
+_FLATTEST = math.radians(0.1)
+"""Least transmission angle that is looked for: nearer to locking there is nothing to know."""
 _CLOSE = 1e-6
 """Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
 
@@ -41,11 +45,12 @@ _CLOSE = 1e-6
 class Possible:
     """What the ranges allow. turning: share of the designs in the box that turn fully.
 
-    stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold;
-    None where no sample meets these. feasible: share of the `sampled` designs that meet every requirement that was
-    checked. hardest: the requirement that the fewest designs meet which turn fully, and that share. example: crank, rod
-    and offset, m, near the middle of what is feasible, else the nearest to it; None if nothing turns. unchecked:
-    requirements that would have taken longer than a moment.
+    stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
+    the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
+    feasible: share of the `sampled` designs that meet every requirement that was checked. hardest: the requirement that
+    the fewest designs meet which turn fully, and that share. example: crank, rod and offset, m, near the middle of what
+    is feasible, else the nearest to it; None if nothing turns. unchecked: requirements that would have taken longer
+    than a moment.
     """
 
     turning: float
@@ -150,8 +155,12 @@ def _screened(problem: Problem) -> tuple[Array, Array]:
 def _reach(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
     from ...optimise.elimination import sheets
+    from ...optimise.evaluation import constraints_of
+    from ...optimise.problem import Constraint
 
-    others = tuple(c for c in problem.constraints if is_closed(c.quantity) and c.quantity != name)
+    others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
+    if name == "transmission_angle":
+        others = (*others, Constraint(quantity=name, lower=_FLATTEST))
     alone = replace(problem, constraints=others)
     ends = [_ends(alone, name, sheet, index) for index, sheet in enumerate(sheets(alone))]
     found = [pair for pair in ends if pair is not None]
@@ -182,8 +191,30 @@ def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
             more = _values(problem, name, sheet.dimensions(children)[:, :3])
             best = np.concatenate([best[rows], children])
             worth = np.concatenate([worth[rows], np.where(np.isfinite(more), sign * more, -np.inf)])
-        found.append(sign * float(worth.max()))
+        start = best[np.argsort(-worth, kind="stable")[:_POLISHED]]
+        found.append(sign * max(float(worth.max()), _polished(problem, name, sheet, sign, start)))
     return found[0], found[1]
+
+
+def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Array) -> float:
+    """Return the greatest of `sign` times a closed form near points (n, k) of a sheet; minus infinity if there is none.
+
+    Its own requirement apart, all others of the problem hold.
+    """
+    import numpy as np
+
+    from ...optimise.evaluation import FEASIBLE, Evaluator
+    from ...optimise.polish import polish
+    from ...optimise.problem import Objective
+
+    wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
+    evaluator = Evaluator(replace(problem, objectives=(wanted,)), sheet)
+    start = start[evaluator.valid(start)]
+    if not sheet.free or not len(start):
+        return -np.inf
+    found = polish(evaluator, start, np.ones(1))
+    good = found.violation <= FEASIBLE
+    return float(-found.values[good, 0].min()) if good.any() else -np.inf
 
 
 def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:

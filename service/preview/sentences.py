@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from .possible import Ends, Possible
@@ -9,9 +10,7 @@ from .possible import Ends, Possible
 if TYPE_CHECKING:
     from ...optimise.problem import Constraint, Problem
 
-_NEAR = 0.01
-"""Relative: the ends are found to within a part of this, so that what is asked so near to them may be had."""
-_REST = "with all other requirements on the dimensions"
+_REST = "all other requirements on the dimensions"
 
 
 def said(problem: Problem, found: Possible) -> list[str]:
@@ -21,7 +20,7 @@ def said(problem: Problem, found: Possible) -> list[str]:
     for name in ("stroke", "time_ratio", "transmission_angle"):
         ends: Ends | None = getattr(found, name)
         if name in asked and ends is not None:
-            sentences += _beyond(asked[name], ends)
+            sentences += _beyond(problem, asked[name], ends)
     if found.turning == 0.0:
         sentences.append("no crank of these ranges turns fully: the rod must be longer than crank and offset together")
     elif found.sampled and found.feasible == 0.0 and not sentences:
@@ -35,22 +34,19 @@ def said(problem: Problem, found: Possible) -> list[str]:
     return sentences
 
 
-def _beyond(constraint: Constraint, ends: Ends) -> list[str]:
-    from ...objectives.registry import QUANTITIES
+def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
+    """Return in words what can be had in place of a requirement that lies beyond the ends of what is possible."""
+    from ...optimise.constant import is_constant
+    from ...optimise.relaxation import missed, sides
 
-    of = QUANTITIES[constraint.quantity]
-
-    def shown(value: float) -> str:
-        return f"{value * of.unit.factor:.4g} {of.unit.symbol}".rstrip()
-
-    lower, upper = constraint.lower, constraint.upper
-    if lower is not None and lower > ends[1] * (1.0 + _NEAR):
-        word = "exactly" if constraint.equality else "at least"
-        return [f"{of.title}: {word} {shown(lower)} is asked, about {shown(ends[1])} at most can be had {_REST}"]
-    if upper is not None and upper * (1.0 + _NEAR) < ends[0]:
-        word = "exactly" if constraint.equality else "at most"
-        return [f"{of.title}: {word} {shown(upper)} is asked, about {shown(ends[0])} at least must be had {_REST}"]
-    return []
+    found = []
+    for relation, _, bound in sides(constraint):
+        nearest = min(max(bound, ends[0]), ends[1])
+        beyond = {"at least": bound > nearest, "at most": bound < nearest, "exactly": True}[relation]
+        item = missed(problem, constraint, relation, bound, nearest) if beyond else None
+        if item is not None:
+            found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
+    return found
 
 
 def _percent(share: float) -> str:

@@ -139,13 +139,53 @@ def test_rates_of_three_objectives_say_what_a_gain_takes() -> None:
 
 def test_what_cannot_gain_has_no_rates() -> None:
     front = pair()
-    best = front.extremes()["time_ratio"]
-    assert np.isnan(front.rates(front.extremes()["peak_torque"])[:, 0]).all() or (
-        front.rates(front.extremes()["peak_torque"])[1, 0] > 0.0
-    )
+    extremes = front.extremes()
+    assert np.isnan(front.rates(extremes["peak_torque"])[:, 0]).all()
+    assert np.isnan(front.rates(extremes["time_ratio"])[:, 1]).all()
     alone = solve(problem({"peak_torque": "minimise"}, HELD))
     assert np.isnan(alone.rates(0)).all()
-    assert 0 <= best < len(front)
+
+
+CHANGE = re.compile(r"([\d.e+-]+)(?: (?:N m|N|deg|mm))? (?:less|more) ([a-z, ]+?)(?= costs| and|$)")
+
+
+@pytest.mark.parametrize("name", ["pair", "feeder", "sieve", "support"])
+def test_trade_offs_stay_within_the_front(name: str) -> None:
+    """No step beyond the best value of the front, no cost beyond its worst; at an extreme this is said instead."""
+    front = pair() if name == "pair" else shipped_front(name)
+    titles = {front.problem.quantity(item.quantity).title: column for column, item in enumerate(front.objectives)}
+    units = np.array([front.problem.quantity(item.quantity).unit.factor for item in front.objectives])
+    values, best, worst = front.values * units, front.values.min(axis=0) * units, front.values.max(axis=0) * units
+    told = 0
+    for row in range(0, len(front), max(1, len(front) // 25)):
+        for sentence in front.trade_offs(row):
+            ended = re.fullmatch(r"no design of the front has (less|more) ([a-z, ]+)", sentence)
+            if ended is not None:
+                column = titles[ended[2]]
+                assert values[row, column] == pytest.approx(best[column], rel=1e-6)
+                assert front.objectives[column].sense == {"less": "minimise", "more": "maximise"}[ended[1]]
+                continue
+            (step, gained), *costs = CHANGE.findall(sentence)
+            assert float(step) <= (values[row, titles[gained]] - best[titles[gained]]) * (1.0 + 1e-9)
+            assert costs
+            for cost, lost in costs:
+                assert float(cost) <= (worst[titles[lost]] - values[row, titles[lost]]) * (1.0 + 5e-3)  # three digits
+            told += 1
+    assert told > 10
+    for quantity, row in front.extremes().items():
+        title = front.problem.quantity(quantity).title
+        assert any(
+            re.fullmatch(f"no design of the front has (less|more) {title}", said) for said in front.trade_offs(row)
+        )
+
+
+def test_what_is_the_same_in_all_designs_is_not_traded() -> None:
+    front = pair()
+    bits = np.spacing(abs(front.values[0, 1])) * (np.arange(len(front)) % 3)
+    flat = replace(front, values=np.column_stack([front.values[:, 0], front.values[0, 1] + bits]))
+    assert not any(
+        "time ratio" in said.split(" costs ")[0] for row in range(len(flat)) for said in flat.trade_offs(row)
+    )
 
 
 def test_trade_offs_are_the_rates_in_words() -> None:

@@ -92,9 +92,9 @@ def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: 
     found = preview(shared, feeder)
     (wrong,) = found["wrong"]
     assert wrong["path"] == "constraints.time_ratio"
-    assert "stays below 1.286" in wrong["sentence"]
+    assert "it is at most 1.28521" in wrong["sentence"]
     assert found["understood"] is None
-    assert any("time ratio: at least 2 is asked" in sentence for sentence in found["allowed"]["said"])
+    assert any("time ratio at least 2 is asked, at most 1.28521 can be had" in sentence for sentence in found["allowed"]["said"])
 
 
 def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:

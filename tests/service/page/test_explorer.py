@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -13,7 +15,8 @@ from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.service.runs.result import Row
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import Solved, served
+from tests.service.api.fixed_front import Solved, put_in, served
+from tests.service.fronts import JOB
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
 from tests.service.page.large_front import put_large
@@ -143,6 +146,26 @@ def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Sol
     page.get_by_role("group", name="Axes").get_by_label("stroke, mm", exact=True).check()
     expect(field(page, "At least stroke, mm")).to_be_visible()
     expect(page).to_have_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
+
+
+@pytest.mark.parametrize(
+    "query", ["?axes=stroke_mm%2Crod_mm", "?x=stroke_mm&y=rod_mm&colour=stroke_mm", "?columns=stroke_mm"]
+)
+def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
+    open_page: Open, solved: Solved, tmp_path: Path, query: str
+) -> None:
+    rows = [{**row, "stroke_mm": (280.0, 280.00000000000006)[n % 2]} for n, row in enumerate(solved.result.designs)]
+    with Store(tmp_path / "store.db") as store:
+        put_in(store, solved.result, tomllib.loads(JOB), designs=rows)
+        page = open_page(store, f"#/jobs/1{query}")
+        expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+        page.get_by_text("Axes", exact=True).click()
+        axes = page.get_by_role("group", name="Axes")
+        expect(axes).to_be_visible()
+        if "axes=" not in query:
+            axes.get_by_label("stroke, mm", exact=True).check()
+        expect(field(page, "At least stroke, mm")).to_have_attribute("placeholder", "280")
+        expect(field(page, "At most stroke, mm")).to_have_attribute("placeholder", "280")
 
 
 def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Open, solved: Solved) -> None:

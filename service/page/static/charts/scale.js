@@ -1,8 +1,10 @@
 /** A linear scale: values to pixels and back, and round numbers for its ticks. */
 
+import { isConstant } from "../lib/constant.js";
+
 /** Return {at(value), value(pixel), ticks, text(tick)} for values from `low` to `high` on pixels from `start` to `end`. */
 export function scale(low, high, start, end, count = 5) {
-  if (!(high > low)) {
+  if (isConstant(low, high)) {
     const room = Math.abs(low) * 1e-3 || 1;
     [low, high] = [low - room, high + room];
   }

@@ -1,5 +1,6 @@
 /** The objectives of a design at a glance: value, and where it stands in the front. */
 
+import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
@@ -23,9 +24,10 @@ export function showObjectives(place, { objectives, front, designs, names }) {
     const value = row[objective.column];
     const own = rankOf(value, objective);
     const ranks = front.map((one) => rankOf(one[objective.column], objective));
-    const better = ranks.filter((rank) => rank < own).length;
     const [best, worst] = [Math.min(...ranks), Math.max(...ranks)];
-    const share = worst > best ? Math.min(Math.max((worst - own) / (worst - best), 0), 1) : 1;
+    const same = isConstant(best, worst, objective.target ?? 0);
+    const better = same ? 0 : ranks.filter((rank) => rank < own).length;
+    const share = !same ? Math.min(Math.max((worst - own) / (worst - best), 0), 1) : 1;
     const bar = h("span", { class: "share" }, h("span", {}));
     bar.firstChild.style.width = `${100 * share}%`;
     return h("div", { class: "panel objective" }, helpLink({ key: objective.column, title: objective.title }, names), h("span", { class: "quiet sense" }, sense(objective)),

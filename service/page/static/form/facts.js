@@ -1,7 +1,8 @@
 /** What the ranges allow, beside the form, in the reader's units. */
 
+import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
-import { text, withUnit } from "../lib/numbers.js";
+import { limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. */
 export function showFacts(place, { allowed, example, understood }) {
@@ -40,6 +41,8 @@ function share(value) {
 
 function between(ends, unit) {
   if (!ends) return "none";
-  const [low, high] = ends.map((end) => (unit === "deg" ? Math.round(10 * end) / 10 : end));
-  return text(low, unit, 3) === text(high, unit, 3) ? withUnit(low, unit, 3) : `${text(low, unit, 3)} to ${withUnit(high, unit, 3)}`;
+  const [low, high] = ends;
+  if (isConstant(low, high)) return withUnit(low, unit);
+  const sign = unitOf(unit);
+  return `${limitText(low, unit, "up")} to ${limitText(high, unit, "down")}${sign && sign !== "°" ? "\u00a0" : ""}${sign}`;
 }

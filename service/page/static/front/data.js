@@ -1,6 +1,7 @@
 /** The designs of a front by columns, fetched when they are first needed. */
 
 import { get } from "../lib/api.js";
+import { isConstant } from "../lib/constant.js";
 
 /** The front of a job: `front` is what /jobs/N/front says of it. */
 export class FrontData {
@@ -49,7 +50,7 @@ export class FrontData {
     return this.kept.get(key)?.words ?? null;
   }
 
-  /** Return {low, high} of the numbers of a column; both 0 where none is defined. */
+  /** Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined. */
   range(key) {
     return this.kept.get(key).range;
   }
@@ -91,5 +92,6 @@ function stored(cells) {
     if (number < low) low = number;
     if (number > high) high = number;
   }
-  return { numbers, words, range: low > high ? { low: 0, high: 0 } : { low, high } };
+  if (low > high) [low, high] = [0, 0];
+  return { numbers, words, range: { low, high: isConstant(low, high) ? low : high } };
 }

@@ -54,6 +54,19 @@ export function text(value, unit = "", digits = 5) {
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
 }
 
+/**
+ * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
+ * asked for: what optimise/safe_side.py does for sentences, in the unit that is shown.
+ */
+export function limitText(value, unit, side, digits = 5) {
+  const shown = inShown(value, unit);
+  if (shown === 0) return "0";
+  const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
+  const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one
+  const scaled = (shown + (side === "up" ? -rounding : rounding)) * 10 ** places;
+  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replace("-", "−");
+}
+
 /** Return a number with its unit: "41.2 mm", "38°". */
 export function withUnit(value, unit = "", digits = 5) {
   if (value === null || value === undefined || typeof value !== "number") return text(value);

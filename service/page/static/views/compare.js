@@ -3,6 +3,7 @@ import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
 import { keep, link } from "../lib/address.js";
 import { get } from "../lib/api.js";
+import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
@@ -56,7 +57,7 @@ export async function show(place, { query, signal }) {
       const unit = objectives.get(column).unit;
       return h("tr", {},
         h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(objectives.get(column))}`)),
-        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), rank(value) === least && values.some((other) => rank(other) > least) ? h("strong", { class: "best" }, " best") : null)));
+        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
     });
     const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),

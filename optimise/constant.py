@@ -1,0 +1,33 @@
+"""Whether numbers that were computed are all the same."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+SAME = 1e-9
+"""Relative spread of what counts as one number.
+
+A quantity that the rules hold at a value comes out of the search with a spread of one or a few last bits (2e-16 each),
+amplified by what it is computed from, and constraints count as met to 1e-9. A spread that a drawing shows is a million
+times greater.
+"""
+
+
+def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.bool_]:
+    """Return whether the numbers of each column are the same but for rounding: () or (m,) of values (n,) or (n, m).
+
+    The spread is compared with the greatest magnitude, at least with `size`: of a distance from a target that is the
+    target. NaN and infinity do not count; a column without numbers is constant. Zero needs a size: nothing is near it.
+    """
+    return np.asarray(spread(values, size=size) == 0.0)
+
+
+def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
+    values = np.asarray(values, dtype=np.float64)
+    known = np.where(np.isfinite(values), values, np.nan)
+    low = np.fmin.reduce(known, axis=0, initial=np.inf)
+    high = np.fmax.reduce(known, axis=0, initial=-np.inf)
+    reach = SAME * np.maximum(np.maximum(np.abs(low), np.abs(high)), size)
+    return np.where(high - low <= reach, 0.0, high - low)

@@ -1,0 +1,9 @@
+/** Whether numbers are all the same but for rounding: the rule of slidercrank's optimise/constant.py, which says why. */
+
+export const SAME = 1e-9; // relative spread of what counts as one number
+
+/** Return whether the numbers from `low` to `high` are one. size: what they are rounded against besides, a target. */
+export function isConstant(low, high, size = 0) {
+  const apart = high - low;
+  return !(apart > (apart === Infinity ? 0 : SAME * Math.max(Math.abs(low), Math.abs(high), Math.abs(size))));
+}
