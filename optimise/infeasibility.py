@@ -114,8 +114,21 @@ def diagnose(
                         constraint.quantity, relation, bound * unit.factor, reached * unit.factor, unit.symbol, of.title
                     )
                 )
-    if relaxations:
-        message = "no design meets all requirements: " + "; ".join(item.sentence() for item in relaxations)
+    sentences = [item.sentence() for item in relaxations]
+    if problem.slow_stroke is not None:
+        loose = replace(
+            problem,
+            slow_stroke=None,
+            objectives=problem.objectives[:1],
+            settings=Settings(designs=1, seed=problem.settings.seed),
+        )
+        if best(loose) is not None:
+            other = "inward" if problem.slow_stroke == "outward" else "outward"
+            sentences.append(
+                f"slow stroke {problem.slow_stroke} is asked, with the {other} one slow or neither all else can be kept"
+            )
+    if sentences:
+        message = "no design meets all requirements: " + "; ".join(sentences)
     else:
         message = (
             "no design meets all requirements, and giving up any single one is not enough; "

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from ..model.errors import InputError
+from ..model.loads import require_word
 from .stationarity import Array
 
 Normalisation = Literal["range", "vector"]
@@ -60,6 +61,7 @@ def closeness(values: Array, weights: Sequence[float], *, normalisation: Normali
 
     weights: (m,), zero or more, of any sum. Where all designs are alike in what has weight, all are 1.
     """
+    require_word("normalisation", normalisation, Normalisation)
     _require_designs(values)
     share = np.asarray(weights, dtype=np.float64)
     if share.shape != values.shape[1:] or not np.isfinite(share).all() or (share < 0.0).any() or not share.any():

@@ -99,6 +99,11 @@ def require_reachable(problem: Problem) -> None:
         _require_both(constraints["time_ratio"], constraints["transmission_angle"], box)
 
 
+def greatest_within(problem: Problem, quantity: str) -> float:
+    """Return a bound, SI, that stroke, time ratio, transmission angle or a ratio does not exceed within the ranges."""
+    return Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset)).possible(quantity)[1]
+
+
 def _with_rod_to_offset(box: Box, constraint: Constraint) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
     if box.offset.upper == 0.0:

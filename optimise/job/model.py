@@ -22,7 +22,7 @@ from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .own import Declared, QuantityPart, folders_of, named
-from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
+from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, slow_stroke_of, tables
 from .robust import RobustPart, robustly
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
@@ -202,6 +202,7 @@ class Job(Part):
             variants=variants,
             objectives=tuple(objectives_of(self.objectives)),
             constraints=tuple(constraints_of(self.constraints)),
+            slow_stroke=slow_stroke_of(self.constraints),
             costs=None if self.costs is None else self.costs.build(),
             settings=Settings(
                 method=self.optimiser.method,

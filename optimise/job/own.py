@@ -15,6 +15,7 @@ from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, i
 from ...objectives.quantity import Unit
 from ...objectives.registry import QUANTITIES
 from ..units import TIME, Kind, kind_for, per_si, shown
+from .quantities import SLOW_STROKE
 from .values import Part, Physical
 
 
@@ -75,7 +76,7 @@ class QuantityPart(Part):
 def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
     """Refuse names that are taken, or that a table could not have as a column."""
     for name, part in parts.items():
-        if name in QUANTITIES or name in DEVIATIONS:
+        if name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE:
             raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
         part.build(name, ())
     return parts
@@ -111,10 +112,11 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             kind = kind_for(unit if isinstance(unit, str) else "")
         except InputError:
             kind = kind_for("")
-        if name not in QUANTITIES and name not in DEVIATIONS and name.isidentifier() and not name.startswith("_"):
+        taken = name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE
+        if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = (name.replace("_", " "), kind)
     asked = [name for table in ("objectives", "constraints") for name in _keys(data.get(table))]
-    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables}]
+    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:

@@ -36,7 +36,8 @@ class VariablesPart(Part):
     crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
     rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
     offset: AnyRange = Field(
-        description="of the slider line from the crank pivot, positive to the left of the outward direction",
+        description="of the slider line from the crank pivot, along +y: positive to the left of the outward direction "
+        "on the open branch, to its right on the crossed one",
         examples=[["0 mm", "200 mm"]],
     )
     mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})

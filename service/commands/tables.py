@@ -81,6 +81,7 @@ def print_table(screen: Console, table: Table) -> None:
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
     keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
+    keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []
     for key in keys:
@@ -90,6 +91,8 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         same = len(numbers) > 1 and max(numbers) - min(numbers) <= 1e-9 * abs(max(numbers, key=abs))
         if same and key not in {wanted.column for wanted in result.objectives}:
             constant.append(f"{column.title} {numbers[0]:.6g} {column.unit}".rstrip())
+        elif not numbers and len(values) > 1 and len(set(values)) == 1:
+            constant.append(f"{column.title} {values[0]}")
         else:
             columns.append(column)
     return columns, constant
