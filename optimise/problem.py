@@ -13,7 +13,7 @@ from ..model.linkage import SlowStroke
 from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..objectives.quantity import Quantity
-from ..objectives.registry import QUANTITIES, require_known
+from ..objectives.registry import QUANTITIES, quantity
 from .convex.costs import Costs
 from .methods.registry import require_known as require_known_method
 
@@ -213,9 +213,7 @@ class Problem:
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
-        own = {quantity.name: quantity for quantity in self.own}
-        require_known(name, also=own)
-        return own[name] if name in own else QUANTITIES[name]
+        return quantity(name, self.own)
 
     def slow_side(self) -> float | None:
         """Sign that the offset must have for the slow stroke that is asked, +1 or -1; None where none is asked.

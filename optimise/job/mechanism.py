@@ -187,8 +187,8 @@ class MechanismPart(Part):
     )
     branch: Branch = Field(
         "open",
-        description="open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of -x, "
-        "and outward is -x",
+        description="open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of "
+        "-x, and outward is -x",
         examples=["open"],
     )
 

@@ -28,7 +28,7 @@ from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart, require_target
 from .values import Part
-from .variables import ChoicePart, VariablesPart
+from .variables import ChoicePart, VariablesPart, choice_with
 from .varying import ends_of, variants_of, varying_machine
 
 
@@ -223,11 +223,13 @@ class Job(Part):
 
 
 def job_with(declared: Declared) -> type[Job]:
-    """Return the job whose [objectives] and [constraints] may name quantities of its own too."""
+    """Return the job whose [objectives] and [constraints], of options too, may name quantities of its own."""
     if not declared.tables:
         return Job
     constraints, objectives = tables(declared.tables)
+    choice: Any = choice_with(constraints)
     fields: dict[str, Any] = {
+        "choice": (tuple[choice, ...], Job.model_fields["choice"]),
         "constraints": (constraints, Job.model_fields["constraints"]),
         "objectives": (Annotated[objectives, AfterValidator(_some)], Job.model_fields["objectives"]),
     }

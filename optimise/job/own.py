@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -115,13 +115,23 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         taken = name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE
         if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = (name.replace("_", " "), kind)
-    asked = [name for table in ("objectives", "constraints") for name in _keys(data.get(table))]
+    asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _keys(table)]
     unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:
         tables[quantity.name] = (quantity.title, kind_for(quantity.unit.symbol))
     return Declared(tables, found)
+
+
+def _constraints(data: Mapping[str, Any]) -> Iterator[object]:
+    """Yield the constraints of a job and those of its options, as far as these can be told."""
+    yield data.get("constraints")
+    choices = data.get("choice")
+    for choice in choices if isinstance(choices, list | tuple) else ():
+        options = choice.get("option") if isinstance(choice, Mapping) else None
+        for option in options if isinstance(options, list | tuple) else ():
+            yield option.get("constraints") if isinstance(option, Mapping) else None
 
 
 def _keys(table: object) -> list[str]:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, create_model, model_validator
 
 from ...model.errors import InputError
 from ..units import shown
@@ -113,6 +113,15 @@ class ChoicePart(Part):
             ]
         ],
     )
+
+
+def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
+    """Return the choice whose options may constrain quantities of a job's own too."""
+    fields: dict[str, Any] = {"constraints": (constraints, OptionPart.model_fields["constraints"])}
+    option = create_model("OptionPart", __base__=OptionPart, **fields)
+    options: Any = Annotated[tuple[option, ...], AfterValidator(_apart)]  # type: ignore[valid-type]
+    fields = {"option": (options, ChoicePart.model_fields["option"])}
+    return create_model("ChoicePart", __base__=ChoicePart, **fields)
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
