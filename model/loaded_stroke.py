@@ -44,7 +44,7 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
 def _work(mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the work against the outward and against the inward stroke (2, n), J."""
     loads = [load for load in mechanism.loads if _tells(load)]
-    linkage = Linkage(*dimensions.T, mechanism.branch)
+    linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     work = np.zeros((2, len(dimensions)))
     for load in loads:
         if isinstance(load, StrokeForce):
