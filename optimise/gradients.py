@@ -17,7 +17,7 @@ WITHOUT = tuple(
 
 def without_gradient(problem: Problem) -> list[str]:
     """Return the quantities that objectives and constraints name, those of choices too, and that have no gradient."""
-    asked = [item.quantity for item in (*problem.objectives, *_constraints(problem))]
+    asked = [o.quantity for o in problem.objectives] + [c.quantity for c in _constraints(problem)]
     lacking = [own.name for own in problem.own if isinstance(own, OwnQuantity) and own.gradient == "none"]
     return [name for name in lacking if name in asked]
 

@@ -37,7 +37,7 @@ def expected_warnings(problem: Problem) -> list[str]:
             designs = designs[(crank > 0.0) & (rod > crank + np.abs(offset))]
         if part.slow_stroke is not None or not part.mechanism.loads or not len(designs):
             continue
-        linkage = Linkage(*designs.T[:3], part.mechanism.branch)
+        linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
         slow = np.atleast_1d(linkage.slow_stroke(direction=part.mechanism.direction))
         loaded = loaded_stroke(part.mechanism, designs)
         found = _fast(slow, loaded)

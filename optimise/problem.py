@@ -83,17 +83,12 @@ class Objective:
     """
 
     quantity: str
-    sense: Sense | Literal["minimize", "maximize"]
+    sense: Sense
     target: float | None = None
 
     def __post_init__(self) -> None:
         _require_name(self.quantity)
-        if not isinstance(self.sense, str) or self.sense not in SENSES:
-            raise InputError(
-                f"the sense of the objective {self.quantity} must be {', '.join(map(repr, SENSES))}; "
-                f"got {self.sense!r}; choose one of these"
-            )
-        object.__setattr__(self, "sense", SENSES[self.sense])
+        object.__setattr__(self, "sense", _sense(self.quantity, self.sense))
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not _finite(self.target):
@@ -118,7 +113,7 @@ class Settings:
     def __post_init__(self) -> None:
         require_known_method(self.method)
         for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
-            value = getattr(self, name)
+            value: object = getattr(self, name)
             if value is None and name in ("samples", "evaluations"):
                 continue
             if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
@@ -283,6 +278,16 @@ def _require_name(name: object) -> None:
             f"a quantity is named by small letters, digits and underscores, such as 'peak_torque'; got {name!r}; "
             f"choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
         )
+
+
+def _sense(name: str, sense: object) -> Sense:
+    """Return a sense in the one spelling. Raises `InputError` for what is none."""
+    if not isinstance(sense, str) or sense not in SENSES:
+        raise InputError(
+            f"the sense of the objective {name} must be {', '.join(map(repr, SENSES))}; got {sense!r}; "
+            "choose one of these"
+        )
+    return SENSES[sense]
 
 
 def _require_stroke(stroke: object) -> None:

@@ -119,7 +119,7 @@ def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     """Return the choice whose options may constrain quantities of a job's own too."""
     fields: dict[str, Any] = {"constraints": (constraints, OptionPart.model_fields["constraints"])}
     option = create_model("OptionPart", __base__=OptionPart, **fields)
-    options: Any = Annotated[tuple[option, ...], AfterValidator(_apart)]  # type: ignore[valid-type]
+    options: Any = Annotated[tuple[option, ...], AfterValidator(_apart)]
     fields = {"option": (options, ChoicePart.model_fields["option"])}
     return create_model("ChoicePart", __base__=ChoicePart, **fields)
 

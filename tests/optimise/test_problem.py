@@ -54,7 +54,7 @@ def test_either_spelling_of_a_sense_is_the_same_objective() -> None:
         assert found == Objective(quantity="peak_torque", sense=british)  # type: ignore[arg-type]
         assert found.sense == british
     base = problem({"peak_torque": "minimise"}, {"stroke": 0.15}, samples=500)
-    american_one = replace(base, objectives=(Objective(quantity="peak_torque", sense="minimize"),))
+    american_one = replace(base, objectives=(Objective(quantity="peak_torque", sense="minimize"),))  # type: ignore[arg-type]
     assert solve(american_one).dimensions.tolist() == solve(base).dimensions.tolist()
 
 
@@ -110,7 +110,7 @@ def test_words_of_other_parts_are_checked_too() -> None:
     with pytest.raises(InputError, match="measure must be 'greatest' or 'rms'; got 'RMS'"):
         MotionDeviation("x", "x_mm", "x", MILLIMETRE, target, "RMS")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="which must be 'mean' or 'rms'; got 'peak'"):
-        replace(RMS_TORQUE, which="peak")
+        replace(RMS_TORQUE, which="peak")  # type: ignore[arg-type]
 
 
 def test_a_target_belongs_to_the_sense_target_only() -> None:
