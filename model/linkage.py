@@ -15,6 +15,7 @@ from .mechanism import Branch
 from .position_error import Influences, influences
 
 Array = NDArray[np.float64]
+SlowStroke = Literal["outward", "inward"]
 Stroke = Literal["outward", "inward", "equal"]
 
 

@@ -140,6 +140,14 @@ class Mechanism:
         return replace(self, varying=()) if self.varying else self
 
     @property
+    def direction(self) -> float:
+        """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
+
+        A speed that varies has one sign; it is that of the designs, whatever the speed that is given beside.
+        """
+        return -1.0 if self.fullest.speed < 0.0 else 1.0
+
+    @property
     def fullest(self) -> Mechanism:
         """The machine with every varying number at its end of greatest size: it has all that some design has."""
         return self.at([item.fullest for item in self.varying]) if self.varying else self

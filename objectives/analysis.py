@@ -9,6 +9,7 @@ import pandas as pd
 
 from ..model.averages import average_torque
 from ..model.linkage import Linkage
+from ..model.loaded_stroke import loaded_stroke
 from ..model.mechanism import Mechanism
 from ..model.peaks import find_peaks
 from ..model.signals import Signal
@@ -25,7 +26,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
-    rotation. Position errors are NaN without tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
+    rotation, the loaded stroke that of `loaded_stroke`. Position errors are NaN without tolerances. Raises
+    `AssemblyError` for a linkage that does not turn fully.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
@@ -40,7 +42,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         **_varying(mechanism, dimensions),
         "stroke_mm": 1e3 * linkage.stroke,
         "time_ratio": linkage.time_ratio,
-        "slow_stroke": linkage.slow_stroke(direction=mechanism.speed or 1.0),
+        "slow_stroke": linkage.slow_stroke(direction=mechanism.direction),
+        "loaded_stroke": loaded_stroke(mechanism, dimensions),
         "outer_dead_centre_deg": np.degrees(outer),
         "inner_dead_centre_deg": np.degrees(inner),
         "least_transmission_angle_deg": np.degrees(linkage.least_transmission_angle),

@@ -8,11 +8,14 @@ from typing import Literal
 import numpy as np
 
 from ..model.averages import average
+from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..model.numbers import number_of
 from ..model.parameters import Raw
 from ..model.signals import Signal
 from .quantity import Array, Pieces, Unit, Values
+
+Which = Literal["mean", "rms"]
 
 
 @dataclass(frozen=True)
@@ -27,8 +30,11 @@ class CycleAverage:
     title: str
     unit: Unit
     signal: Signal
-    which: Literal["mean", "rms"]
+    which: Which
     times_speed: bool = False
+
+    def __post_init__(self) -> None:
+        require_word("which", self.which, Which)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

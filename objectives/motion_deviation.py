@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..model.target_motion import Fit, Measure, TargetMotion, fit
 from ..model.target_pieces import fit_pieces
@@ -31,6 +32,9 @@ class MotionDeviation:
     unit: Unit
     target: TargetMotion
     measure: Measure
+
+    def __post_init__(self) -> None:
+        require_word("measure", self.measure, Measure)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""

@@ -51,16 +51,15 @@ _ALL: tuple[Quantity, ...] = (
 QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
 
 
-def quantity(name: str) -> Quantity:
-    """Return the quantity of a name; raise `InputError` with the nearest names otherwise."""
-    require_known(name)
-    return QUANTITIES[name]
+def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:
+    """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
 
-
-def require_known(name: str, *, also: Iterable[str] = ()) -> None:
-    """Raise `InputError` with the nearest names if neither a quantity nor one of `also` is called so."""
-    known = (*QUANTITIES, *also)
+    own: quantities that a problem has beside those that every one has. Where there is a problem, ask it: it has its own
+    (`Problem.quantity`).
+    """
+    known = QUANTITIES | {of.name: of for of in own}
     if name not in known:
         near = difflib.get_close_matches(name, known, n=1)
         hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(known)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
+    return known[name]

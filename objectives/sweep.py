@@ -14,7 +14,7 @@ import pandas as pd
 from ..model.errors import InputError
 from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
-from .quantity import Array
+from .quantity import Array, Quantity
 from .registry import quantity
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
@@ -36,15 +36,18 @@ class Axis:
             raise InputError(f"a sweep needs at least one value of the {self.parameter}, all finite")
 
 
-def sweep(mechanism: Mechanism, dimensions: Array, over: Sequence[Axis], of: Sequence[str]) -> pd.DataFrame:
+def sweep(
+    mechanism: Mechanism, dimensions: Array, over: Sequence[Axis], of: Sequence[str], *, own: Sequence[Quantity] = ()
+) -> pd.DataFrame:
     """Return a table with a row for every combination of the values of the axes, the first axis slowest.
 
     dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities.
+    own: those that it may name beside those of the registry.
     Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
     the row has no values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
     """
-    quantities = [quantity(name) for name in of]
+    quantities = [quantity(name, own) for name in of]
     names = [axis.parameter for axis in over]
     if not names or not quantities:
         raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..model import geometry
 from ..model.arithmetic import STEP
+from ..model.errors import InputError
 from .problem import Constraint, Problem, Range
 
 Array = NDArray[np.float64]
@@ -97,13 +98,33 @@ class Sheet:
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     """Return the sheets of a problem: one for each sign that its offset may have, in every variant of its choices.
 
-    eliminate: whether equality constraints are eliminated (fixed dimensions always are).
+    eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
+    leaves one sign. Raises `InputError` where the ranges have no offset of that sign.
     """
     parts = problem.parts()
+    require_slow_side(problem, parts)
     return tuple(
         _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
         for variant, part in enumerate(parts)
         for sign, offset in _signs(part)
+    )
+
+
+def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
+    """Raise `InputError` if a slow stroke is asked that no offset of any part's range has."""
+    if any(_signs(part) for part in parts):
+        return
+    part = parts[0]
+    side = part.slow_side()
+    assert side is not None
+    turning = "counter-clockwise" if part.mechanism.direction > 0.0 else "clockwise"
+    other = "clockwise" if part.mechanism.direction > 0.0 else "counter-clockwise"
+    raise InputError(
+        f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
+        f"{part.slow_stroke} stroke is the slow one where the offset is {'above' if side > 0.0 else 'below'} 0; got an "
+        f"offset from {1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset reach "
+        f"{'above' if side > 0.0 else 'below'} 0"
+        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
     )
 
 
@@ -115,7 +136,8 @@ def _signs(problem: Problem) -> list[tuple[float, Range]]:
         signed.append((1.0, Range(lower=max(lower, 0.0), upper=upper)))
     if lower < 0.0:
         signed.append((-1.0, Range(lower=max(-upper, 0.0), upper=-lower)))
-    return signed
+    side = problem.slow_side()
+    return signed if side is None else [(sign, sizes) for sign, sizes in signed if sign == side and sizes.upper > 0.0]
 
 
 def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:

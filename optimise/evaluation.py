@@ -24,8 +24,15 @@ LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
 """Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
 LEAST_SELF_LOCKING_MARGIN = np.radians(5.0)
 """Least self-locking margin of a machine with friction where the problem sets none: forces grow as 1 / sin(margin)."""
-FLOORS = {"transmission_angle": LEAST_TRANSMISSION_ANGLE, "self_locking_margin": LEAST_SELF_LOCKING_MARGIN}
-"""Floors that hold where a problem sets none, rad."""
+LEAST_TIME_RATIO = 1.01
+"""Least time ratio where a slow stroke is asked and the problem sets none: a drive's speed varies by about one percent
+itself, and without offset neither stroke is slow."""
+FLOORS = {
+    "transmission_angle": LEAST_TRANSMISSION_ANGLE,
+    "self_locking_margin": LEAST_SELF_LOCKING_MARGIN,
+    "time_ratio": LEAST_TIME_RATIO,
+}
+"""Floors that hold where a problem sets none, SI."""
 
 
 @dataclass(frozen=True)
@@ -51,20 +58,26 @@ class Rows:
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
-    They are on the transmission angle and, where there is friction, on the self-locking margin.
+    They are on the transmission angle, where there is friction on the self-locking margin, and where a slow stroke is
+    asked on the time ratio.
     """
     found = _with_floor(problem.constraints, "transmission_angle", FLOORS["transmission_angle"])
     if problem.mechanism.fullest.friction.acts:
         found = _with_floor(found, "self_locking_margin", FLOORS["self_locking_margin"])
+    if problem.slow_stroke is not None:
+        found = _with_floor(found, "time_ratio", FLOORS["time_ratio"], above=1.0)
     return found
 
 
-def _with_floor(constraints: tuple[Constraint, ...], name: str, floor: float) -> tuple[Constraint, ...]:
+def _with_floor(
+    constraints: tuple[Constraint, ...], name: str, floor: float, above: float | None = None
+) -> tuple[Constraint, ...]:
+    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
     own = [c for c in constraints if c.quantity == name]
-    if any(c.lower is not None for c in own):
+    if any(c.lower is not None and (above is None or c.lower > above) for c in own):
         return constraints
-    upper = next((c.upper for c in own), None)
-    lower = floor if upper is None else min(floor, 0.5 * upper)
+    upper, least = next((c.upper for c in own), None), above or 0.0
+    lower = floor if upper is None else min(floor, least + 0.5 * (upper - least))
     kept = [c for c in constraints if c.quantity != name]
     return (*kept, Constraint(quantity=name, lower=float(lower), upper=upper))
 

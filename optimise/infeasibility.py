@@ -13,7 +13,7 @@ from .elimination import sheets
 from .engine.engine import Engine
 from .evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from .ledger import Ledger, floats
-from .problem import Problem
+from .problem import Problem, Settings
 from .recorded import polished
 from .relaxation import Relaxation, missed, relaxations, sides
 from .sampling import apart, first_samples
@@ -79,8 +79,21 @@ def diagnose(
             if not isinstance(item, Relaxation):
                 return Diagnosis(item[None], (), "")
             found.append(item)
-    if found:
-        message = "no design meets all requirements: " + "; ".join(item.sentence() for item in found)
+    sentences = [item.sentence() for item in found]
+    if problem.slow_stroke is not None:
+        loose = replace(
+            problem,
+            slow_stroke=None,
+            objectives=problem.objectives[:1],
+            settings=Settings(designs=1, seed=problem.settings.seed),
+        )
+        if best(loose) is not None:
+            other = "inward" if problem.slow_stroke == "outward" else "outward"
+            sentences.append(
+                f"slow stroke {problem.slow_stroke} is asked, with the {other} one slow or neither all else can be kept"
+            )
+    if sentences:
+        message = "no design meets all requirements: " + "; ".join(sentences)
     else:
         message = f"no design meets all requirements, and giving up any single one is not enough; {nearest}"
     return Diagnosis(feasible, tuple(found), message)

@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.errors import InputError
-from ..objectives.registry import quantity
 from .assemble import empty, only
 from .challenge import by_sheet
 from .elimination import UNKNOWNS, sheets
 from .evaluation import FEASIBLE, Evaluator
 from .front import ParetoFront
+from .gradients import require_gradients
 from .pile import STATIONARY, Pile
 from .problem import Constraint, Problem, Range, Settings
 from .sampling import generator
@@ -60,11 +60,13 @@ def like(
     row: the given design in the table of its front. values: its objectives (m,) as minimised, SI. span: (m,), the
     objectives' ranges over its front. constraints: to add. ranges: least and greatest of crank, rod or offset, m, None
     for open. Residuals are scaled by `span`. Without a feasible design the front is empty and its message says which
-    requirements contradict each other. Raises `InputError` if nothing is added or the design already meets it.
+    requirements contradict each other. Raises `InputError` if nothing is added, the design already meets it, or
+    a quantity has no gradient.
     """
     ranges = ranges or {}
-    _require_new(row, constraints, ranges)
+    _require_new(problem, row, constraints, ranges)
     asked, contradiction = extended(problem, constraints, ranges)
+    require_gradients(asked, "the search for a design like another")
     evaluators = [Evaluator(asked, sheet) for sheet in sheets(asked)]
     run = Run(asked, 1)
     if contradiction:
@@ -90,7 +92,7 @@ def extended(
     for added in constraints:
         own = held.get(added.quantity)
         ends = common((added.lower, added.upper), (own.lower, own.upper) if own else (None, None))
-        of = quantity(added.quantity)
+        of = problem.quantity(added.quantity)
         if ends is None:
             assert own is not None
             both = f"{_words((own.lower, own.upper), of.unit.factor, of.unit.symbol)} is asked already"
@@ -132,11 +134,13 @@ def _words(ends: Ends, factor: float, unit: str) -> str:
     return " and ".join(parts)
 
 
-def _require_new(row: Mapping[str, object], constraints: Sequence[Constraint], ranges: Mapping[str, Ends]) -> None:
-    columns: list[tuple[str, float, Ends]] = [
-        (quantity(item.quantity).field, quantity(item.quantity).unit.factor, (item.lower, item.upper))
-        for item in constraints
-    ]
+def _require_new(
+    problem: Problem, row: Mapping[str, object], constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
+) -> None:
+    columns: list[tuple[str, float, Ends]] = []
+    for item in constraints:
+        of = problem.quantity(item.quantity)
+        columns.append((of.field, of.unit.factor, (item.lower, item.upper)))
     for name, ends in ranges.items():
         if name not in UNKNOWNS:
             raise InputError(f"a range is that of crank, rod or offset; got {name!r}; name one of them")

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..model.errors import InputError
+from ..model.loads import require_word
 from .constant import spread
 from .stationarity import Array
 
@@ -67,6 +68,7 @@ def closeness(
 
     weights: (m,), zero or more, of any sum. Where all designs are alike in what has weight, all are 1.
     """
+    require_word("normalisation", normalisation, Normalisation)
     _require_designs(values)
     share = np.asarray(weights, dtype=np.float64)
     if share.shape != values.shape[1:] or not np.isfinite(share).all() or (share < 0.0).any() or not share.any():

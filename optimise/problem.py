@@ -5,16 +5,28 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
+from numbers import Integral, Real
 from typing import Literal
 
 from ..model.errors import InputError
+from ..model.linkage import SlowStroke
+from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..objectives.quantity import Quantity
-from ..objectives.registry import QUANTITIES, require_known
+from ..objectives.registry import QUANTITIES, quantity
 from .convex.costs import Costs
 from .methods.registry import require_known as require_known_method
 
 Sense = Literal["minimise", "maximise", "target"]
+SENSES: dict[str, Sense] = {
+    "minimise": "minimise",
+    "minimize": "minimise",
+    "maximise": "maximise",
+    "maximize": "maximise",
+    "target": "target",
+}
+"""The sense of every word for it, in either spelling."""
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,8 +37,10 @@ class Range:
     upper: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
-            raise InputError(f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g}")
+        if not (_finite(self.lower) and _finite(self.upper) and self.lower <= self.upper):
+            raise InputError(
+                f"a range needs lower <= upper, both finite; got {_shown(self.lower)} to {_shown(self.upper)}"
+            )
 
     @property
     def fixed(self) -> bool:
@@ -43,11 +57,12 @@ class Constraint:
     upper: float | None = None
 
     def __post_init__(self) -> None:
+        _require_name(self.quantity)
         if self.lower is None and self.upper is None:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
-            if bound is not None and not math.isfinite(bound):
-                raise InputError(f"the constraint on {self.quantity} must be finite; got {bound}")
+            if bound is not None and not _finite(bound):
+                raise InputError(f"the constraint on {self.quantity} must be finite; got {_shown(bound)}")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
                 f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
@@ -61,17 +76,23 @@ class Constraint:
 
 @dataclass(frozen=True, kw_only=True)
 class Objective:
-    """A quantity to minimise, to maximise, or to bring to a target (in its SI unit)."""
+    """A quantity to minimise, to maximise, or to bring to a target (in its SI unit).
+
+    sense: "minimize" and "maximize" become "minimise" and "maximise". Raises `InputError` for any other word, and for a
+    name that no quantity can have; whether there is a quantity of the name the `Problem` knows, which may have its own.
+    """
 
     quantity: str
     sense: Sense
     target: float | None = None
 
     def __post_init__(self) -> None:
+        _require_name(self.quantity)
+        object.__setattr__(self, "sense", _sense(self.quantity, self.sense))
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
-        if self.target is not None and not math.isfinite(self.target):
-            raise InputError(f"the target of {self.quantity} must be finite; got {self.target}")
+        if self.target is not None and not _finite(self.target):
+            raise InputError(f"the target of {self.quantity} must be finite; got {_shown(self.target)}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,9 +113,11 @@ class Settings:
     def __post_init__(self) -> None:
         require_known_method(self.method)
         for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
-            value = getattr(self, name)
-            if value is not None and value < least:
-                raise InputError(f"{name} must be at least {least}; got {value}")
+            value: object = getattr(self, name)
+            if value is None and name in ("samples", "evaluations"):
+                continue
+            if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+                raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
         if self.method == "auto" and self.evaluations is not None:
             raise InputError(
                 f"the method auto has no budget of evaluations; got {self.evaluations}; leave it out, or name a method"
@@ -107,7 +130,7 @@ class Variant:
 
     labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
     with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
-    constrains the same quantity, both hold.
+    constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it.
     """
 
     labels: tuple[str, ...]
@@ -116,6 +139,10 @@ class Variant:
     rod: Range
     offset: Range
     limits: tuple[Constraint, ...] = ()
+    slow_stroke: SlowStroke | None = None
+
+    def __post_init__(self) -> None:
+        _require_stroke(self.slow_stroke)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,7 +153,8 @@ class Problem:
     may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
     chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
     tolerances, for their allocation. own: quantities beside those that every problem has; objectives and constraints
-    may name them too.
+    may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
+    only, see `slow_side`, and the time ratio is above 1, see `evaluation.constraints_of`.
     """
 
     name: str
@@ -141,8 +169,10 @@ class Problem:
     own: tuple[Quantity, ...] = ()
     choices: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
+    slow_stroke: SlowStroke | None = None
 
     def __post_init__(self) -> None:
+        _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):
                 raise InputError(
@@ -156,7 +186,8 @@ class Problem:
         if not self.objectives:
             raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
-        for name in (*names, *(constraint.quantity for constraint in self.constraints)):
+        limits = (limit for variant in self.variants for limit in variant.limits)
+        for name in (*names, *(constraint.quantity for constraint in (*self.constraints, *limits))):
             self.quantity(name)
         for name in names:
             if names.count(name) > 1:
@@ -177,9 +208,17 @@ class Problem:
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
-        own = {quantity.name: quantity for quantity in self.own}
-        require_known(name, also=own)
-        return own[name] if name in own else QUANTITIES[name]
+        return quantity(name, self.own)
+
+    def slow_side(self) -> float | None:
+        """Sign that the offset must have for the slow stroke that is asked, +1 or -1; None where none is asked.
+
+        The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
+        """
+        if self.slow_stroke is None:
+            return None
+        side = self.mechanism.direction * (1.0 if self.mechanism.branch == "open" else -1.0)
+        return side if self.slow_stroke == "inward" else -side
 
     def part(self, variant: int) -> Problem:
         """Return the problem of one variant, with nothing left to be chosen."""
@@ -193,6 +232,7 @@ class Problem:
             rod=chosen.rod,
             offset=chosen.offset,
             constraints=_both(self.constraints, chosen.limits),
+            slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
             choices=(),
             variants=(),
         )
@@ -205,6 +245,15 @@ class Problem:
 def choice_field(name: str) -> str:
     """Return the key of the column that says what was chosen."""
     return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
+
+
+def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:
+    """Return the slow stroke that both ask for. Raises `InputError` if they differ."""
+    if stroke is not None and more is not None and stroke != more:
+        raise InputError(
+            f"the slow stroke is either the outward or the inward one; got {stroke} and {more} of a choice"
+        )
+    return stroke if more is None else more
 
 
 def _both(constraints: tuple[Constraint, ...], more: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
@@ -220,3 +269,35 @@ def _both(constraints: tuple[Constraint, ...], more: tuple[Constraint, ...]) -> 
             )
         found[constraint.quantity] = constraint
     return tuple(found.values())
+
+
+def _require_name(name: object) -> None:
+    """Refuse a name that no quantity can have."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise InputError(
+            f"a quantity is named by small letters, digits and underscores, such as 'peak_torque'; got {name!r}; "
+            f"choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
+        )
+
+
+def _sense(name: str, sense: object) -> Sense:
+    """Return a sense in the one spelling. Raises `InputError` for what is none."""
+    if not isinstance(sense, str) or sense not in SENSES:
+        raise InputError(
+            f"the sense of the objective {name} must be {', '.join(map(repr, SENSES))}; got {sense!r}; "
+            "choose one of these"
+        )
+    return SENSES[sense]
+
+
+def _require_stroke(stroke: object) -> None:
+    if stroke is not None:
+        require_word("slow_stroke", stroke, SlowStroke)
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, Real) else repr(value)

@@ -15,7 +15,7 @@ from .elimination import Sheet, sheets
 from .engine.engine import Engine
 from .evaluation import Evaluator
 from .front import ParetoFront, Progress
-from .gradients import require_gradients
+from .gradients import require_gradients, without_gradient
 from .identity import identity_of
 from .infeasibility import diagnose
 from .ledger import Cancelled, Ledger, Record
@@ -78,6 +78,8 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
     front = finish(problem, evaluators, archive, run) if len(archive) else None
     if front is not None:
         return front
+    if without_gradient(problem):
+        return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method))
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
     if len(diagnosis.feasible) and method != "auto":
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
@@ -97,6 +99,11 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
 _THIN = (
     "designs that meet all requirements to rounding exist, but none that meets the equalities exactly; "
     "widen the ranges a little"
+)
+
+_NOT_KNOWN = (
+    "{} found no design that meets all requirements; whether there is one is not known where a quantity has no "
+    "gradient; allow more evaluations, or relax a requirement"
 )
 
 _MISSED = (

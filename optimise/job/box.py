@@ -106,6 +106,11 @@ def require_reachable(problem: Problem) -> None:
         raise JobError(f"constraints.time_ratio: {wrong}")
 
 
+def greatest_within(problem: Problem, quantity: str) -> float:
+    """Return a bound, SI, that stroke, time ratio, transmission angle or a ratio does not exceed within the ranges."""
+    return Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset)).possible(quantity)[1]
+
+
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
     if box.offset.upper == 0.0:

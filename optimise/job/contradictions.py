@@ -15,6 +15,7 @@ from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
 from .box import require_reachable
+from .slow_stroke import require_slow_stroke
 
 _ERRORS = ("position_error", "position_error_rss")
 _TORQUES = (
@@ -42,6 +43,7 @@ def require_consistent(problem: Problem) -> None:
         _require_free(problem, objective.quantity)
     _require_causes(problem)
     require_reachable(problem)
+    require_slow_stroke(problem)
 
 
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
@@ -64,7 +66,7 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
     if name == "time_ratio" and value < 1.0:
         raise JobError(
             f"{key}: the time ratio is the slower stroke over the faster, so 1 or more; {got}; "
-            "give the inverse (the sign of speed says which stroke is the slow one)"
+            "give the inverse (constraints.slow_stroke says which stroke is the slow one)"
         )
     if name == "transmission_angle" and not 0.0 < value < 0.5 * math.pi:
         raise JobError(

@@ -181,13 +181,14 @@ class MechanismPart(Part):
     gravity: Gravity | None = Field(None, description="size of the gravity; none if left out", examples=["9.81 m/s^2"])
     gravity_direction: Angle | None = Field(
         None,
-        description="counter-clockwise from the outward direction of the slider line (+x) to where "
-        "things fall; 270 deg, across a level slider line, if left out",
+        description="counter-clockwise from +x (the outward direction on the open branch, the inward one on the "
+        "crossed branch) to where things fall; 270 deg, across a level slider line, if left out",
         examples=["270 deg"],
     )
     branch: Branch = Field(
         "open",
-        description="open: the slider is on the side of +x; crossed: on the other side",
+        description="open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of "
+        "-x, and outward is -x",
         examples=["open"],
     )
 

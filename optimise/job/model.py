@@ -22,13 +22,13 @@ from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .own import Declared, QuantityPart, folders_of, named
-from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, tables
+from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, slow_stroke_of, tables
 from .robust import RobustPart, robustly
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart, require_target
 from .values import Part
-from .variables import ChoicePart, VariablesPart
+from .variables import ChoicePart, VariablesPart, choice_with
 from .varying import ends_of, variants_of, varying_machine
 
 
@@ -202,6 +202,7 @@ class Job(Part):
             variants=variants,
             objectives=tuple(objectives_of(self.objectives)),
             constraints=tuple(constraints_of(self.constraints)),
+            slow_stroke=slow_stroke_of(self.constraints),
             costs=None if self.costs is None else self.costs.build(),
             settings=Settings(
                 method=self.optimiser.method,
@@ -222,11 +223,13 @@ class Job(Part):
 
 
 def job_with(declared: Declared) -> type[Job]:
-    """Return the job whose [objectives] and [constraints] may name quantities of its own too."""
+    """Return the job whose [objectives] and [constraints], of options too, may name quantities of its own."""
     if not declared.tables:
         return Job
     constraints, objectives = tables(declared.tables)
+    choice: Any = choice_with(constraints)
     fields: dict[str, Any] = {
+        "choice": (tuple[choice, ...], Job.model_fields["choice"]),
         "constraints": (constraints, Job.model_fields["constraints"]),
         "objectives": (Annotated[objectives, AfterValidator(_some)], Job.model_fields["objectives"]),
     }

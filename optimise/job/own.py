@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,6 +15,7 @@ from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, i
 from ...objectives.quantity import Unit
 from ...objectives.registry import QUANTITIES
 from ..units import TIME, Kind, kind_for, per_si, shown
+from .quantities import SLOW_STROKE
 from .values import Part, Physical
 
 
@@ -75,7 +76,7 @@ class QuantityPart(Part):
 def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
     """Refuse names that are taken, or that a table could not have as a column."""
     for name, part in parts.items():
-        if name in QUANTITIES or name in DEVIATIONS:
+        if name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE:
             raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
         part.build(name, ())
     return parts
@@ -111,15 +112,26 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             kind = kind_for(unit if isinstance(unit, str) else "")
         except InputError:
             kind = kind_for("")
-        if name not in QUANTITIES and name not in DEVIATIONS and name.isidentifier() and not name.startswith("_"):
+        taken = name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE
+        if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = (name.replace("_", " "), kind)
-    asked = [name for table in ("objectives", "constraints") for name in _keys(data.get(table))]
-    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables}]
+    asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _keys(table)]
+    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:
         tables[quantity.name] = (quantity.title, kind_for(quantity.unit.symbol))
     return Declared(tables, found)
+
+
+def _constraints(data: Mapping[str, Any]) -> Iterator[object]:
+    """Yield the constraints of a job and those of its options, as far as these can be told."""
+    yield data.get("constraints")
+    choices = data.get("choice")
+    for choice in choices if isinstance(choices, list | tuple) else ():
+        options = choice.get("option") if isinstance(choice, Mapping) else None
+        for option in options if isinstance(options, list | tuple) else ():
+            yield option.get("constraints") if isinstance(option, Mapping) else None
 
 
 def _keys(table: object) -> list[str]:

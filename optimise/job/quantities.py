@@ -1,4 +1,7 @@
-"""Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension."""
+"""Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension.
+
+Beside the quantities [constraints] has `slow_stroke`, a word.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,10 @@ from pydantic import (
 )
 
 from ...model.errors import InputError
+from ...model.linkage import SlowStroke
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
-from ..problem import Constraint, Objective
+from ..problem import SENSES, Constraint, Objective
 from ..units import Kind, closest, kind_of, shown
 from .values import Part, Physical
 
@@ -60,20 +64,16 @@ _EXAMPLES: dict[str, Any] = {
     "position_error_rss": "0.2 mm",
     "rod_to_crank": 2.5,
 }
-_SENSES = {
-    "minimise": "minimise",
-    "minimize": "minimise",
-    "maximise": "maximise",
-    "maximize": "maximise",
-}
+SLOW_STROKE = "slow_stroke"
+"""The requirement that is a word."""
 _WANTED = '"minimise", "maximise" or { target = value }'
 
 
 def _sense(value: object) -> object:
     """Refuse what is neither a known word nor a table."""
     if isinstance(value, str):
-        if value in _SENSES:
-            return _SENSES[value]
+        if value in SENSES and value != "target":
+            return SENSES[value]
         near = closest(value, ("minimise", "maximise"))
         meant = f'; did you mean "{near}"?' if near else ""
         raise InputError(f"must be {_WANTED}; got {shown(value)}{meant}")
@@ -109,6 +109,14 @@ def tables(own: Mapping[str, tuple[str, Kind]]) -> tuple[type[Part], type[Part]]
             wish | None,
             Field(None, description=title, examples=["minimise", {"target": example}]),
         )
+    limits[SLOW_STROKE] = (
+        SlowStroke | None,
+        Field(
+            None,
+            description="which stroke is the slow one; the offset and the sense of rotation follow it",
+            examples=["outward"],
+        ),
+    )
     constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))
     return constraints, objectives
@@ -149,11 +157,16 @@ else:
 def constraints_of(part: ConstraintsPart) -> Iterator[Constraint]:
     """Return the constraints of a job as the problem has them."""
     for name in type(part).model_fields:
-        bounds = getattr(part, name)
+        bounds = getattr(part, name) if name != SLOW_STROKE else None
         if bounds is not None and bounds.equals is not None:
             yield Constraint(quantity=name, lower=bounds.equals, upper=bounds.equals)
         elif bounds is not None:
             yield Constraint(quantity=name, lower=bounds.min, upper=bounds.max)
+
+
+def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
+    """Return which stroke a job wants to be the slow one."""
+    return cast(SlowStroke | None, getattr(part, SLOW_STROKE))
 
 
 def objectives_of(part: ObjectivesPart) -> Iterator[Objective]:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, create_model, model_validator
 
 from ...model.errors import InputError
 from ..units import shown
@@ -36,7 +36,8 @@ class VariablesPart(Part):
     crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
     rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
     offset: AnyRange = Field(
-        description="of the slider line from the crank pivot, positive to the left of the outward direction",
+        description="of the slider line from the crank pivot, along +y: positive to the left of the outward direction "
+        "on the open branch, to its right on the crossed one",
         examples=[["0 mm", "200 mm"]],
     )
     mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
@@ -112,6 +113,15 @@ class ChoicePart(Part):
             ]
         ],
     )
+
+
+def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
+    """Return the choice whose options may constrain quantities of a job's own too."""
+    fields: dict[str, Any] = {"constraints": (constraints, OptionPart.model_fields["constraints"])}
+    option = create_model("OptionPart", __base__=OptionPart, **fields)
+    options: Any = Annotated[tuple[option, ...], AfterValidator(_apart)]
+    fields = {"option": (options, ChoicePart.model_fields["option"])}
+    return create_model("ChoicePart", __base__=ChoicePart, **fields)
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:

@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
+from ...model.linkage import SlowStroke
 from ...model.mechanism import Mechanism
 from ...model.numbers import unit_of
 from ...model.varying import Varying
 from ..problem import Constraint, Range, Variant
 from ..units import closest, shown
 from .messages import explain
-from .quantities import constraints_of
+from .quantities import constraints_of, slow_stroke_of
 from .values import Choices, ToleranceOf
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ class _Option:
     label: str
     values: dict[str, Any]
     limits: tuple[Constraint, ...] = ()
+    slow_stroke: SlowStroke | None = None
 
 
 def varying_machine(job: Job, key: str = "variables") -> Mechanism:
@@ -95,7 +97,13 @@ def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
                 raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
             yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
     for part in job.choice:
-        yield part.name, [_Option(o.name, o.paths, tuple(constraints_of(o.constraints))) for o in part.option]
+        yield (
+            part.name,
+            [
+                _Option(o.name, o.paths, tuple(constraints_of(o.constraints)), slow_stroke_of(o.constraints))
+                for o in part.option
+            ],
+        )
 
 
 def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant:
@@ -114,8 +122,20 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
         labels=tuple(option.label for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS),
         mechanism=varying_machine(other),
         limits=tuple(limit for option in chosen for limit in option.limits),
+        slow_stroke=_slow_stroke(chosen),
         **{name: ends_of(given) for name, given in ranges.items()},
     )
+
+
+def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
+    """Return which stroke the options want to be the slow one. Raises JobError if they differ."""
+    wanted = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
+    if len(wanted) > 1:
+        raise JobError(
+            f"choice: options that are chosen together ask for the same slow stroke; got "
+            f"{' and '.join(f'{stroke} with {shown(label)}' for stroke, label in wanted.items())}; leave out one"
+        )
+    return next(iter(wanted), None)
 
 
 def _single(name: str, option: _Option) -> tuple[str, ...]:

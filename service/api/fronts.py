@@ -73,6 +73,8 @@ class FrontModel(BaseModel):
     trade_offs: list[str] = Field(
         description="at the knee", examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]]
     )
+    strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
+    warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
 
 
 class PickedModel(BaseModel):

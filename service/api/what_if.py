@@ -53,6 +53,7 @@ class RequirementsModel(BaseModel):
     number: int = Field(examples=[3])
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
     requirements: list[RequirementModel]
+    slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
     speed_rpm: float = Field(examples=[300.0])
     tolerances: bool
     names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
@@ -115,6 +116,7 @@ def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsMode
         number=design,
         ranges=ranges_of(stored.part),
         requirements=asked,
+        slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),
         names=names_of(stored.part),
         tolerances=stored.mechanism.tolerances.given,

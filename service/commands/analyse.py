@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...optimise.problem import Problem
 
 INTERRUPTED = 130
-_NEEDS_MASSES = ("torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
+_NEEDS_MASSES = ("loaded_stroke", "torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
 _NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 

@@ -105,9 +105,7 @@ def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json:
 
 
 def _record(found: Certificate, problem: Problem, run: str, rows: list[Row]) -> dict[str, Any]:
-    from ...objectives.registry import quantity
-
-    wanted = [quantity(objective.quantity) for objective in problem.objectives]
+    wanted = [problem.quantity(objective.quantity) for objective in problem.objectives]
     sizes = ("crank_mm", "rod_mm", "offset_mm")
     return {
         "run": run,

@@ -34,6 +34,7 @@ def check(
         ("objectives", summary["objectives"]),
         ("freedom", [freedom_in_words(summary)]),
         ("search", [summary["search"]]),
+        ("warning", summary["warnings"]),
     ]
     for title, lines in parts:
         for index, line in enumerate(lines):

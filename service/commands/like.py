@@ -23,7 +23,7 @@ from .tables import print_table
 
 if TYPE_CHECKING:
     from ...optimise.front import ParetoFront
-    from ...optimise.problem import Constraint
+    from ...optimise.problem import Constraint, Problem
 
 _EXAMPLE = '--where "transmission_angle >= 45 deg"'
 Ends = tuple[float | None, float | None]
@@ -57,9 +57,9 @@ def like(
         raise InputError(f"the run has designs 1 to {len(result.designs)}; got {number}; see slidercrank front {run}")
     problem = replace(problem_of(folder, result), name=result.name)
     row = result.designs[number - 1]
-    constraints, ranges = _added(where, row)
+    constraints, ranges = _added(where, row, problem)
     with waiting("looking for it"):
-        values, span = _objectives(result)
+        values, span = _objectives(result, problem)
         given = values[number - 1]
         found = nearest(problem, row, given, span, constraints, ranges)
     if not len(found):
@@ -75,26 +75,24 @@ def like(
         _show(result, number, where, found, apart, row, after)
 
 
-def _objectives(result: Result) -> tuple[Any, Any]:
+def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
     """Return the objectives (n, m) of a run as minimised, SI, and their ranges (m,)."""
     import numpy as np
 
-    from ...objectives.registry import quantity
     from ...optimise.hypervolume import scaling
 
-    factors = np.array([quantity(wanted.quantity).unit.factor for wanted in result.objectives])
+    factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     values = minimised_values(result) / factors
     return values, scaling(values)[1]
 
 
-def _added(where: list[str], row: Row) -> tuple[list[Constraint], dict[str, Ends]]:
+def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
-    from ...objectives.registry import QUANTITIES
     from ...optimise.like import common
     from ...optimise.problem import Constraint
+    from ..designs.requirements import names_of
 
-    names = {quantity.field: quantity.name for quantity in QUANTITIES.values()}
-    names |= {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
+    names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
     found: dict[str, Ends] = {}
     for text in where:
         condition = parse_condition(text, list(row), row)
@@ -103,7 +101,8 @@ def _added(where: list[str], row: Row) -> tuple[list[Constraint], dict[str, Ends
             raise InputError(
                 f"a design can be asked for by quantities and dimensions only; got {text!r}; write it like {_EXAMPLE}"
             )
-        ends = common(found.get(name, (None, None)), _ends(condition, text))
+        factor = 1e3 if name in DIMENSIONS else problem.quantity(name).unit.factor
+        ends = common(found.get(name, (None, None)), _ends(condition, factor, text))
         if ends is None:
             raise InputError(f"the conditions on {name} contradict each other; got {text!r} last; leave out one")
         found[name] = ends
@@ -116,9 +115,10 @@ def _added(where: list[str], row: Row) -> tuple[list[Constraint], dict[str, Ends
     return constraints, ranges
 
 
-def _ends(condition: Condition, text: str) -> Ends:
+def _ends(condition: Condition, factor: float, text: str) -> Ends:
+    """Return the ends that a condition gives, SI. factor: what one SI unit is in the column's."""
     assert not isinstance(condition.value, str)
-    value = condition.value / condition.column.factor
+    value = condition.value / factor
     ends = {">=": (value, None), "<=": (None, value), "==": (value, value)}.get(condition.comparison)
     if ends is None:
         raise InputError(f"a design is asked for with >=, <= or =; got {text!r}; write it like {_EXAMPLE}")

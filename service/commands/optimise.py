@@ -164,6 +164,8 @@ def show_result(result: Result) -> None:
         screen.print("\nAt the knee:")
         for sentence in result.trade_offs:
             screen.print(f"  {sentence}", soft_wrap=True)
+    for sentence in result.warnings:
+        screen.print(f"\nWarning: {sentence}.", style="yellow", soft_wrap=True)
     screen.print(f"\nFiles: {result.run}", soft_wrap=True)
     listed = ", ".join(_contents(Path(result.run)))
     if listed:

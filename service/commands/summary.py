@@ -15,11 +15,15 @@ from ...objectives.own.quantity import OwnQuantity
 from ...optimise.convex.costs import Cost
 from ...optimise.elimination import UNKNOWNS, sheets
 from ...optimise.evaluation import constraints_of
+from ...optimise.loaded_stroke import expected_warnings
 from ...optimise.problem import Constraint, Objective, Problem, Range
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
-    """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, search."""
+    """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, warnings, search.
+
+    Each is a list of lines but for name, search, and the numbers of the freedom.
+    """
     sheet = sheets(problem)[0]
     free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
     settings = problem.settings
@@ -34,11 +38,15 @@ def summarise(problem: Problem) -> dict[str, Any]:
             *(_varying(item) for item in problem.mechanism.varying),
             *_choices(problem),
         ],
-        "rules": [_rule(constraint, problem) for constraint in constraints_of(problem)],
+        "rules": [
+            *([f"slow stroke {problem.slow_stroke}"] if problem.slow_stroke else []),
+            *(_rule(constraint, problem) for constraint in constraints_of(problem)),
+        ],
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
+        "warnings": expected_warnings(problem),
         "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
     }
 

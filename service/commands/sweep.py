@@ -18,6 +18,7 @@ from .screen import console, give, say
 if TYPE_CHECKING:
     import pandas as pd
 
+    from ...objectives.quantity import Quantity
     from ...objectives.sweep import Axis
 
 _FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
@@ -61,16 +62,16 @@ def sweep(
             raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
     lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in given.items()]
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
-    table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names)
+    table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
     if json:
         give(json_text(rows_of(table.to_dict("list"))))
     else:
-        _show(table, axes, names)
+        _show(table, axes, [problem.quantity(name) for name in names])
     if figures is not None:
         from ..figures.sweep import draw_sweep
 
         with disk(figures):
-            file = draw_sweep(table, axes, names, figures, title=problem.name)
+            file = draw_sweep(table, axes, [problem.quantity(name) for name in names], figures, title=problem.name)
         say(f"figure: {file}")
 
 
@@ -103,13 +104,12 @@ def parse_axis(text: str) -> Axis:
     return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]
 
 
-def _show(table: pd.DataFrame, axes: Sequence[Axis], names: Sequence[str]) -> None:
+def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity]) -> None:
     from rich.table import Table
 
-    from ...objectives.registry import quantity
     from .tables import print_table
 
-    screen, quantities = console(), [quantity(name) for name in names]
+    screen = console()
     shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for axis in axes:
         shown.add_column(f"{axis.parameter}, {'rpm' if axis.parameter == 'speed' else 'mm'}", justify="right")

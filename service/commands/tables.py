@@ -83,6 +83,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     from ...optimise.constant import is_constant
 
     keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
+    keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []
     for key in keys:
@@ -91,6 +92,8 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         numbers = [value for value in values if isinstance(value, float)]
         if len(numbers) > 1 and is_constant(numbers) and key not in {wanted.column for wanted in result.objectives}:
             constant.append(f"{column.title} {numbers[0]:.6g} {column.unit}".rstrip())
+        elif not numbers and len(values) > 1 and len(set(values)) == 1:
+            constant.append(f"{column.title} {values[0]}")
         else:
             columns.append(column)
     return columns, constant

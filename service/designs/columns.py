@@ -75,11 +75,19 @@ def _meant(name: str, keys: Collection[str]) -> str:
 
     aliases = {dimension: f"{dimension}_mm" for dimension in DIMENSIONS}
     aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
+    for plain, key in ((split_unit(key)[0], key) for key in keys if "_robust" in key):
+        for quantity in QUANTITIES.values():
+            stem = split_unit(quantity.field)[0]  # a robust quantity's key and name end alike
+            if plain.startswith(f"{stem}_robust"):
+                aliases[quantity.name + plain.removeprefix(stem)] = key
     aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
     meant = {alias: key for alias, key in aliases.items() if key in keys}
     if name in meant:
         return meant[name]
+    longer = [key for key in keys if name and key.startswith(f"{name}_")]  # a unit of an own quantity's
+    if len(longer) == 1:
+        return longer[0]
 
     from ...optimise.units import closest
 

@@ -89,16 +89,15 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
-    from ...objectives.registry import quantity
-    from ...optimise.units import RATIO, kind_of, to_si
+    from ...optimise.units import RATIO, kind_for, per_si, to_si
 
     try:
         if value.endswith("%"):
             return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
-        kind = kind_of(wanted.unit)
+        kind = kind_for(wanted.unit)
         if kind.unit and _plain(value):
             raise InputError(f"must be {kind.name} with its unit, or a share of the range; got {value}")
-        return to_si(value, kind, sign="zero or more") * quantity(wanted.quantity).unit.factor, 0.0
+        return to_si(value, kind, sign="zero or more") * per_si(wanted.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
 

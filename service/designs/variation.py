@@ -51,7 +51,8 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
     return Variation(
         row=row,
         linkage=design.linkage,
-        broken=[item.column for item in wanted if not item.met(row)],
+        broken=[item.column for item in wanted if not item.met(row)]
+        + (["slow_stroke"] if design.part.slow_stroke not in (None, row["slow_stroke"]) else []),
         outside=outside(design.part, row),
         **_beside(result, row, minimised),
     )

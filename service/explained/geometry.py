@@ -28,7 +28,7 @@ GEOMETRY = (
         name="offset",
         sentence=(
             "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-            "direction; it makes one stroke slower than the other."
+            "direction, on the crossed branch to its right; it makes one stroke slower than the other."
         ),
         advice="The more offset, the higher the time ratio, and the smaller the transmission angle.",
         formula="e; the slider line is y = e",

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...objectives.quantity import Quantity
-from ...objectives.registry import quantity
 from ...objectives.sweep import Axis
 from ...optimise.constant import is_constant
 from .style import (
@@ -62,12 +61,12 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
     return grids, values
 
 
-def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[str], *, title: str) -> Figure:
+def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], *, title: str) -> Figure:
     """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
 
     An axis of a single value is named in the heading and not drawn.
     """
-    items = [quantity(name) for name in of][:MOST]
+    items = list(of)[:MOST]
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
     columns = 2 if len(items) > 1 else 1
     rows = -(-len(items) // columns)
@@ -143,7 +142,7 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: 
         panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
-def draw_sweep(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[str], folder: Path, *, title: str) -> Path:
+def draw_sweep(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], folder: Path, *, title: str) -> Path:
     """Write the figure of a sweep as sweep.png; return the file."""
     folder.mkdir(parents=True, exist_ok=True)
     save(sweep_figure(table, axes, of, title=title), folder / "sweep.png")

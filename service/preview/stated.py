@@ -41,14 +41,29 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     constraints = tuple(_constraints(tables.get("constraints"), with_machine=with_machine))
     if not with_machine:
         problem = replace(problem, mechanism=Mechanism(speed=machine.speed, branch=machine.branch))
-    return replace(problem, constraints=constraints)
+    return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
 
 
 def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
     """Return the requirements of a job that its geometry does not have, by their names."""
     given = tables.get("constraints")
-    kept = {constraint.quantity for constraint in problem.constraints}
+    kept = {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"}
     return [str(name)[:60] for name in given if name not in kept][:40] if isinstance(given, Mapping) else []
+
+
+def _with_slow_stroke(problem: Problem, part: object) -> Problem:
+    """Return the problem with the slow stroke that a job asks for, if its ranges have one."""
+    from ...optimise.elimination import require_slow_side
+
+    asked = part.get("slow_stroke") if isinstance(part, Mapping) else None
+    if asked not in ("outward", "inward"):
+        return problem
+    try:
+        found = replace(problem, slow_stroke=asked)
+        require_slow_side(found, (found,))
+    except InputError:
+        return problem
+    return found
 
 
 def is_closed(name: str) -> bool:

@@ -75,6 +75,7 @@ def _marked(subject: Subject) -> Table:
     if result.knee is not None and len(result.objectives) > 1:
         labels.setdefault(result.knee, []).append("knee")
     keys = [f"{name}_mm" for name in DIMENSIONS] + [wanted.column for wanted in result.objectives]
+    keys += ["slow_stroke"] if result.strokes_differ else []
     columns = [find_column(key, list(subject.row)) for key in dict.fromkeys(keys)]
     rows = tuple(
         (str(place + 1), ", ".join(words), *(rounded(result.designs[place][column.key]) for column in columns))

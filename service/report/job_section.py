@@ -21,7 +21,8 @@ def job_section(subject: Subject) -> Section:
         ("Freedom", [freedom_in_words(words)]),
     )
     rows = tuple((title, tuple(unit_text(str(line)) for line in lines)) for title, lines in parts if lines)
-    return Section("The job", (Facts(rows),))
+    warned = tuple(Paragraph(f"Warning: {sentence}.", "bad") for sentence in subject.result.warnings)
+    return Section("The job", (Facts(rows), *warned))
 
 
 def search_section(subject: Subject) -> Section:

@@ -45,7 +45,7 @@ class Result:
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
-    trade_offs: at the knee, in words.
+    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words.
     """
 
     run: str
@@ -61,6 +61,12 @@ class Result:
     extremes: dict[str, int]
     knee: int | None
     trade_offs: list[str]
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def strokes_differ(self) -> bool:
+        """Whether a design has a stroke that is loaded more than the other: then the slow one matters."""
+        return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
     def record(self) -> dict[str, Any]:
         """Return what JSON has: finite numbers only, null for what is not defined."""
@@ -78,6 +84,8 @@ class Result:
             "extremes": self.extremes,
             "knee": self.knee,
             "trade_offs": self.trade_offs,
+            "warnings": list(self.warnings),
+            "strokes_differ": self.strokes_differ,
         }
 
 
@@ -102,6 +110,8 @@ def wanted_of(front: ParetoFront) -> list[Wanted]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return what a run found from its front."""
+    from ...optimise.loaded_stroke import front_warnings
+
     found = len(front) > 0
     several = found and len(front.objectives) > 1
     return Result(
@@ -118,6 +128,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
+        warnings=tuple(front_warnings(front)),
     )
 
 

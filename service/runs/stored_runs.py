@@ -56,6 +56,7 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
         extremes={str(name): int(row) for name, row in record["extremes"].items()},
         knee=None if record["knee"] is None else int(record["knee"]),
         trade_offs=[str(sentence) for sentence in record["trade_offs"]],
+        warnings=tuple(str(sentence) for sentence in record.get("warnings", ())),  # runs of earlier versions have none
     )
     marked = [*result.extremes.values(), *([] if result.knee is None else [result.knee])]
     if any(not 0 <= row < len(rows) for row in marked):

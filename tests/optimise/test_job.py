@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.cycle import cycle
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage import Linkage, crank_from_stroke
 from slidercrank.model.links import Bar, Counterweight, RigidLink
 from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Tolerance, Window
+from slidercrank.model.mechanism import Branch, Tolerance, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
 from slidercrank.optimise.problem import Constraint, Objective, Range, Settings
@@ -223,6 +224,34 @@ def test_gravity_points_where_things_fall(direction: str | None, expected: tuple
         mechanism |= {"gravity_direction": direction}
     gravity = parse_job(small(mechanism=mechanism)).mechanism.gravity
     assert gravity == pytest.approx(expected, rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize(("branch", "side", "fall"), [("open", "left", "outward"), ("crossed", "right", "inward")])
+def test_the_words_of_the_schema_on_each_branch_are_true(branch: Branch, side: str, fall: str) -> None:
+    """Where the slider is, on which side of the outward direction the offset, and which way gravity along +x pulls."""
+    mechanism = SMALL["mechanism"] | {"branch": branch, "gravity": "9.81 m/s^2", "gravity_direction": "0 deg"}
+    problem = parse_job(small(mechanism=mechanism | {"speed": "0.001 rpm"}))
+    linkage, angles = Linkage(0.03, 0.15, 0.02, branch), np.array([0.4, 1.9, 3.3, 5.0])
+    at = linkage.at(angles)
+    outward = np.sign(at.slider_position[0])
+    assert (outward > 0.0) == (branch == "open")
+    left = np.array([0.0, outward])  # the outward direction turned counter-clockwise by 90 deg
+    assert (left @ [0.0, linkage.offset] > 0.0) == (side == "left")
+    # The drive holds the falling slider: its torque against the slope of the distance from the crank pivot tells
+    # whether things fall outward or inward.
+    found = cycle(problem.mechanism, linkage, angles)
+    pull = -found.torque / (outward * linkage.at(angles, speed=1.0).slider_velocity)
+    np.testing.assert_allclose(pull, 2.0 * 9.81 * (1.0 if fall == "outward" else -1.0), rtol=1e-6)
+    keys = job_schema()["$defs"]
+    words = " ".join(keys["VariablesPart"]["properties"]["offset"]["description"].split())
+    assert {"left": "left of the outward direction on the open branch", "right": "right on the crossed one"}[
+        side
+    ] in words
+    words = keys["MechanismPart"]["properties"]["gravity_direction"]["description"]
+    assert "+x (the outward direction on the open branch, the inward one on the crossed branch)" in words
+    sign = "+x" if outward > 0.0 else "-x"
+    words = keys["MechanismPart"]["properties"]["branch"]["description"]
+    assert f"{branch}: the slider is on the side of {sign}, and outward is {sign}" in words
 
 
 def test_a_single_value_fixes_a_dimension() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.objectives.quantity import Unit
 from slidercrank.optimise.job import files_beside, load_job, parse_job
-from slidercrank.optimise.problem import Objective
+from slidercrank.optimise.problem import Constraint, Objective
 from slidercrank.optimise.solve import solve
 
 PAGE = Path(__file__).parents[2] / "docs" / "own-quantities.md"
@@ -191,3 +192,86 @@ def test_a_method_that_needs_gradients_refuses_a_quantity_without() -> None:
     problem = parse_job(job({"function": "a:b", "gradient": "none"}))
     with pytest.raises(InputError, match=r"auto needs the gradient .* got mine .* use one of nsga2, .* or set"):
         solve(problem)
+
+
+ROUNDED = OwnQuantity(
+    name="mine", function=lambda d: np.round(1e3 * d.rod.real), title="mine", unit=Unit("mm", 1.0), gradient="none"
+)
+
+
+@pytest.mark.parametrize("method", ["nsga2", "nsga3", "tpe", "cmaes", "random", "sobol"])
+def test_a_quantity_without_gradient_is_taken_by_every_method_that_uses_values_only(method: str) -> None:
+    several = {"peak_slider_acceleration": "minimise", "stroke": "minimise"}
+    base = parse_job(
+        job(
+            objectives=several if method != "cmaes" else {"peak_slider_acceleration": "minimise"},
+            constraints={"stroke": {"min": "70 mm", "max": "90 mm"}},
+            optimiser={"method": method, "evaluations": 60 if method == "tpe" else 300, "designs": 4},
+        )
+    )
+    limit = Constraint(quantity="mine", upper=200.0)
+    wanted = (Objective(quantity="mine", sense="minimise"), *base.objectives[: 0 if method == "cmaes" else 1])
+    asked = replace(base, own=(ROUNDED,), objectives=wanted, constraints=(*base.constraints, limit))
+    front = solve(asked)
+    assert front.status == "done"
+    assert set(front.designs["status"]) == {"best found"}
+    assert (front.designs["mine_mm"] == np.round(front.designs["rod_mm"])).all()
+    assert front.designs["mine_mm"].max() <= 200.0
+    assert solve(asked).dimensions.tolist() == front.dimensions.tolist()
+
+
+def test_a_quantity_without_gradient_is_refused_where_one_is_needed_with_what_can_be_done() -> None:
+    declared = {"function": "a:b", "gradient": "none"}
+    for method in ("auto", "epsilon_constraint", "chebyshev", "nbi"):
+        with pytest.raises(InputError, match=r"use one of nsga2, nsga3, tpe, random, sobol, or set gradient ="):
+            solve(parse_job(job(declared, optimiser={"method": method})))
+    for method in ("auto", "slsqp", "minimax"):
+        with pytest.raises(InputError, match=r"use one of nsga2, tpe, cmaes, random, sobol, or set gradient ="):
+            solve(parse_job(job(declared, objectives={"mine": "minimise"}, optimiser={"method": method})))
+    held = parse_job(
+        job(declared, constraints={"mine": {"equals": 3.0}}, optimiser={"method": "nsga2"})
+        | {"objectives": {"stroke": "minimise", "time_ratio": "maximise"}}
+    )
+    with pytest.raises(InputError, match=r"mine can be held at one value only with its gradient; .* a min and a max"):
+        solve(held)
+
+
+def test_a_limit_without_gradient_that_comes_with_a_choice_needs_values_only_too() -> None:
+    options = [{"name": "a", "constraints": {"mine": {"max": 3.0}}}, {"name": "b"}]
+    chosen = job({"function": "a:b", "gradient": "none"}, objectives={"stroke": "minimise"}, constraints={})
+    with pytest.raises(InputError, match="auto needs the gradient of every quantity; got mine"):
+        solve(parse_job(chosen | {"choice": [{"name": "motor", "option": options}]}))
+
+
+def test_a_limit_of_a_choice_may_name_a_quantity_of_the_job(tmp_path: Path) -> None:
+    options = [{"name": "a", "constraints": {"mine": {"max": "300 m/s^2"}}}, {"name": "b"}]
+    chosen = job(module(tmp_path, ACCELERATION), choice=[{"name": "motor", "option": options}])
+    problem = parse_job(chosen, folder=tmp_path)
+    assert problem.variants[0].limits == (Constraint(quantity="mine", upper=300.0),)
+    with pytest.raises(JobError, match=r"choice #1.option #1.constraints.mein: unknown key; .* did you mean mine"):
+        parse_job(
+            job(
+                chosen["quantity"]["mine"],
+                choice=[{"name": "m", "option": [{"name": "a", "constraints": {"mein": {"max": 1}}}, {"name": "b"}]}],
+            )
+        )
+
+
+def test_nothing_is_said_of_what_contradicts_where_that_takes_gradients() -> None:
+    base = parse_job(job(optimiser={"method": "random", "evaluations": 200}, objectives={"time_ratio": "maximise"}))
+    limit = Constraint(quantity="mine", upper=1.0)
+    front = solve(replace(base, own=(ROUNDED,), constraints=(*base.constraints, limit)))
+    assert front.status == "infeasible"
+    assert "random found no design" in front.message
+    assert "can be had" not in front.message
+
+
+def test_a_design_like_another_needs_gradients() -> None:
+    base = parse_job(
+        job(optimiser={"method": "random", "evaluations": 200}, objectives={"stroke": "minimise"}, constraints={})
+    )
+    front = solve(
+        replace(base, own=(ROUNDED,), objectives=(Objective(quantity="mine", sense="minimise"), *base.objectives))
+    )
+    with pytest.raises(InputError, match=r"a design like another needs the gradient .* got mine .*; set gradient ="):
+        front.like(0, ranges={"crank": (0.055, None)})

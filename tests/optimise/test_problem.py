@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.problem import Constraint, Objective, Range, Settings
+from slidercrank.model.target_motion import TargetMotion
+from slidercrank.objectives.average_torque import RMS_TORQUE
+from slidercrank.objectives.motion_deviation import MotionDeviation
+from slidercrank.objectives.quantity import MILLIMETRE
+from slidercrank.optimise.picking import closeness
+from slidercrank.optimise.problem import Constraint, Objective, Range, Settings, Variant
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import problem
 
@@ -40,6 +46,71 @@ def test_an_unknown_quantity_is_named_with_the_nearest_one() -> None:
         problem({"peak_torqe": "minimise"})
     with pytest.raises(InputError, match="no quantity is called"):
         problem({"peak_torque": "minimise"}, {"strok": (1.0, None)})
+
+
+def test_either_spelling_of_a_sense_is_the_same_objective() -> None:
+    for american, british in (("minimize", "minimise"), ("maximize", "maximise")):
+        found = Objective(quantity="peak_torque", sense=american)  # type: ignore[arg-type]
+        assert found == Objective(quantity="peak_torque", sense=british)  # type: ignore[arg-type]
+        assert found.sense == british
+    base = problem({"peak_torque": "minimise"}, {"stroke": 0.15}, samples=500)
+    american_one = replace(base, objectives=(Objective(quantity="peak_torque", sense="minimize"),))  # type: ignore[arg-type]
+    assert solve(american_one).dimensions.tolist() == solve(base).dimensions.tolist()
+
+
+@pytest.mark.parametrize("sense", ["min", "Minimise", "", "best", None, 1, ["minimise"]])
+def test_any_other_sense_is_refused_with_those_that_there_are(sense: object) -> None:
+    with pytest.raises(InputError, match=r"must be 'minimise', 'minimize', 'maximise', 'maximize', 'target'; got"):
+        Objective(quantity="peak_torque", sense=sense)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["", "peak torque", "Peak_torque", "peak-torque", None, 3, ("peak_torque",)])
+def test_a_name_that_no_quantity_can_have_is_refused_at_once(name: object) -> None:
+    with pytest.raises(InputError, match="a quantity is named by small letters"):
+        Objective(quantity=name, sense="minimise")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="a quantity is named by small letters"):
+        Constraint(quantity=name, lower=1.0)  # type: ignore[arg-type]
+
+
+def test_an_unknown_quantity_of_a_choice_is_refused_at_construction() -> None:
+    base = problem({"peak_torque": "minimise"})
+    limit = Constraint(quantity="peak_torqe", upper=1.0)
+    variant = Variant(
+        labels=("a",), mechanism=base.mechanism, crank=base.crank, rod=base.rod, offset=base.offset, limits=(limit,)
+    )
+    with pytest.raises(InputError, match="did you mean peak_torque"):
+        replace(base, choices=("motor",), variants=(variant,))
+
+
+@pytest.mark.parametrize("value", ["20 mm", None, [0.1], 0.1j])
+def test_what_is_no_number_is_refused_in_words(value: object) -> None:
+    with pytest.raises(InputError, match="lower <= upper, both finite; got "):
+        Range(lower=value, upper=0.2)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="must be finite; got"):
+        Constraint(quantity="stroke", lower=0.1, upper=value if value is not None else "x")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"needs a target exactly when|must be finite; got"):
+        Objective(quantity="stroke", sense="target", target=value)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", [1.5, "100", True, math.nan])
+def test_settings_are_whole_numbers(value: object) -> None:
+    for name in ("designs", "samples", "seed"):
+        with pytest.raises(InputError, match=f"{name} must be at least ., a whole number; got"):
+            Settings(**{name: value})  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="designs must be at least 1, a whole number; got None"):
+        Settings(designs=None)  # type: ignore[arg-type]
+
+
+def test_words_of_other_parts_are_checked_too() -> None:
+    """A word that is none of a `Literal` would be taken for the last of its words."""
+    front = np.array([[0.0, 1.0], [1.0, 0.0]])
+    with pytest.raises(InputError, match="normalisation must be 'range' or 'vector'; got 'Range'"):
+        closeness(front, [1.0, 1.0], normalisation="Range")  # type: ignore[arg-type]
+    target = TargetMotion(crank_angles=(0.0, 1.0, 2.0), positions=(0.1, 0.2, 0.3))
+    with pytest.raises(InputError, match="measure must be 'greatest' or 'rms'; got 'RMS'"):
+        MotionDeviation("x", "x_mm", "x", MILLIMETRE, target, "RMS")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="which must be 'mean' or 'rms'; got 'peak'"):
+        replace(RMS_TORQUE, which="peak")  # type: ignore[arg-type]
 
 
 def test_a_target_belongs_to_the_sense_target_only() -> None:

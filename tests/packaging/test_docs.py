@@ -11,6 +11,8 @@ import pytest
 
 from slidercrank.model.linkage import Linkage
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.loaded_stroke import expected_warnings
+from slidercrank.optimise.solve import solve
 from tests.packaging.feeder import numbers
 
 LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
@@ -198,3 +200,18 @@ def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str],
             if isinstance(whole.get(name), dict):
                 job[name] = {**whole[name], **part[name]}
         assert parse_job(job).name == "Press feed"
+
+
+def test_the_press_of_the_readme_presses_slowly(pages: dict[Path, str], root: Path) -> None:
+    (whole,) = _tables(pages[root / "README.md"])
+    problem = parse_job({**whole, "optimiser": {"designs": 10, "samples": 500}})
+    assert expected_warnings(problem) == []
+    front = solve(problem)
+    assert set(front.designs["loaded_stroke"]) == {"outward"}
+    assert set(front.designs["slow_stroke"]) == {"outward"}
+    assert (front.dimensions[:, 2] < 0.0).all()
+
+
+@pytest.mark.parametrize("job", ["feeder", "sieve", "support"])
+def test_no_shipped_job_loads_its_fast_stroke(job: str, root: Path) -> None:
+    assert expected_warnings(parse_job(tomllib.loads((root / "runs" / f"{job}.toml").read_text()))) == []

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.sweep import Axis, sweep
 from slidercrank.service.commands.sweep import parse_axis
 from slidercrank.service.figures.sweep import sweep_figure, sweep_grid
@@ -102,7 +103,9 @@ def test_ranges_and_lists_are_read_into_si() -> None:
 
 def test_line_figure_draws_the_values_in_order_and_nothing_where_there_are_none() -> None:
     table = sweep(SMOOTH, np.array([0.04, 0.066, 0.0]), [OFFSETS], ["peak_torque", "rod_to_offset"])
-    figure = sweep_figure(table, [OFFSETS], ["peak_torque", "rod_to_offset"], title="Sieve")
+    figure = sweep_figure(
+        table, [OFFSETS], [QUANTITIES[name] for name in ("peak_torque", "rod_to_offset")], title="Sieve"
+    )
     for panel, field in zip(figure.axes, ("peak_torque_Nm", "rod_to_offset"), strict=True):
         expected = table.sort_values("offset_mm")
         np.testing.assert_allclose(np.asarray(panel.lines[0].get_xdata(), float), expected["offset_mm"])
@@ -115,7 +118,7 @@ def test_line_figure_draws_the_values_in_order_and_nothing_where_there_are_none(
 
 def test_contour_figure_draws_the_values_over_both_parameters() -> None:
     table = sweep(SMOOTH, np.array([0.04, 1.0, 0.0]), [OFFSETS, RODS], ["peak_torque"])
-    figure = sweep_figure(table, [OFFSETS, RODS], ["peak_torque", "stroke"][:1], title="Sieve")
+    figure = sweep_figure(table, [OFFSETS, RODS], [QUANTITIES["peak_torque"]], title="Sieve")
     from slidercrank.objectives.registry import quantity
 
     grids, values = sweep_grid(table, [OFFSETS, RODS], quantity("peak_torque"))
@@ -145,5 +148,5 @@ def test_contour_figure_draws_the_values_over_both_parameters() -> None:
 )
 def test_unusual_sweeps_can_be_drawn(axes: list[Axis], of: list[str]) -> None:
     table = sweep(SMOOTH, np.array([0.04, 0.1, 0.0]), axes, of)
-    figure = sweep_figure(table, axes, of, title="A name that is long " * 8)
+    figure = sweep_figure(table, axes, [QUANTITIES[name] for name in of], title="A name that is long " * 8)
     assert overlaps(figure) == []

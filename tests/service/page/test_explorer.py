@@ -13,8 +13,9 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from slidercrank.service.runs.result import Row
+from slidercrank.service.runs.result import Row, result_of
 from slidercrank.service.store import Store
+from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in, served
 from tests.service.fronts import JOB
 from tests.service.page.accessibility import require_accessible
@@ -316,3 +317,13 @@ def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[
     expect(again.get_by_text("of 10,000 designs chosen")).not_to_contain_text("10,000 of")
     page.get_by_role("button", name="Clear all limits").click()
     expect(page.get_by_text("10,000 of 10,000 designs chosen")).to_be_visible()
+
+
+def test_a_front_whose_loaded_stroke_is_fast_says_so_and_shows_the_slow_stroke(open_page: Open, store: Store) -> None:
+    found = fronts.front(fronts.FOUR[:2], designs=4)
+    number = put_in(store, result_of(found, "x"), tomllib.loads(fronts.JOB))
+    page = open_page(store, f"#/jobs/{number}")
+    expect(page.locator("main")).to_contain_text("Warning: in 4 of 4 designs the stroke that the load acts against")
+    table = page.locator("table.designs")
+    expect(table.get_by_role("columnheader", name="slow stroke")).to_be_visible()
+    expect(table.locator("tbody tr td:last-child")).to_have_text(["inward"] * 4)

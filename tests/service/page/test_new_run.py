@@ -363,3 +363,22 @@ def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: O
         fold.click()
     page.get_by_role("button", name="What is stroke?").first.click()
     require_accessible(page)
+
+
+def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder")
+    ready(page)
+    beside = page.get_by_role("complementary")
+    expect(beside).not_to_contain_text("is the fast one")
+    page.get_by_label("offset, from").fill("-80")
+    page.get_by_label("offset, to").fill("-15")
+    expect(beside).to_contain_text("the stroke that the load acts against, the outward one, is the fast one")
+    page.get_by_label("slow stroke", exact=True).select_option("inward")
+    expect(beside).not_to_contain_text("is the fast one")
+    ready(page)
+    assert text_of(page)["constraints"]["slow_stroke"] == "inward"
+    page.get_by_label("slow stroke", exact=True).select_option("outward")
+    expect(page.locator("main")).to_contain_text("let the offset reach above 0")
+    page.get_by_label("slow stroke", exact=True).select_option("")
+    ready(page)
+    assert "slow_stroke" not in text_of(page)["constraints"]

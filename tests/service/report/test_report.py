@@ -312,3 +312,17 @@ def test_json_of_the_certificate_is_what_certify_writes(tmp_path: Path) -> None:
     source = inspect.getsource(certify._record)
     assert all(f'"{key}"' in source for key in CERTIFICATE)
     assert json.loads(json.dumps(CERTIFICATE)) == CERTIFICATE
+
+
+def test_a_fast_stroke_that_is_loaded_is_warned_of_and_the_slow_stroke_stands_in_the_table() -> None:
+    (sentence,) = subject().result.warnings
+    assert "the outward one, is the fast one" in sentence
+    assert sentence in text_of(html())
+    marked = next(
+        block
+        for section in report().sections
+        for block in section.blocks
+        if isinstance(block, Table) and block.title == "Marked designs"
+    )
+    place = marked.heads.index("slow stroke")
+    assert {row[place] for row in marked.rows} == {"inward"}

@@ -2,7 +2,7 @@
 
 const GROUPS = [
   ["Dimensions", ["crank_mm", "rod_mm", "offset_mm"]],
-  ["Motion", ["stroke_mm", "time_ratio", "slow_stroke", "inner_dead_centre_deg", "outer_dead_centre_deg", "inner_dead_centre_position_mm", "outer_dead_centre_position_mm",
+  ["Motion", ["stroke_mm", "time_ratio", "slow_stroke", "loaded_stroke", "inner_dead_centre_deg", "outer_dead_centre_deg", "inner_dead_centre_position_mm", "outer_dead_centre_position_mm",
     "peak_slider_speed_m_s", "peak_slider_acceleration_m_s2"]],
   ["Transmission and proportions", ["least_transmission_angle_deg", "self_locking_margin_deg", "rod_to_crank", "rod_to_offset", "footprint_m2"]],
   ["Drive", ["peak_torque_Nm", "peak_torque_angle_deg", "peak_torque_outward_Nm", "peak_torque_inward_Nm", "rms_torque_Nm", "mean_torque_Nm", "peak_power_W", "mean_power_W",

@@ -9,12 +9,12 @@ const MET = 1e-8; // of a bound: designs meet their constraints to this
 
 /**
  * Put the numbers of designs into `place`. designs: each {name, row}, the first is what the others are compared with; columns: of
- * the first; requirements: of the API; names: of quantities by column.
+ * the first; requirements, slow (stroke): of the API; names: of quantities by column.
  */
-export function showNumbers(place, { designs, columns, requirements, names }) {
+export function showNumbers(place, { designs, columns, requirements, slow, names }) {
   const groups = groupsOf(columns).map(({ title, columns: own }) =>
     h("section", { class: "panel group" }, h("h3", {}, title), table(title, designs, own, names)));
-  fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, names), quality(designs, columns)));
+  fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, slow, names), quality(designs, columns)));
 }
 
 /** Return a link to the help of a column. */
@@ -53,7 +53,9 @@ function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
 }
 
-function limits(designs, requirements, names) {
+function limits(designs, requirements, slow, names) {
+  const ofStroke = slow && h("tr", {}, h("th", { scope: "row" }, helpLink({ key: "slow_stroke", title: "slow stroke" }, names), h("span", { class: "quiet asked" }, ` ${slow}`)),
+    designs.map(({ row, name }) => [cell(row.slow_stroke, { key: "slow_stroke", unit: "" }, { name }), h("td", {}, h("span", { class: row.slow_stroke === slow ? "good" : "bad" }, row.slow_stroke === slow ? "met" : "broken"))]));
   const rows = requirements.map((asked) => {
     const column = { key: asked.column, title: asked.title, unit: asked.unit };
     return h("tr", {}, h("th", { scope: "row" }, helpLink(column, names), h("span", { class: "quiet asked" }, ` ${wanted(asked)}`)),
@@ -61,8 +63,8 @@ function limits(designs, requirements, names) {
   });
   const head = h("tr", {}, h("th", { scope: "col" }, "Rule"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
   return h("section", { class: "panel group" }, h("h3", {}, "Rules of the job"),
-    requirements.length
-      ? scrolled("Rules of the job", h("table", {}, h("caption", { class: "hidden" }, "Rules of the job"), h("thead", {}, head), h("tbody", {}, rows)))
+    requirements.length || slow
+      ? scrolled("Rules of the job", h("table", {}, h("caption", { class: "hidden" }, "Rules of the job"), h("thead", {}, head), h("tbody", {}, ofStroke, rows)))
       : h("p", { class: "quiet" }, "The job sets none."));
 }
 

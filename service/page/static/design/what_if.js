@@ -183,6 +183,7 @@ function comparison(objectives, before, after) {
 function sentences(answer, requirements, job) {
   const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
   const found = broken.map((column) => {
+    if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Breaks a rule: neither stroke is the slow one." : `Breaks a rule: the slow stroke is the ${design.slow_stroke} one.`);
     const asked = requirements.find((one) => one.column === column);
     return h("p", { class: "bad" }, `Breaks a rule: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`);
   });

@@ -9,6 +9,7 @@ export function choicesFrom(query, front) {
   const objectives = front.objectives.map(({ column }) => column);
   const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
   const labels = keys.filter((key) => key.startsWith("choice_"));
+  const strokes = front.strokes_differ ? ["slow_stroke"] : [];
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
   const one = (name, otherwise) => (known(query.get(name)) ? query.get(name) : otherwise);
   const axes = list("axes").map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") })).filter(({ key }) => known(key));
@@ -23,13 +24,13 @@ export function choicesFrom(query, front) {
     x: one("x", objectives[0] ?? keys[0]),
     y: one("y", objectives[1] ?? sizes[0] ?? keys[0]),
     colour: query.get("colour") === "none" ? "" : one("colour", objectives[2] ?? ""),
-    columns: columns.length ? columns : [...objectives, ...labels, ...sizes],
+    columns: columns.length ? columns : [...objectives, ...labels, ...sizes, ...strokes],
     sort: known(sort) ? sort : "",
     reverse: (query.get("sort") ?? "").startsWith("-"),
     page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
     selected: list("selected").map(Number).filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count).slice(0, MOST),
     weights: weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10) ? weights : null,
-    standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes].join(",") },
+    standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes, ...strokes].join(",") },
   };
 }
 

@@ -17,6 +17,7 @@ export function marksPanel(explorer) {
   const several = data.objectives.length > 1;
   const place = h("section", { class: "panel", "aria-labelledby": "marks-title" },
     h("h2", { id: "marks-title" }, "Worth a look"),
+    front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)),
     list,
     front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), h("ul", { class: "trade-offs" }, front.trade_offs.map((sentence) => h("li", {}, sentence)))],
     several && [h("h3", {}, "Weigh the objectives"),

@@ -63,7 +63,7 @@ export async function show(place, { parts, query, signal }) {
     const series = asked ? [asked, main, ...others] : moving;
     charts.show(series, panelsOf(main.curveColumns, series));
     legend(places.curves, series);
-    return () => showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, names });
+    return () => showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
   };
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,

@@ -1,0 +1,63 @@
+"""A slow stroke that a job asks for: whether its ranges and its other requirements have one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from ...model.errors import InputError, JobError
+from ..elimination import require_slow_side
+from ..evaluation import LEAST_TIME_RATIO
+from ..problem import Problem, Range
+from .box import greatest_within, require_reachable
+
+
+def require_slow_stroke(problem: Problem) -> None:
+    """Raise JobError, naming rule, value and remedy, if no design of the ranges has the slow stroke that is asked.
+
+    The ranges must be known to have designs that turn fully.
+    """
+    try:
+        parts = problem.parts()
+        require_slow_side(problem, parts)
+    except InputError as error:
+        raise JobError(str(error)) from None
+    if any(part.slow_stroke is None for part in parts):
+        return
+    ratio = next((c for c in problem.constraints if c.quantity == "time_ratio"), None)
+    if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
+        raise JobError(
+            "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
+            f"constraints.time_ratio with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, or "
+            "leave out slow_stroke"
+        )
+    sides = list(_sides(parts))
+    narrowed = replace(
+        problem,
+        offset=Range(lower=min(ends.lower for ends in sides), upper=max(ends.upper for ends in sides)),
+        choices=(),
+        variants=(),
+    )
+    try:
+        require_reachable(narrowed)
+    except JobError as error:
+        where = "above" if narrowed.offset.lower >= 0.0 else "below"
+        raise JobError(f"{error}, or leave out constraints.slow_stroke, which keeps the offset {where} 0") from None
+    greatest = greatest_within(narrowed, "time_ratio")
+    if greatest < LEAST_TIME_RATIO and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
+        least = 1.0 + 0.5 * (greatest - 1.0)
+        raise JobError(
+            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {LEAST_TIME_RATIO:g} on, unless "
+            f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
+            f"let crank or offset be greater, or set constraints.time_ratio = {{ min = {least:.4g} }}"
+        )
+
+
+def _sides(parts: tuple[Problem, ...]) -> Iterator[Range]:
+    """Yield the offsets of each part that has some on the side of its slow stroke."""
+    for part in parts:
+        lower, upper = part.offset.lower, part.offset.upper
+        if (part.slow_side() or 1.0) > 0.0 and upper > 0.0:
+            yield Range(lower=max(lower, 0.0), upper=upper)
+        elif (part.slow_side() or 1.0) < 0.0 and lower < 0.0:
+            yield Range(lower=lower, upper=min(upper, 0.0))
