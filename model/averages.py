@@ -3,9 +3,9 @@
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
 the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
-grow in number with 1 / kappa. Rounding of the rod's direction, which would grow likewise, is avoided by `_square`. Without friction the torque is
-continuous (loads that jump at a dead centre do so where the slider stands still), so moving breakpoints add nothing to
-the derivatives.
+grow in number with 1 / kappa. The rod's direction would lose digits likewise; `_square` keeps them. Without friction
+the torque is continuous (loads that jump at a dead centre do so where the slider stands still), so moving breakpoints
+add nothing to the derivatives.
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
 to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out.
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from .arithmetic import STEP, inlined, kernel, root
 from .batches import in_chunks, turning
 from .contact import cut_contacts, rubs, shift_of, sides_of
+from .dissipation import works_over_a_turn
 from .kinematics import motion_of
 from .mechanism import Mechanism
 from .numbers import numbers_of
@@ -244,7 +245,8 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     """Return mean and RMS value of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
     The k columns more are the values of the machine's varying numbers.
-    The torque counts with its sign, any other signal by its size.
+    The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
+    work over a turn.
     """
     designs = turning(designs)
     n = len(designs)
@@ -277,6 +279,8 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
         )
 
     in_chunks(n, work)
+    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
+        mean[:], slopes[0] = 0.0, 0.0
     if not gradients:
         return Averages(mean, rms, None, None)
     return Averages(mean, rms, numbers.chain(slopes[0]), numbers.chain(slopes[1]))

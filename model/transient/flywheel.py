@@ -57,8 +57,8 @@ def design_flywheel(
     """Return the least flywheel that keeps the coefficient of speed fluctuation at the wanted one or below.
 
     drive: the mechanism's own if None; its flywheel is replaced. Without any, the motor is one of constant torque that
-    keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is not between 0 and 1 (from 1
-    on the crank may stop within the turn), and where no steady running exists.
+    keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is not between 0 and 1 (from
+    1 on the crank may stop within the turn), and where no steady running exists.
     """
     from scipy.optimize import brentq
 

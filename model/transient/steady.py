@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..dissipation import works_over_a_turn
 from ..errors import InputError
 from ..linkage import Linkage
 from ..mechanism import Mechanism
@@ -55,6 +56,7 @@ class Runner:
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
+        self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def under(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
@@ -90,7 +92,10 @@ class Runner:
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
                 f"{inertia:.6g} kg m^2 beside the mechanism; add a flywheel or turn faster"
             )
-        return _result(*solved, motor, inertia)
+        turn, profile = solved
+        if not self.works:  # what cancels leaves rounding
+            profile = replace(profile, added=0.0)
+        return _result(turn, profile, motor, inertia)
 
     def balanced_speed(self, drive: Drive) -> float:
         """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.

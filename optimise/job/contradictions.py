@@ -15,6 +15,7 @@ from ...model.mechanism import Clearances
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
+from ..zero_objectives import require_ranking
 from .box import require_reachable
 
 _ERRORS = ("position_error", "position_error_rss")
@@ -42,6 +43,7 @@ def require_consistent(problem: Problem) -> None:
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
     _require_causes(problem)
+    require_ranking(problem)
     require_reachable(problem)
 
 

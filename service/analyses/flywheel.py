@@ -64,7 +64,9 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         else f"No flywheel is needed for a speed fluctuation of {wanted:g}: without one {without}.",
         soft_wrap=True,
     )
-    console.print("Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time.", soft_wrap=True)
+    console.print(
+        "Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time.", soft_wrap=True
+    )
     console.print(
         f"{'With it' if inertia else 'So'}: mean speed {steady['mean_speed_rpm']:.5g} rpm, motor torque up to "
         f"{steady['peak_motor_torque_Nm']:.4g} N m on the crank, mean power {steady['mean_power_W']:.4g} W.",

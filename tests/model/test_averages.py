@@ -115,7 +115,7 @@ def near_locking(design: Array, column: int | None = None) -> Array:
     step = np.zeros(3, complex)
     if column is not None:
         step[column] = 1e-30j
-    r, l, e = design + step
+    r, l, _ = design + step
     side = 1.0 if design[2] >= 0.0 else -1.0
     exact = Fraction(design[1]) - Fraction(design[0]) - abs(Fraction(design[2]))
     gap = float(exact) + (step[1] - step[0] - side * step[2])
@@ -134,9 +134,12 @@ def near_locking(design: Array, column: int | None = None) -> Array:
     assert HEAVY.rod.centre is not None
     sx = (HEAVY.rod.centre * along - HEAVY.rod.centre_across * across) / l
     sy = (HEAVY.rod.centre * across + HEAVY.rod.centre_across * along) / l
-    g1, g2 = (-r * s - sy * turn, r * c + sx * turn), (
-        -r * c - sx * turn**2 - sy * bend,
-        -r * s - sy * turn**2 + sx * bend,
+    g1, g2 = (
+        (-r * s - sy * turn, r * c + sx * turn),
+        (
+            -r * c - sx * turn**2 - sy * bend,
+            -r * s - sy * turn**2 + sx * bend,
+        ),
     )
     rod, slider, inertia = HEAVY.rod.mass, HEAVY.slider_mass, HEAVY.rod.inertia
     spin = rod * (g1[0] * g2[0] + g1[1] * g2[1]) + inertia * turn * bend + slider * x_1 * x_2

@@ -19,6 +19,7 @@ from tests.model.bodies import bodies
 from tests.model.cases import Array
 
 STEP = 1e-30
+_FINE = {"xatol": 1e-12}
 
 
 class Energies:
@@ -86,9 +87,9 @@ class Energies:
             return math.inf
         least = math.exp(brentq(excess, math.log(1e-4 * size), math.log(20.0 * size), xtol=1e-15, rtol=1e-14))
 
-        def energy(theta: float, n: int) -> float:
+        def energy(theta: float, n: int, sign: float) -> float:
             held = least - min(lows) + self.work(n, np.array([theta]))
-            return float((held / (self.inertia(np.array([theta])) + flywheel))[0])
+            return sign * float((held / (self.inertia(np.array([theta])) + flywheel))[0])
 
         extremes = []
         for sign in (1.0, -1.0):
@@ -97,10 +98,8 @@ class Energies:
                 values = sign * (least - min(lows) + self.works[n]) / (self.inertias[n] + flywheel)
                 i = int(np.argmin(values))
                 around = sorted((float(angle[max(i - 1, 0)]), float(angle[min(i + 1, len(angle) - 1)])))
-                found = minimize_scalar(
-                    lambda t, n=n: sign * energy(t, n), bounds=around, method="bounded", options={"xatol": 1e-12}
-                )
-                ends = [sign * energy(end, n) for end in self.starts[n : n + 2]]
+                found = minimize_scalar(energy, args=(n, sign), bounds=around, method="bounded", options=_FINE)
+                ends = [energy(end, n, sign) for end in self.starts[n : n + 2]]
                 best = min(best, float(found.fun), *ends)
             extremes.append(sign * best)
         slow, fast = (math.sqrt(2.0 * value) for value in extremes)
