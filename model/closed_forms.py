@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .arithmetic import STEP, analytic, inverse, kernel, magnitude
 from .batches import in_chunks
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
+from .in_line import in_line
 
 Array = NDArray[np.float64]
 
@@ -75,4 +76,6 @@ def evaluate_closed_form(kind: ClosedForm, designs: Array, *, gradients: bool = 
         _evaluate(int(kind), designs[begin:end], values[begin:end], slopes[begin:end] if gradients else slopes)
 
     in_chunks(n, work, size=4096)
+    if kind == ClosedForm.ROD_TO_OFFSET:
+        values[in_line(designs[:, 1], designs[:, 2])] = np.inf
     return values, slopes if gradients else None

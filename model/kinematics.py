@@ -56,7 +56,12 @@ def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motio
     Requires l > |e - r sin(theta)| (the linkage can be assembled at this angle).
     """
     across = e - r * sine
-    along = branch * root(l * l - across * across)
+    return motion_of(sine, cosine, r, across, branch * root(l * l - across * across))
+
+
+@analytic
+def motion_of(sine: Any, cosine: Any, r: Any, across: Any, along: Any) -> Motion:
+    """Return the `Motion` for sine and cosine of the crank angle, crank r and the components of the rod vector, m."""
     per_along = inverse(along)
     tangent = across * per_along
     rod_1 = -r * cosine * per_along

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import geometry
 from .errors import AssemblyError, InputError
+from .in_line import in_line
 from .kinematics import motion
 from .mechanism import Branch
 from .position_error import Influences, influences
@@ -89,6 +90,9 @@ class Linkage:
                 "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
                 f"got {_mm(crank, rod, offset, apart)}; shorten the offset or lengthen a link"
             )
+        rounding = in_line(rod, offset) & (offset != 0.0)
+        if np.any(rounding):
+            values[2] = np.where(rounding, 0.0, offset)
         for name, value in zip(("crank", "rod", "offset"), values, strict=True):
             value = value.copy()
             value.flags.writeable = False

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.averages import average_torque
+from ..model.in_line import without_rounding
 from ..model.linkage import Linkage
 from ..model.loaded_stroke import loaded_stroke
 from ..model.mechanism import Mechanism
@@ -30,6 +31,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     `AssemblyError` for a linkage that does not turn fully.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
+    dimensions = dimensions.copy()
+    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     linkage.require_full_rotation()
     inner, outer = linkage.dead_centre_angles

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ..model.averages import average
+from ..model.dissipation import works_over_a_turn
 from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..model.numbers import number_of
@@ -35,6 +36,10 @@ class CycleAverage:
 
     def __post_init__(self) -> None:
         require_word("which", self.which, Which)
+
+    def zero_for(self, mechanism: Mechanism) -> bool:
+        """Return whether it is zero for every design: a mean torque or power of a machine that takes no work."""
+        return self.which == "mean" and self.signal is Signal.TORQUE and not works_over_a_turn(mechanism)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

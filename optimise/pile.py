@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from .elimination import ZERO
+from ..model.in_line import without_rounding
 from .evaluation import FEASIBLE, Evaluator
 from .hypervolume import nondominated
 from .polish import Polished
@@ -49,7 +49,8 @@ class Pile:
         self.sheet = np.concatenate([self.sheet, np.full(len(rows), index)])
         self.u = stacked(self.u, part.u[rows])
         dimensions = evaluator.sheet.dimensions(part.u[rows])
-        self.dimensions = stacked(self.dimensions, np.where(np.abs(dimensions) <= ZERO, 0.0, dimensions))
+        dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+        self.dimensions = stacked(self.dimensions, dimensions)
         self.values = np.concatenate([self.values, part.values[rows] * self.span])
         self.residual = np.concatenate([self.residual, part.residual[rows]])
         self.goals += [part.goals[row] for row in rows]

@@ -24,6 +24,7 @@ from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
 from .so_far import so_far
 from .stationarity import Array
+from .zero_objectives import require_ranking
 
 
 def solve(
@@ -50,6 +51,7 @@ def solve(
     """
     require_fit(problem)
     require_gradients(problem)
+    require_ranking(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
     require_eliminated(problem, evaluators)

@@ -6,13 +6,18 @@ needs, and the greatest change dE of the energy, the integral of mean T - T, bet
     J = dE / (delta w^2),    delta = (w_max - w_min) / w_mean.
 
 It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected beside
-J. The exact J is a root search on steady running, whose speed is that of the equation of motion.
+J. The exact J is a root search on steady running, whose speed is that of the equation of motion. w_mean is 2 pi over
+the time of a turn, not the middle of w_max and w_min: a crank that nearly stops has any delta above 1, without bound.
+The search is for 1 / delta, which is nearly linear in J, and 0 where the crank does not come through the turn.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cache
+
+import numpy as np
 
 from ..errors import InputError
 from ..linkage import Linkage
@@ -20,10 +25,10 @@ from ..mechanism import Mechanism
 from .drive import ConstantTorque, Drive
 from .steady import Runner, SteadyRunning
 
-_WIDEST = 25
-"""Steps away from the estimate."""
-_GREATEST = 2.0
-"""No fluctuation reaches it while the crank goes on turning one way; stands for a crank that stops."""
+_WIDEST = 60
+"""Times that the greatest flywheel tried is enlarged."""
+_BETWEEN = 12
+"""Flywheels tried between none and one that is enough: the least one is wanted, and more need not mean steadier."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,11 +54,11 @@ class FlywheelDesign:
 def design_flywheel(
     mechanism: Mechanism, linkage: Linkage, fluctuation: float, drive: Drive | None = None
 ) -> FlywheelDesign:
-    """Return the least flywheel that keeps the coefficient of speed fluctuation at the wanted one.
+    """Return the least flywheel that keeps the coefficient of speed fluctuation at the wanted one or below.
 
     drive: the mechanism's own if None; its flywheel is replaced. Without any, the motor is one of constant torque that
-    keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is not between 0 and 1, and
-    where no steady running exists.
+    keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is not between 0 and 1 (from
+    1 on the crank may stop within the turn), and where no steady running exists.
     """
     from scipy.optimize import brentq
 
@@ -67,26 +72,30 @@ def design_flywheel(
         return runner.constant(flywheel) if drive is None else runner.under(replace(drive, flywheel=flywheel))
 
     @cache
-    def excess(flywheel: float) -> float:
+    def surplus(flywheel: float) -> float:
+        """Return 1 / delta, 0 where the crank does not come through the turn, less what is wanted."""
         try:
-            return min(run(flywheel).fluctuation, _GREATEST) - fluctuation
+            found = run(flywheel).fluctuation
         except InputError:
-            return _GREATEST
+            found = math.inf
+        return (1.0 / found if found > 0.0 else math.inf) - 1.0 / fluctuation
 
     estimate = runner.energy_change(speed) / (fluctuation * speed**2) if speed else 0.0
     inertia = 0.0
-    if excess(0.0) > 0.0:
-        low, high = 0.9 * estimate, 1.1 * estimate
+    if not surplus(0.0) >= 0.0:
+        enough = 1.1 * estimate
         for _ in range(_WIDEST):
-            low, high = low * (0.6 if excess(low) < 0.0 else 1.0), high * (1.6 if excess(high) > 0.0 else 1.0)
-            if excess(high) <= 0.0 <= excess(low):
+            if surplus(enough) >= 0.0:
                 break
+            enough *= 1.6
         else:
-            run(high)  # says why, if it does not run at all
+            run(enough)  # says why, if it does not run at all
             raise InputError(
-                f"no flywheel up to {high:.3g} kg m^2 keeps the fluctuation at {fluctuation:g}; allow more"
+                f"no flywheel up to {enough:.3g} kg m^2 keeps the fluctuation at {fluctuation:g}; allow more"
             )
-        inertia = float(brentq(excess, low, high, xtol=1e-13 * high, rtol=1e-13))
+        sizes = [float(size) for size in np.linspace(0.0, enough, _BETWEEN)]
+        least = next(i for i, size in enumerate(sizes) if surplus(size) >= 0.0)
+        inertia = float(brentq(surplus, sizes[least - 1], sizes[least], xtol=1e-13 * enough, rtol=1e-13))
     running = run(inertia)
     motor = Drive(motor=ConstantTorque(torque=abs(float(running.motor_torque[0])))) if drive is None else drive
     return FlywheelDesign(

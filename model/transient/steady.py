@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..dissipation import works_over_a_turn
 from ..errors import InputError
 from ..linkage import Linkage
 from ..mechanism import Mechanism
@@ -55,20 +56,21 @@ class Runner:
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
+        self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def under(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
         self.equation.require_inertia(drive.inertia)
         motor, guess = self._motor(drive), self.balanced_speed(drive)
-        profile = self.turn.solve(motor, drive.inertia, guess)
-        if profile is None or not profile.memory < 1.0:
+        solved = self.turn.resolved(motor, drive.inertia, guess)
+        if solved is None or not solved[1].memory < 1.0:
             raise InputError(
                 "steady running needs a crank that comes through every turn; got none that does near the "
                 f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
             )
-        found = self._result(profile, motor, drive.inertia)
+        found = _result(*solved, motor, drive.inertia)
         fastest = float(np.abs(found.speed).max())
-        if fastest > speed_range(drive)[1]:
+        if not fastest <= speed_range(drive)[1]:
             raise InputError(
                 "steady running needs a motor torque at every speed of the turn; "
                 f"got {fastest:.6g} rad/s of the crank, beyond the torque table; extend the table"
@@ -84,13 +86,16 @@ class Runner:
         def motor(speed: Array) -> tuple[Array, Array]:
             return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
 
-        profile = self.turn.solve(motor, inertia, self.speed, mean_speed=self.speed)
-        if profile is None:
+        solved = self.turn.resolved(motor, inertia, self.speed, mean_speed=self.speed)
+        if solved is None:
             raise InputError(
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
                 f"{inertia:.6g} kg m^2 beside the mechanism; add a flywheel or turn faster"
             )
-        return self._result(profile, motor, inertia)
+        turn, profile = solved
+        if not self.works:  # what cancels leaves rounding
+            profile = replace(profile, added=0.0)
+        return _result(turn, profile, motor, inertia)
 
     def balanced_speed(self, drive: Drive) -> float:
         """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.
@@ -151,51 +156,50 @@ class Runner:
 
         return motor
 
-    def _result(self, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
-        turn = self.turn
-        pace = turn.way / np.sqrt(2.0 * profile.energy)
-        times, _ = turn.integral(pace)
-        panels = [self._points(profile, pace, float(times[p]), p) for p in range(len(times))]
-        period = float(turn.width @ (pace @ turn.weights))
-        end = panels[0][:1] + np.array([[turn.way * TURN, period, 0.0, 0.0]])
-        angle, time, energy, acceleration = np.concatenate([*panels, end]).T
-        speed = turn.way * np.sqrt(2.0 * energy)
-        torque = motor(speed)[0] + profile.added
-        at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
-        return SteadyRunning(
-            crank_angle=angle,
-            time=time,
-            speed=speed,
-            acceleration=acceleration,
-            motor_torque=torque,
-            torque=torque - inertia * acceleration,
-            mean_speed=turn.way * TURN / period,
-            work=float(turn.width @ (at_nodes @ turn.weights)),
-            inertia=inertia,
-            memory=profile.memory,
-        )
 
-    def _points(self, profile: Profile, pace: Array, time: float, p: int) -> Array:
-        """Return angle, time, E and its derivative at start, nodes and extremes of a panel, (count, 4), in order."""
-        from scipy.optimize import brentq
+def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
+    pace = turn.way / np.sqrt(2.0 * profile.energy)
+    times, _ = turn.integral(pace)
+    panels = [_points(turn, profile, pace, float(times[p]), p) for p in range(len(times))]
+    period = float(turn.width @ (pace @ turn.weights))
+    end = panels[0][:1] + np.array([[turn.way * TURN, period, 0.0, 0.0]])
+    angle, time, energy, acceleration = np.concatenate([*panels, end]).T
+    speed = turn.way * np.sqrt(2.0 * energy)
+    torque = motor(speed)[0] + profile.added
+    at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
+    return SteadyRunning(
+        crank_angle=angle,
+        time=time,
+        speed=speed,
+        acceleration=acceleration,
+        motor_torque=torque,
+        torque=torque - inertia * acceleration,
+        mean_speed=turn.way * TURN / period,
+        work=float(turn.width @ (at_nodes @ turn.weights)),
+        inertia=inertia,
+        memory=profile.memory,
+    )
 
-        turn = self.turn
 
-        def rate(x: float) -> float:
-            return turn.within(profile.rate, p, x)[0]
+def _points(turn: PeriodicTurn, profile: Profile, pace: Array, time: float, p: int) -> Array:
+    """Return angle, time, E and its derivative at start, nodes and extremes of a panel, (count, 4), in order."""
+    from scipy.optimize import brentq
 
-        at = np.concatenate([[-1.0], turn.nodes, [1.0]])
-        rates = np.concatenate([[rate(-1.0)], profile.rate[p], [rate(1.0)]])
-        turning = np.flatnonzero(rates[:-1] * rates[1:] < 0.0)
-        extremes = [float(brentq(rate, at[i], at[i + 1], xtol=1e-14)) for i in turning]
-        angles, times = turn.angle[p], time + turn.width[p] * (turn.sums @ pace[p])
-        rows = np.stack([angles, times, profile.energy[p], profile.rate[p]], axis=1)
-        for x in extremes:
-            angle = turn.low[p] + 0.5 * (1.0 + x) * turn.width[p]
-            gain = turn.within(profile.rate, p, x)[1]
-            row = [angle, time + turn.within(pace, p, x)[1], profile.start[p] + gain, 0.0]
-            rows = np.insert(rows, np.searchsorted(rows[:, 1], row[1]), row, axis=0)
-        return np.insert(rows, 0, [turn.low[p], time, profile.start[p], rates[0]], axis=0)
+    def rate(x: float) -> float:
+        return turn.within(profile.rate, p, x)[0]
+
+    at = np.concatenate([[-1.0], turn.nodes, [1.0]])
+    rates = np.concatenate([[rate(-1.0)], profile.rate[p], [rate(1.0)]])
+    turning = np.flatnonzero(rates[:-1] * rates[1:] < 0.0)
+    extremes = [float(brentq(rate, at[i], at[i + 1], xtol=1e-14)) for i in turning]
+    angles, times = turn.angle[p], time + turn.width[p] * (turn.sums @ pace[p])
+    rows = np.stack([angles, times, profile.energy[p], profile.rate[p]], axis=1)
+    for x in extremes:
+        angle = turn.low[p] + 0.5 * (1.0 + x) * turn.width[p]
+        gain = turn.within(profile.rate, p, x)[1]
+        row = [angle, time + turn.within(pace, p, x)[1], profile.start[p] + gain, 0.0]
+        rows = np.insert(rows, np.searchsorted(rows[:, 1], row[1]), row, axis=0)
+    return np.insert(rows, 0, [turn.low[p], time, profile.start[p], rates[0]], axis=0)
 
 
 def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None = None) -> SteadyRunning:

@@ -8,6 +8,9 @@ is regular even where the crank nearly stops. The turn is cut into panels at the
 a polynomial through the Gauss-Legendre nodes (a Gauss method; Hairer, Norsett and Wanner, Solving Ordinary
 Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: the linearised panels are maps of one
 number, E at the start, onto E at the end, and chained they close the turn.
+
+Where the crank nearly stops, the time for an angle, 1 / sqrt(2 E), rises steeply: panels whose last Legendre
+coefficients have not died out are halved, and the turn is solved anew.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
 from ..segments import crowded, crowding, uncrowded
 from .equation import TURN, Array, CrankEquation, Terms
@@ -26,6 +30,9 @@ _NODES = 16
 _PANELS = 40
 _STEPS = 60
 _EXACT = 1e-13
+_TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
+_RESOLVED = 1e-11  # ... and what is left of them then, of the greatest value over the turn
+_HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
 
 Torque = Callable[[Array], tuple[Array, Array]]
 """Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
@@ -49,9 +56,13 @@ class PeriodicTurn:
     """The terms of the equation of motion on the nodes of a turn, in the order in which the crank passes them.
 
     angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
+    cuts: crank angles, rad, at which panels end besides.
     """
 
-    def __init__(self, equation: CrankEquation, dimensions: tuple[float, float, float]) -> None:
+    def __init__(
+        self, equation: CrankEquation, dimensions: tuple[float, float, float], cuts: tuple[float, ...] = ()
+    ) -> None:
+        self.equation, self.dimensions, self.cuts = equation, dimensions, cuts
         self.way = equation.direction
         nodes, weights = legendre.leggauss(_NODES)
         self.nodes, self.weights = nodes, 0.5 * weights
@@ -65,6 +76,7 @@ class PeriodicTurn:
             count = max(2, math.ceil(_PANELS * (last - first) / TURN))
             ends = np.array([uncrowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
             ends[0], ends[-1] = stretch.low, stretch.high
+            ends = np.union1d(ends, [cut for cut in cuts if stretch.low < cut < stretch.high])
             ends = ends if self.way > 0.0 else ends[::-1]
             at = ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (1.0 + nodes)
             low.append(ends[:-1])
@@ -97,6 +109,30 @@ class PeriodicTurn:
         torque, slope = motor(speed)
         total = t.inertia + inertia
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * t.spin) / total
+
+    def resolved(
+        self, motor: Torque, inertia: float, speed: float, *, mean_speed: float | None = None
+    ) -> tuple[PeriodicTurn, Profile] | None:
+        """Return the turn that repeats, on panels fine enough for it; None if none is found that never stops.
+
+        Arguments: see `solve`.
+        """
+        turn = self
+        for _ in range(_HALVINGS):
+            profile = turn.solve(motor, inertia, speed, mean_speed=mean_speed)
+            if profile is None:
+                return None
+            rough = turn._rough(1.0 / np.sqrt(profile.energy)) | turn._rough(profile.rate)
+            if not rough.any():
+                return turn, profile
+            halves = turn.low[rough] + 0.5 * turn.width[rough]
+            turn = PeriodicTurn(self.equation, self.dimensions, (*turn.cuts, *(float(at) for at in halves)))
+        return None
+
+    def _rough(self, values: Array) -> NDArray[np.bool_]:
+        """Return the panels, (panels,), on which values on the nodes are not resolved."""
+        tail = np.abs(values @ self._series[-_TAIL:].T).max(axis=1)
+        return np.asarray(~(tail <= _RESOLVED * np.abs(values).max()))
 
     def solve(self, motor: Torque, inertia: float, speed: float, *, mean_speed: float | None = None) -> Profile | None:
         """Return the turn that repeats; None if none is found that never stops.

@@ -20,12 +20,13 @@ class Around:
     """A quantity at q points around each of n designs.
 
     values: (n, q, p) of its pieces, -inf where absent; +inf in the first where the linkage does not turn fully.
-    gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension. labels:
-    (n, q, p). turns: (n, q).
+    gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension. local:
+    (n, q, p, 3), by the point. labels: (n, q, p). turns: (n, q).
     """
 
     values: Array
     gradients: Array
+    local: Array
     labels: Array
     turns: NDArray[np.bool_]
 
@@ -60,6 +61,20 @@ def corners(columns: list[int]) -> Array:
     return found
 
 
+def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[NDArray[np.int64], Array]:
+    """Return the designs (m,) whose offset may be zero within the limits, and points (m, q, 3) of theirs at zero.
+
+    The points are the corners of the other dimensions' box, in units of the limits.
+    """
+    if 2 not in columns:
+        return np.zeros(0, np.int64), np.zeros((0, 0, 3))
+    rows = np.flatnonzero((np.abs(dimensions[:, 2]) < limits[:, 2]) & (limits[:, 2] > 0.0))
+    ends = corners([column for column in columns if column != 2])
+    points = np.repeat(ends[None], len(rows), axis=0)
+    points[:, :, 2] = -(dimensions[rows, 2] / limits[rows, 2])[:, None]
+    return rows, points
+
+
 def star(columns: list[int]) -> Array:
     """Return the points that a full quadratic is fitted to, in units of the limits: 1 + 2 d + d (d - 1), (q, 3).
 
@@ -75,21 +90,25 @@ def star(columns: list[int]) -> Array:
 
 
 def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> Around:
-    """Return a quantity at points (q, 3) of the box, in units of the limits, around designs (n, 3 + k)."""
+    """Return a quantity at points (q, 3) of the box, in units of the limits, around designs (n, 3 + k).
+
+    points: of all designs, or (n, q, 3) of each.
+    """
     absolute, fraction = _parts(mechanism)
-    n, q, width = len(dimensions), len(points), dimensions.shape[1]
+    n, q, width = len(dimensions), points.shape[-2], dimensions.shape[1]
     moved = np.repeat(dimensions[:, None, :], q, axis=1)
     moved[:, :, :3] += points * (absolute + fraction * np.abs(dimensions[:, None, :3]))
     turns = (moved[:, :, 0] > 0.0) & (moved[:, :, 1] > moved[:, :, 0] + np.abs(moved[:, :, 2]))
     moved = np.where(turns[:, :, None], moved, dimensions[:, None, :])
     found = quantity.pieces(mechanism, np.ascontiguousarray(moved.reshape(n * q, width)))
-    values = found.values.reshape(n, q, -1).copy()
-    gradients = found.gradients.reshape(n, q, -1, width).copy()
+    values = found.values.reshape(n, q, found.values.shape[1]).copy()
+    gradients = found.gradients.reshape(*values.shape, width).copy()
+    local = gradients[:, :, :, :3].copy()
     gradients[:, :, :, :3] *= (1.0 + points * fraction * np.sign(dimensions[:, None, :3]))[:, :, None, :]
     values[~turns] = -np.inf
     values[~turns, 0] = np.inf
-    gradients[~turns] = 0.0
-    return Around(values, gradients, found.labels.reshape(values.shape), turns)
+    gradients[~turns] = local[~turns] = 0.0
+    return Around(values, gradients, local, found.labels.reshape(values.shape), turns)
 
 
 def followed(here: Around) -> tuple[Array, Array, NDArray[np.bool_]]:

@@ -14,8 +14,9 @@ from ...model.loads import require_word
 from ...model.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array, Pieces, Quantity, Unit, Values
-from .points import around, corners, followed, limits_of, star, uncertain
+from .points import Around, around, corners, followed, limits_of, star, uncertain
 from .quantile import interpolation, linear, linear_quantile, sample, weights
+from .within import within
 
 Side = Literal["high", "low"]
 Kind = Literal["worst case", "percentile"]
@@ -36,10 +37,10 @@ class RobustQuantity:
     """A quantity as it is within the tolerances of crank, rod and offset.
 
     inner: the quantity. side: which side is bad, "high" where it should be low.
-    kind "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: f at the worst
-    corner of the box, exactly, hence with the second order and all above it; no machine is worse where f is monotone in
-    each dimension within its limits, or convex there (high) or concave (low). A quantity that turns within the limits,
-    as all that depends on |offset| do at zero, may be worse than at all corners on the low side.
+    kind "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the
+    worst f in the box, exactly, hence with the second order and all above it: at a corner, at offset zero where the
+    limits span it, or within, where `within` finds that f turns. Order 1 is of order 2 where the limits span offset
+    zero: what depends on its size has no derivative there.
     kind "percentile": the value that a share of all machines keeps, `P(f <= v) = share` (high) or `P(f >= v) = share`
     (low), errors being independent and spread as `shape` says, in units of the limits T_i = absolute + fraction |x_i|.
     samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
@@ -102,16 +103,21 @@ class RobustQuantity:
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces, the least of them on the low side."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
-        limits_of(mechanism, dimensions)  # refuses what it must
+        limits = limits_of(mechanism, dimensions)  # refuses what it must
         columns = uncertain(mechanism)
         if not columns:
             found = self.inner.pieces(mechanism, dimensions)
             return found if self.side == "high" else _lowest(found)
         if self.kind == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
-        exact = self._exact if self.order == 2 else self._linear
-        values, slopes, labels = exact(mechanism, dimensions, columns)
         low = self.side == "low"
+        spans = (np.abs(dimensions[:, 2]) < limits[:, 2]) | (self.order == 2)
+        parts = [
+            (np.flatnonzero(rows), exact(mechanism, dimensions[rows], columns))
+            for rows, exact in ((spans, self._exact), (~spans, self._linear))
+            if rows.any() or (len(rows) == 0 and exact == self._exact)
+        ]
+        values, slopes, labels = _together(len(dimensions), parts, absent=np.inf if low else -np.inf)
         kept = np.argsort(values if low else -values, axis=1, kind="stable")[:, :_KEPT]
         return Pieces(
             np.take_along_axis(values, kept, axis=1),
@@ -140,7 +146,29 @@ class RobustQuantity:
     # ---- worst case -----------------------------------------------------------------------------------------------
 
     def _exact(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
+        low = self.side == "low"
         here = around(self.inner, mechanism, dimensions, corners(columns))
+        values, slopes, labels = self._bad(here)
+        inside = within(self.inner, mechanism, dimensions, columns, here, low=low)
+        if not len(inside.rows):
+            return values, slopes, labels
+        # Further points within the box where they are worse: there they stay while the design, and its box, moves.
+        count = inside.points.shape[1]
+        more = around(self.inner, mechanism, dimensions[inside.rows], inside.points)
+        worse, slope, label = self._bad(more)
+        slope[:, :, :3] *= np.repeat(np.abs(inside.points) == 1.0, worse.shape[1] // count, axis=1)
+        room = np.full((len(values), worse.shape[1]), np.inf if low else -np.inf)
+        room_slopes, room_labels = np.zeros((*room.shape, slopes.shape[2])), np.zeros(room.shape)
+        room[inside.rows], room_slopes[inside.rows] = worse, slope
+        room_labels[inside.rows] = label + _APART * here.values.shape[1]
+        return (
+            np.concatenate([values, room], axis=1),
+            np.concatenate([slopes, room_slopes], axis=1),
+            np.concatenate([labels, room_labels], axis=1),
+        )
+
+    def _bad(self, here: Around) -> tuple[Array, Array, Array]:
+        """Return values (n, m), gradients and labels at the points: all pieces, on the low side the highest of each."""
         labels = here.labels + _APART * np.arange(here.labels.shape[1])[:, None]
         if self.side == "high":
             n, _, _, width = here.gradients.shape
@@ -148,9 +176,9 @@ class RobustQuantity:
         first = np.argmax(here.values, axis=2)[:, :, None]
         values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
         slopes = np.take_along_axis(here.gradients, first[:, :, :, None], axis=2)[:, :, 0]
-        corner = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
+        point = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
         # Infinite where friction locks: nothing is high there.
-        return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, corner
+        return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, point
 
     def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
@@ -266,6 +294,21 @@ class RobustQuantity:
         by_control = _each("nd,dq->nq", exact_slope - shift, ends)
         found = found + exact - _each("nd,nd->n", shift, control)
         return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
+
+
+def _together(
+    count: int, parts: list[tuple[NDArray[np.int64], tuple[Array, Array, Array]]], *, absent: float
+) -> tuple[Array, Array, Array]:
+    """Return values, gradients and labels of all designs from those of some each; the missing ones are `absent`."""
+    if len(parts) == 1:
+        return parts[0][1]
+    most = max(values.shape[1] for _, (values, _, _) in parts)
+    values, labels = np.full((count, most), absent), np.zeros((count, most))
+    slopes = np.zeros((count, most, parts[0][1][1].shape[2]))
+    for rows, (own, own_slopes, own_labels) in parts:
+        values[rows, : own.shape[1]], labels[rows, : own.shape[1]] = own, own_labels
+        slopes[rows, : own.shape[1]] = own_slopes
+    return values, slopes, labels
 
 
 def _each(sums: str, *factors: Array) -> Array:

@@ -14,6 +14,7 @@ from ...model.links import Bar, Link
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
+from ..zero_objectives import require_ranking
 from .box import require_reachable
 from .slow_stroke import require_slow_stroke
 
@@ -42,6 +43,7 @@ def require_consistent(problem: Problem) -> None:
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
     _require_causes(problem)
+    require_ranking(problem)
     require_reachable(problem)
     require_slow_stroke(problem)
 

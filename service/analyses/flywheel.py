@@ -56,14 +56,19 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
     wanted, inertia = numbers["wanted_fluctuation"], numbers["flywheel_kgm2"]
     bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
-    without = "it does not run through a turn" if bare is None else f"it is {bare:.4g}"
+    without = "the crank does not come through a turn" if bare is None else f"it is {bare:.4g}"
     console.print(
         f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
-        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}.",
+        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}."
+        if inertia
+        else f"No flywheel is needed for a speed fluctuation of {wanted:g}: without one {without}.",
         soft_wrap=True,
     )
     console.print(
-        f"With it: mean speed {steady['mean_speed_rpm']:.5g} rpm, motor torque up to "
+        "Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time.", soft_wrap=True
+    )
+    console.print(
+        f"{'With it' if inertia else 'So'}: mean speed {steady['mean_speed_rpm']:.5g} rpm, motor torque up to "
         f"{steady['peak_motor_torque_Nm']:.4g} N m on the crank, mean power {steady['mean_power_W']:.4g} W.",
         soft_wrap=True,
     )

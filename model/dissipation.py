@@ -1,0 +1,54 @@
+"""Work over a turn: whether a machine takes any, judged by its parts and not by numbers that cancel.
+
+At constant crank speed the kinetic energy repeats after a turn, and so does what gravity and every load have stored
+whose force depends on the slider's position alone. The mean drive torque is then zero for every linkage.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .loads import AngleTable, PositionTable, StrokeForce, Viscous
+from .mechanism import Mechanism
+
+_ROUNDING = 1e-12
+"""Share of the forces that their sum may be off by, as decimal numbers add up."""
+
+
+def works_over_a_turn(mechanism: Mechanism) -> bool:
+    """Return whether the mean drive torque over a turn may differ from zero for some design.
+
+    It does not without friction, acceleration of the crank, viscous loads, loads that differ between the strokes and
+    loads over crank angle. Of numbers that vary two values each are tried, neither of them special.
+    """
+    if not mechanism.varying:
+        return _works(mechanism)
+    inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
+    return _works(mechanism.fullest) or _works(mechanism.at(inner))
+
+
+def _works(machine: Mechanism) -> bool:
+    loads = machine.loads
+    pushes = [force for load in loads if isinstance(load, StrokeForce) for force in (load.outward, -load.inward)]
+    drags = [load.coefficient for load in loads if isinstance(load, Viscous) and machine.speed != 0.0]
+    tables = [load for load in loads if isinstance(load, PositionTable)]
+    outward, inward = (
+        sorted((table.datum, table.positions, table.forces) for table in tables if table.during == stroke)
+        for stroke in ("outward stroke", "inward stroke")
+    )
+    return (
+        machine.acceleration != 0.0
+        or machine.friction.acts
+        or _adds_up(pushes)
+        or _adds_up(drags)
+        or outward != inward
+        or any(isinstance(load, AngleTable) and not _constant(load) for load in loads)
+    )
+
+
+def _adds_up(parts: list[float]) -> bool:
+    return abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts))
+
+
+def _constant(load: AngleTable) -> bool:
+    return set(load.forces) == {0.0} or (load.during == "cycle" and len(set(load.forces)) == 1)

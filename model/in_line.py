@@ -1,0 +1,20 @@
+"""Offsets that are nothing but rounding: such a linkage is in-line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+_ROUNDING = 1e-15
+"""Share of the rod. An offset this small moves no closed form and no position by more than rounding does."""
+
+
+def in_line(rod: Any, offset: Any) -> Any:
+    """Return whether linkages have no offset but for rounding, |e| <= 1e-15 l; arguments in m, broadcast."""
+    return np.abs(offset) <= _ROUNDING * np.asarray(rod)
+
+
+def without_rounding(rod: Any, offset: Any) -> Any:
+    """Return offsets, m, with those that are only rounding at zero; arguments broadcast."""
+    return np.where(in_line(rod, offset), 0.0, offset)

@@ -1,0 +1,145 @@
+"""The worst point of the tolerance box where that is no corner: at offset zero, or where the quantity turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.mechanism import Mechanism
+from ..quantity import Array, Quantity
+from .points import Around, around, corners, followed, in_line, limits_of
+
+_BESIDE = 1e-6  # of the limits: how far from offset zero tells a kink there from a curve that turns nearby
+_LOST = 1e-13  # of a value: what a point must be worse by than another one
+_FLAT = 1e-9  # of a value, over the limits: slopes below do not tell where a curve turns
+_STEPS = 60
+_EXACT = 1e-15
+
+
+@dataclass(frozen=True)
+class Inside:
+    """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some beside the corners."""
+
+    rows: NDArray[np.int64]
+    points: Array
+
+
+def within(
+    quantity: Quantity, mechanism: Mechanism, dimensions: Array, columns: list[int], here: Around, *, low: bool
+) -> Inside:
+    """Return the points within the box of designs (n, 3 + k) at which a quantity may be worse than at all corners.
+
+    here: the quantity at the corners. low: whether the least value is wanted, else the greatest.
+    1. What depends on |offset| turns at zero: those points are given wherever the limits span it.
+    2. At the worst of all these points the quantity must get better on every way into the box, to first order.
+       Where it does not it turns within: from there its worst is sought by sequential quadratic programming.
+    """
+    limits = limits_of(mechanism, dimensions)
+    spanning, points = in_line(columns, dimensions, limits)
+    ends = corners(columns)
+    worst, slopes, turns = _worst(here, low)
+    start = ends[np.argmax(worst, axis=1)]
+    inward = (start * _of_worst(worst, slopes)) * limits
+    best = worst.max(axis=1)
+    doubtful = (inward[:, columns] < -_FLAT * np.abs(best)[:, None]).any(axis=1)
+    if len(spanning):
+        at_zero, zero_slopes, _ = _worst(around(quantity, mechanism, dimensions[spanning], points), low)
+        beaten = at_zero.max(axis=1) >= best[spanning]
+        rows, own = spanning[beaten], points[beaten]
+        place = np.argmax(at_zero[beaten], axis=1)
+        start[rows], best[rows] = own[np.arange(len(rows)), place], at_zero[beaten].max(axis=1)
+        inward = start[rows] * _of_worst(at_zero[beaten], zero_slopes[beaten]) * limits[rows]
+        others = [column for column in columns if column != 2]
+        doubtful[rows] = (inward[:, others] < -_FLAT * np.abs(best[rows])[:, None]).any(axis=1)
+        beside = start[rows][:, None, :] + _BESIDE * np.array([[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]).transpose(
+            1, 0, 2
+        )
+        near, _, _ = _worst(around(quantity, mechanism, dimensions[rows], beside), low)
+        doubtful[rows] |= near.max(axis=1, initial=-np.inf) > best[rows] + _LOST * np.abs(best[rows])
+    doubtful &= turns.all(axis=1) & np.isfinite(best)
+    found = {
+        int(row): _sought(quantity, mechanism, dimensions[row], columns, start[row], low)
+        for row in np.flatnonzero(doubtful)
+    }
+    rows = np.union1d(spanning, np.flatnonzero(doubtful)).astype(np.int64)
+    count = len(ends) // 2 if len(spanning) else 0
+    given = np.repeat(start[rows][:, None], count + 1, axis=1)  # what has no point of its own has its worst again
+    if len(spanning):
+        given[np.searchsorted(rows, spanning), :count] = points
+    for at, row in enumerate(rows.tolist()):
+        given[at, count] = found.get(row, start[row])
+    return Inside(rows, given)
+
+
+def _worst(here: Around, low: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return how bad a quantity is at points, (n, q), the more the worse, its slopes (n, q, 3), and where it turns."""
+    first = np.argmax(here.values, axis=2)[:, :, None]
+    values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
+    slopes = np.take_along_axis(here.local, first[:, :, :, None], axis=2)[:, :, 0]
+    sign = -1.0 if low else 1.0
+    return np.where(here.turns, sign * values, np.inf), sign * slopes, here.turns
+
+
+def _of_worst(worst: Array, slopes: Array) -> Array:
+    """Return the slopes (n, 3) at the worst of the points."""
+    return np.take_along_axis(slopes, np.argmax(worst, axis=1)[:, None, None], axis=1)[:, 0]
+
+
+def _sought(
+    quantity: Quantity, mechanism: Mechanism, design: Array, columns: list[int], start: Array, low: bool
+) -> Array:
+    """Return the worst point (3,) near a start. Of a least-of-the-greatest, several peaks may meet there (minimax)."""
+    from scipy.optimize import minimize
+
+    begun = around(quantity, mechanism, design[None], start[None])
+    many = np.isfinite(begun.values[0, 0]) if low else np.argmax(begun.values[0, 0]) == np.arange(begun.values.shape[2])
+    size = abs(float(begun.values[0, 0].max())) or 1.0
+    reach = limits_of(mechanism, design[None])[0]
+
+    def pieces(point: Array) -> tuple[Array, Array]:
+        at = start.copy()
+        at[columns] = point
+        both = around(quantity, mechanism, design[None], np.stack([start, at]))
+        values, _, there = followed(both)
+        _, local, _ = followed(Around(both.values, both.local, both.local, both.labels, both.turns))
+        kept = many & there[0, 1]
+        return np.where(kept, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * reach / size
+
+    # Unknowns: the point and, of a minimax, the bound that no piece exceeds.
+    bounds = [(-1.0, 1.0)] * len(columns) + ([(None, None)] if low else [])
+    if low:
+        top = float(pieces(start[columns])[0].max())
+
+        def room(z: Array) -> Array:
+            values = pieces(z[:-1])[0]
+            return np.where(np.isfinite(values), z[-1] - values, 1.0)
+
+        def room_slopes(z: Array) -> Array:
+            values, slopes = pieces(z[:-1])
+            known = np.isfinite(values)[:, None]
+            return np.concatenate([np.where(known, -slopes[:, columns], 0.0), np.where(known, 1.0, 0.0)], axis=1)
+
+        result = minimize(
+            lambda z: z[-1],
+            np.append(start[columns], top),
+            jac=lambda z: np.append(np.zeros(len(columns)), 1.0),
+            bounds=bounds,
+            constraints=[{"type": "ineq", "fun": room, "jac": room_slopes}],
+            method="SLSQP",
+            options={"maxiter": _STEPS, "ftol": _EXACT},
+        )
+    else:
+        result = minimize(
+            lambda z: -float(pieces(z)[0][0]),
+            start[columns],
+            jac=lambda z: -pieces(z)[1][0, columns],
+            bounds=bounds,
+            method="SLSQP",
+            options={"maxiter": _STEPS, "ftol": _EXACT},
+        )
+    found = start.copy()
+    if np.isfinite(result.x).all():
+        found[columns] = np.clip(result.x[: len(columns)], -1.0, 1.0)
+    return found
