@@ -37,7 +37,7 @@ def challengers(
     screened = archive.values / pile.span
     beating, uncovered = _against(screened, front)
     # Samples within a band around the constraints prove nothing.
-    rows = np.flatnonzero(beating)[:_POOL] if not archive.band else np.zeros(0, np.int64)
+    rows = np.flatnonzero(beating & archive.met)[:_POOL]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
     starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), poll))
     if wanting > 0:
@@ -66,12 +66,11 @@ def _sample(
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
     for index, evaluator in enumerate(evaluators):
-        if evaluator.dimension:
-            count = share(problem.settings.samples or FIRST, evaluators)
-            archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
-            count = -(-(problem.settings.samples or SAMPLES) // k)
-            parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
-            archive.screen(index, evaluator, around(parents, pile.values[best], count, _WIDTH, random))
+        count = share(problem.settings.samples or FIRST, evaluators)
+        archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
+        count = -(-(problem.settings.samples or SAMPLES) // k)
+        parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
+        archive.screen(index, evaluator, around(parents, pile.values[best], count, _WIDTH, random))
 
 
 def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -12,6 +12,7 @@ from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, planned
 from .elimination import Sheet, sheets
 from .engine.engine import Engine
+from .enumeration import enumerate_settled, searched
 from .evaluation import Evaluator
 from .front import ParetoFront, Progress
 from .gradients import require_gradients
@@ -51,7 +52,7 @@ def solve(
     require_gradients(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
-    require_eliminated(problem, evaluators)
+    require_eliminated(problem, searched(evaluators))
     run = Run(problem, 1, progress, ledger)
     if fronts is not None:
 
@@ -68,23 +69,22 @@ def solve(
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    method, finish = problem.settings.method, as_found
-    if method == "auto":
-        run.rounds, finish = 1 + len(WIDTHS) + planned(problem), deliver
-        archive = explore(problem, evaluators, run)
+    method, free = problem.settings.method, searched(evaluators)
+    if method == "auto" or not free:
+        front = _by_default(problem, evaluators, run)
     else:
-        archive = search_of(method)(problem, evaluators, run)
-    front = finish(problem, evaluators, archive, run) if len(archive) else None
+        enumerate_settled(problem, evaluators, run)
+        front = as_found(problem, evaluators, search_of(method)(problem, free, run), run)
     if front is not None:
         return front
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
-    if len(diagnosis.feasible) and method != "auto":
+    if len(diagnosis.feasible) and method != "auto" and free:
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
-    if len(diagnosis.feasible):
+    if len(diagnosis.feasible) and free:
         archive = run.archive = Archive.empty(len(problem.objectives))
-        _seed(archive, evaluators, diagnosis.feasible)
-        zoom(problem, evaluators, archive, run)
-        front = deliver(problem, evaluators, archive, run) if len(archive) else None
+        _seed(archive, free, diagnosis.feasible)
+        zoom(problem, free, archive, run)
+        front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
     message = diagnosis.message or _THIN
@@ -104,6 +104,16 @@ _MISSED = (
 )
 
 
+def _by_default(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
+    """Return what the default method finds, None where nothing is feasible."""
+    enumerate_settled(problem, evaluators, run)
+    archive, free = Archive.empty(len(problem.objectives)), searched(evaluators)
+    if free:
+        run.rounds = len(run.told) + 1 + len(WIDTHS) + planned(problem)
+        archive = explore(problem, free, run)
+    return deliver(problem, evaluators, archive, run)
+
+
 def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float | None:
     """Return the best value (SI) of a problem's only objective, None where nothing is feasible.
 
@@ -111,9 +121,8 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float |
     """
     own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
     inner = Run(problem, 1, ledger=run.ledger)
-    archive = explore(problem, own, inner)
-    front = deliver(problem, own, archive, inner) if len(archive) else None
-    run.tell("diagnosing", evaluators, Archive.empty(len(run.problem.objectives)))
+    front = _by_default(problem, own, inner)
+    run.tell("diagnosing", searched(evaluators), Archive.empty(len(run.problem.objectives)))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
