@@ -30,37 +30,38 @@ _WANTED = {
 _MET = 1e-9  # relative: a requirement that holds to rounding holds
 
 
-def random_job(seed: int) -> Table:
-    """Return a job of one to three catalogue choices beside lists of lengths, in which nothing is left free.
+def random_job(*seed: int) -> Table:
+    """Return a job whose lengths and other numbers are lists, so that nothing is left free.
 
-    One in three leaves a length to the stroke or to the transmission angle that is asked, one in three has friction,
-    one in three a spring.
+    The lists are narrow, so that combinations just miss what is required. Some jobs leave a length to the stroke or to
+    the transmission angle that is asked, some have friction, some a spring.
     """
-    random = np.random.default_rng([12, seed])
-    cranks, rods, offsets = (
-        sorted({round(float(x), 1) for x in random.uniform(low, high, count)})
-        for low, high, count in ((40.0, 70.0, 3), (130.0, 220.0, 2), (random.choice([-60.0, 5.0]), 60.0, 3))
-    )
-    variables: Table = {
-        name: {"choices": [f"{length} mm" for length in lengths]}
-        for name, lengths in (("crank", cranks), ("rod", rods), ("offset", offsets))
-    }
+    random = np.random.default_rng([12, *seed])
+    crank = float(random.uniform(40.0, 75.0))
+    rod = crank * float(random.uniform(2.0, 3.2))
+    offset = float(random.uniform(0.2, 0.8)) * (rod - crank)
+    lists = {name: _around(random, length) for name, length in (("crank", crank), ("rod", rod), ("offset", offset))}
+    if random.random() < 0.3:  # either side
+        lists["offset"][0] *= -1.0
+    variables: Table = {name: {"choices": [f"{x:.1f} mm" for x in lengths]} for name, lengths in lists.items()}
+    stroke = _stroke(*(float(random.choice(lengths)) for lengths in lists.values()))
     constraints: Table = {}
-    stroke = 2.0 * float(np.mean(cranks))
-    rule = int(random.integers(0, 6))
+    rule = int(random.integers(0, 7))
     if rule == 0:
-        variables["offset"] = ["-80 mm", "80 mm"]
-        constraints["stroke"] = {"equals": f"{stroke:.3f} mm"}
+        variables["offset"] = ["-120 mm", "120 mm"]
     elif rule == 1:
         variables["crank"] = ["20 mm", "100 mm"]
-        constraints["stroke"] = {"equals": f"{stroke:.3f} mm"}
     elif rule == 2:
         variables["rod"] = ["60 mm", "300 mm"]
-        constraints["transmission_angle"] = {"equals": f"{random.uniform(35.0, 50.0):.2f} deg"}
+        constraints["transmission_angle"] = {"equals": f"{random.uniform(25.0, 45.0):.2f} deg"}
     elif rule == 3:
-        constraints["stroke"] = {"min": f"{stroke * 0.95:.3f} mm", "max": f"{stroke * 1.08:.3f} mm"}
+        constraints["time_ratio"] = {"max": round(float(random.uniform(1.1, 1.4)), 3)}
     elif rule == 4:
-        constraints["time_ratio"] = {"min": round(float(random.uniform(1.0, 1.08)), 3)}
+        constraints["transmission_angle"] = {"min": f"{random.uniform(25.0, 45.0):.2f} deg"}
+    if rule in (0, 1):
+        constraints["stroke"] = {"equals": f"{stroke:.3f} mm"}
+    elif rule != 2:
+        constraints["stroke"] = {"min": f"{stroke * 0.99:.3f} mm", "max": f"{stroke * 1.02:.3f} mm"}
     job: Table = {
         "name": f"catalogue {seed}",
         "mechanism": {
@@ -73,6 +74,7 @@ def random_job(seed: int) -> Table:
         "tolerances": {"crank": "0.05 mm", "rod": "0.1 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
         "variables": variables,
         "constraints": constraints,
+        "optimiser": {"designs": 1000, "seed": int(random.integers(1, 100))},
     }
     more = [
         ("mechanism.speed", [f"{speed:.0f} rpm" for speed in random.uniform(60.0, 400.0, 2)]),
@@ -87,16 +89,23 @@ def random_job(seed: int) -> Table:
         more.append(("load.2.stiffness", ["0.5 N/mm", "2 N/mm"]))
     if random.random() < 0.5:
         job["mechanism"]["gravity"] = "9.81 m/s^2"
-    for place in random.permutation(len(more))[: random.integers(1, 4)]:
+    for place in random.permutation(len(more))[: random.integers(0, 3)]:
         path, values = more[place]
-        if len(set(values)) > 1:
-            variables[path] = {"choices": values}
-    wanted = random.choice(list(_WANTED), int(random.choice([1, 2, 2, 3, 3])), replace=False)
-    job["objectives"] = {str(name): _WANTED[str(name)] for name in wanted if name not in constraints} or {
-        "peak_torque": "minimise"
-    }
-    job["optimiser"] = {"designs": 1000, "seed": int(random.integers(1, 100))}
+        variables[path] = {"choices": values}
+    free = [name for name in _WANTED if "equals" not in constraints.get(name, {})]
+    wanted = random.choice(free, int(random.choice([1, 2, 2, 3, 3])), replace=False)
+    job["objectives"] = {str(name): _WANTED[str(name)] for name in wanted}
     return job
+
+
+def _around(random: np.random.Generator, length: float) -> list[float]:
+    """Return three lengths some percent apart."""
+    step = float(random.uniform(0.02, 0.1))
+    return [round(length * (1.0 + step * place), 1) for place in (-1, 0, 1)]
+
+
+def _stroke(r: float, l: float, e: float) -> float:
+    return math.sqrt((l + r) ** 2 - e * e) - math.sqrt(max((l - r) ** 2 - e * e, 0.0))
 
 
 def brute_force(problem: Problem) -> Array:
