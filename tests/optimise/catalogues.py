@@ -39,12 +39,15 @@ def random_job(*seed: int) -> Table:
     random = np.random.default_rng([12, *seed])
     crank = float(random.uniform(40.0, 75.0))
     rod = crank * float(random.uniform(2.0, 3.2))
-    offset = float(random.uniform(0.2, 0.8)) * (rod - crank)
+    offset = float(random.uniform(0.1, 0.7)) * (rod - crank)
     lists = {name: _around(random, length) for name, length in (("crank", crank), ("rod", rod), ("offset", offset))}
     if random.random() < 0.3:  # either side
         lists["offset"][0] *= -1.0
     variables: Table = {name: {"choices": [f"{x:.1f} mm" for x in lengths]} for name, lengths in lists.items()}
-    stroke = _stroke(*(float(random.choice(lengths)) for lengths in lists.values()))
+    r, l, e = (float(random.choice(lengths)) for lengths in lists.values())
+    stroke = math.sqrt((l + r) ** 2 - e * e) - math.sqrt((l - r) ** 2 - e * e)
+    angle = math.degrees(math.acos((r + abs(e)) / l))
+    excess = math.asin(abs(e) / (l - r)) - math.asin(abs(e) / (l + r))
     constraints: Table = {}
     rule = int(random.integers(0, 7))
     if rule == 0:
@@ -53,11 +56,11 @@ def random_job(*seed: int) -> Table:
         variables["crank"] = ["20 mm", "100 mm"]
     elif rule == 2:
         variables["rod"] = ["60 mm", "300 mm"]
-        constraints["transmission_angle"] = {"equals": f"{random.uniform(25.0, 45.0):.2f} deg"}
+        constraints["transmission_angle"] = {"equals": f"{angle:.2f} deg"}
     elif rule == 3:
-        constraints["time_ratio"] = {"max": round(float(random.uniform(1.1, 1.4)), 3)}
+        constraints["time_ratio"] = {"max": round((math.pi + excess) / (math.pi - excess) + 0.02, 3)}
     elif rule == 4:
-        constraints["transmission_angle"] = {"min": f"{random.uniform(25.0, 45.0):.2f} deg"}
+        constraints["transmission_angle"] = {"min": f"{angle - 0.5:.2f} deg"}
     if rule in (0, 1):
         constraints["stroke"] = {"equals": f"{stroke:.3f} mm"}
     elif rule != 2:
@@ -103,9 +106,6 @@ def _around(random: np.random.Generator, length: float) -> list[float]:
     step = float(random.uniform(0.02, 0.1))
     return [round(length * (1.0 + step * place), 1) for place in (-1, 0, 1)]
 
-
-def _stroke(r: float, l: float, e: float) -> float:
-    return math.sqrt((l + r) ** 2 - e * e) - math.sqrt(max((l - r) ** 2 - e * e, 0.0))
 
 
 def brute_force(problem: Problem) -> Array:
