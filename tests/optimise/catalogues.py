@@ -80,9 +80,9 @@ def random_job(*seed: int) -> Table:
         "optimiser": {"designs": 1000, "seed": int(random.integers(1, 100))},
     }
     more = [
-        ("mechanism.speed", [f"{speed:.0f} rpm" for speed in random.uniform(60.0, 400.0, 2)]),
-        ("mechanism.slider.mass", [f"{mass:.2f} kg" for mass in random.uniform(0.5, 5.0, 2)]),
-        ("load.1.force", [f"{force:.0f} N" for force in random.uniform(20.0, 400.0, 2)]),
+        ("mechanism.speed", [f"{speed:.0f} rpm" for speed in random.uniform([60.0, 240.0], [230.0, 400.0])]),
+        ("mechanism.slider.mass", [f"{mass:.2f} kg" for mass in random.uniform([0.5, 2.5], [2.4, 5.0])]),
+        ("load.1.force", [f"{force:.0f} N" for force in random.uniform([20.0, 200.0], [190.0, 400.0])]),
     ]
     if random.random() < 1.0 / 3.0:
         job["friction"] = {"guide": 0.1}
