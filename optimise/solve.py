@@ -20,6 +20,7 @@ from .identity import identity_of
 from .infeasibility import diagnose
 from .ledger import Cancelled, Ledger, Record
 from .methods.registry import require_eliminated, require_fit, search_of
+from .mirror import once
 from .problem import Problem
 from .search import WIDTHS, Archive, Callback, Run, explore, zoom
 from .so_far import so_far
@@ -51,7 +52,7 @@ def solve(
     require_fit(problem)
     require_gradients(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
+    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
     run = Run(problem, 1, progress, ledger)
     if fronts is not None:
@@ -119,7 +120,7 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float |
 
     run, evaluators: of the search that wants to know it.
     """
-    own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
+    own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in once(problem, sheets(problem))]
     inner = Run(problem, 1, ledger=run.ledger)
     front = _by_default(problem, own, inner)
     run.tell("diagnosing", searched(evaluators), Archive.empty(len(run.problem.objectives)))
