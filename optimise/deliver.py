@@ -90,9 +90,7 @@ def planned(problem: Problem) -> int:
     return -(-_candidates(problem) // BATCH)
 
 
-def _choice(
-    problem: Problem, archive: Archive, rows: NDArray[np.int64], evaluator: Evaluator
-) -> NDArray[np.int64]:
+def _choice(problem: Problem, archive: Archive, rows: NDArray[np.int64], evaluator: Evaluator) -> NDArray[np.int64]:
     """Return those of some rows whose polish is to become the front; a step of the evaluator's ledger."""
     best = rows[np.argmin(archive.values[rows], axis=0)]
     if len(rows) > _POOL:

@@ -107,7 +107,6 @@ def _around(random: np.random.Generator, length: float) -> list[float]:
     return [round(length * (1.0 + step * place), 1) for place in (-1, 0, 1)]
 
 
-
 def brute_force(problem: Problem) -> Array:
     """Return the objectives (n, m) of the front, as minimised, by evaluation of every combination."""
     rows = []
