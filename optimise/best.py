@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from ..model.mechanism import Mechanism
 from ..objectives.closed_form import ClosedFormQuantity
 from ..objectives.registry import QUANTITIES
-from .deliver import deliver
+from .default_search import search_by_default
 from .elimination import sheets
 from .engine.engine import Engine
 from .evaluation import Evaluator
 from .ledger import Ledger
+from .mirror import once
 from .problem import Constraint, Objective, Problem, Sense, Settings, Variant
-from .search import Run, explore
+from .search import Run
 from .stationarity import Array
 
 _SAMPLES = 2048
@@ -33,10 +34,8 @@ def best_of(problem: Problem, ledger: Ledger | None = None, engine: Engine | Non
 
     ledger, engine: of the search that wants to know it.
     """
-    own = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
-    run = Run(problem, 1, ledger=ledger or Ledger())
-    archive = explore(problem, own, run)
-    front = deliver(problem, own, archive, run) if len(archive) else None
+    own = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
+    front = search_by_default(problem, own, Run(problem, 1, ledger=ledger or Ledger()))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -19,6 +19,7 @@ from .stationarity import Array
 _WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
 _POOL = 2000  # designs of the archive that gaps are filled from
 _CLEAR = 1e-6  # of the objectives' range: a domination that is more than rounding
+_GAIN = 1e-3  # of the same: a gain that is worth a loss of `_CLEAR`, for example by another choice for the same lengths
 _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 
 
@@ -37,7 +38,7 @@ def challengers(
     screened = archive.values / pile.span
     beating, uncovered = _against(screened, front)
     # Samples within a band around the constraints prove nothing.
-    rows = np.flatnonzero(beating)[:_POOL] if not archive.band else np.zeros(0, np.int64)
+    rows = np.flatnonzero(beating & archive.met)[:_POOL]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
     starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), poll))
     if wanting > 0:
@@ -62,16 +63,17 @@ def by_sheet(
 def _sample(
     problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, best: NDArray[np.int64], attempt: int
 ) -> None:
-    """Screen points everywhere, and around the polished designs as well as around their images on other sheets."""
+    """Screen points everywhere, and the polished designs, what is around them, and all that on other sheets."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
     for index, evaluator in enumerate(evaluators):
-        if evaluator.dimension:
-            count = share(problem.settings.samples or FIRST, evaluators)
-            archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
-            count = -(-(problem.settings.samples or SAMPLES) // k)
-            parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
-            archive.screen(index, evaluator, around(parents, pile.values[best], count, _WIDTH, random))
+        count = share(problem.settings.samples or FIRST, evaluators)
+        archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
+        count = -(-(problem.settings.samples or SAMPLES) // k)
+        parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
+        near = around(parents, pile.values[best], count, _WIDTH, random)
+        images = parents[pile.sheet[best] != index]
+        archive.screen(index, evaluator, np.concatenate([near, images]))
 
 
 def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -79,9 +81,10 @@ def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[
     kept = np.zeros(len(front) + len(screened), dtype=bool)
     kept[nondominated(np.concatenate([front, screened]))] = True
     beating = np.zeros(len(screened), dtype=bool)
-    for values in front[~kept[: len(front)]]:
+    for values in front:
         apart = screened - values
-        beating |= (apart <= 0.0).all(axis=1) & (apart < -_CLEAR).any(axis=1)
+        worst, gain = apart.max(axis=1), -apart.min(axis=1)
+        beating |= (worst <= 0.0) & (gain > _CLEAR) | (worst <= _CLEAR) & (gain > _GAIN)
     return beating, kept[len(front) :]
 
 

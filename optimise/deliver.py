@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from .assemble import assemble, span_of
 from .challenge import by_sheet, challengers
+from .enumeration import searched
 from .evaluation import Evaluator
 from .front import ParetoFront
-from .hypervolume import choose
+from .hypervolume import choose, nondominated
 from .ledger import integers
 from .pile import Pile
 from .problem import Problem
@@ -28,23 +29,24 @@ _EXTREMES = 6  # for the best value of one objective among several
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
-    """Return the front from the designs of an archive; None if no candidate could be made feasible."""
-    pile = Pile(span_of(problem, archive.values))
+    """Return the front from the settled designs and those of an archive; None if none could be made feasible."""
+    pile, free = _begun(problem, archive, run), searched(evaluators)
     several = len(problem.objectives) > 1
-    rows = _choice(problem, archive, evaluators[0]) if several else _spread(archive, 0, _STARTS)
-    starts = by_sheet(evaluators, archive.sheet, archive.u, rows)
-    if several:
-        starts += _extremes(evaluators, archive, pile.span)
-    run.pile = pile
+    starts = []
+    for rows in archive.groups():
+        some = _choice(problem, archive, rows, evaluators[0]) if several else _spread(archive, rows, 0, _STARTS)
+        starts += by_sheet(evaluators, archive.sheet, archive.u, some)
+        if several:
+            starts += _extremes(evaluators, archive, rows, pile.span)
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 batch = u[begin : begin + BATCH]
                 pile.add(index, evaluators[index], polished(evaluators[index], batch, pile.span))
-                run.tell("polishing", evaluators, archive, pile.values)
-        if attempt == ROUNDS - 1 or not len(pile):
+                run.tell("polishing", free, archive)
+        if attempt == ROUNDS - 1 or not len(pile) or not free:
             break
-        starts = challengers(problem, evaluators, archive, pile, attempt)
+        starts = challengers(problem, free, archive, pile, attempt)
         if not starts:
             break
     if not len(pile):
@@ -57,15 +59,26 @@ def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, ru
 
     None if no design could be moved there. Designs that meet the constraints already are not touched.
     """
-    pile = Pile(span_of(problem, archive.values))
+    pile = _begun(problem, archive, run)
     several = len(problem.objectives) > 1
-    rows = _choice(problem, archive, evaluators[0]) if several else np.arange(min(len(archive), _STARTS))
-    for index, u in by_sheet(evaluators, archive.sheet, archive.u, rows):
-        valid = u[evaluators[index].valid(u)]
-        pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
+    for rows in archive.groups():
+        some = _choice(problem, archive, rows, evaluators[0]) if several else rows[:_STARTS]
+        for index, u in by_sheet(evaluators, archive.sheet, archive.u, some):
+            valid = u[evaluators[index].valid(u)]
+            pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
     if not len(pile):
         return None
     return assemble(problem, evaluators, pile, run)
+
+
+def _begun(problem: Problem, archive: Archive, run: Run) -> Pile:
+    """Return a pile of the settled designs, which those of the archive are to join; the run has it too."""
+    settled = Pile(np.ones(len(problem.objectives))) if run.pile is None else run.pile
+    values = np.concatenate([archive.values, settled.values])
+    if len(problem.objectives) > 1:
+        values = values[nondominated(values)]
+    run.pile = settled.only_settled(span_of(problem, values) if len(values) else settled.span)
+    return run.pile
 
 
 def _candidates(problem: Problem) -> int:
@@ -77,12 +90,11 @@ def planned(problem: Problem) -> int:
     return -(-_candidates(problem) // BATCH)
 
 
-def _choice(problem: Problem, archive: Archive, evaluator: Evaluator) -> NDArray[np.int64]:
-    """Return the rows of the archive whose polish is to become the front; a step of the evaluator's ledger."""
-    best = np.argmin(archive.values, axis=0)
-    rows = np.arange(len(archive))
+def _choice(problem: Problem, archive: Archive, rows: NDArray[np.int64], evaluator: Evaluator) -> NDArray[np.int64]:
+    """Return those of some rows whose polish is to become the front; a step of the evaluator's ledger."""
+    best = rows[np.argmin(archive.values[rows], axis=0)]
     if len(rows) > _POOL:
-        rows = np.unique(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
+        rows = np.unique(np.concatenate([rows[np.linspace(0, len(rows) - 1, _POOL).astype(int)], best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
     values, ledger = archive.values[rows], evaluator.ledger
 
@@ -92,15 +104,17 @@ def _choice(problem: Problem, archive: Archive, evaluator: Evaluator) -> NDArray
     return rows[integers(ledger.step("choice", (values,), compute, evaluator)[0])]
 
 
-def _spread(archive: Archive, column: int, count: int) -> NDArray[np.int64]:
-    """Return the rows of designs that are best in an objective, each apart from the better ones."""
-    return apart(archive.values[:, column], archive.u, archive.sheet, count)
+def _spread(archive: Archive, rows: NDArray[np.int64], column: int, count: int) -> NDArray[np.int64]:
+    """Return those of some rows that are best in an objective, each apart from the better ones."""
+    return rows[apart(archive.values[rows, column], archive.u[rows], archive.sheet[rows], count)]
 
 
-def _extremes(evaluators: list[Evaluator], archive: Archive, span: Array) -> list[tuple[int, Array]]:
-    """Return, for each objective, designs improved in it alone."""
+def _extremes(
+    evaluators: list[Evaluator], archive: Archive, rows: NDArray[np.int64], span: Array
+) -> list[tuple[int, Array]]:
+    """Return, for each objective, the designs of some rows that are best in it, improved in it alone."""
     return [
         (index, polished(evaluators[index], u, span, chosen=(column,)).u)
         for column in range(archive.values.shape[1])
-        for index, u in by_sheet(evaluators, archive.sheet, archive.u, _spread(archive, column, _EXTREMES))
+        for index, u in by_sheet(evaluators, archive.sheet, archive.u, _spread(archive, rows, column, _EXTREMES))
     ]

@@ -98,16 +98,18 @@ class Sheet:
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     """Return the sheets of a problem: one for each sign that its offset may have, in every variant of its choices.
 
+    Those that leave something free come first: the search moves on them; of each other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
     leaves one sign. Raises `InputError` where the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
-    return tuple(
+    found = (
         _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
         for variant, part in enumerate(parts)
         for sign, offset in _signs(part)
     )
+    return tuple(sorted(found, key=lambda sheet: not sheet.free))
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:

@@ -21,6 +21,7 @@ from ..model.errors import InputError
 from .assemble import empty, only
 from .challenge import by_sheet
 from .elimination import UNKNOWNS, sheets
+from .enumeration import enumerate_settled, searched
 from .evaluation import FEASIBLE, Evaluator
 from .front import ParetoFront
 from .gradients import require_gradients
@@ -71,14 +72,15 @@ def like(
     run = Run(asked, 1)
     if contradiction:
         return empty(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
-    archive = explore(asked, evaluators, run)
-    pile = Pile(span)
+    pile = enumerate_settled(asked, evaluators, run).only_settled(span)
+    free = searched(evaluators)
+    archive = explore(asked, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
     for index, u in by_sheet(evaluators, archive.sheet, archive.u, order):
         pile.add(index, evaluators[index], polish(evaluators[index], u, span))
     if not len(pile):
         return _nearest(solve(asked), values, span)
-    _zoom(pile, evaluators, archive, values, asked.settings.seed)
+    _zoom(pile, free, archive, values, asked.settings.seed)
     return only(asked, evaluators, pile, run, int(_ranked(pile, archive, values)[0]))
 
 
@@ -168,8 +170,6 @@ def _zoom(pile: Pile, evaluators: list[Evaluator], archive: Archive, values: Arr
         before = distance(pile.values[parents[:1]], values, pile.span)[0]
         for index, u in by_sheet(evaluators, pile.sheet, pile.u, parents):
             evaluator = evaluators[index]
-            if not evaluator.dimension:
-                continue
             points = np.repeat(u, _CHILDREN, axis=0)
             points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
             points = points[evaluator.valid(points)]
@@ -186,8 +186,8 @@ def _zoom(pile: Pile, evaluators: list[Evaluator], archive: Archive, values: Arr
 def _ranked(pile: Pile, archive: Archive, values: Array) -> NDArray[np.int64]:
     """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
     rows = pile.best()
-    if not archive.band:  # samples within a band around the constraints prove nothing
-        own, screened = pile.values[rows] / pile.span, archive.values / pile.span
+    if archive.met.any():  # samples within a band around the constraints prove nothing
+        own, screened = pile.values[rows] / pile.span, archive.values[archive.met] / pile.span
         beaten = np.array(
             [bool(((screened <= point).all(axis=1) & (screened < point - _BEATEN).any(axis=1)).any()) for point in own]
         )

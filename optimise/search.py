@@ -44,20 +44,22 @@ Callback = Callable[[Progress], None]
 class Archive:
     """Non-dominated designs found so far: sheet index, unit-box point, objectives.
 
-    u: (n, k), padded to as many columns as any sheet has, at least three. band: by how much they may violate
-    constraints, relative. feasible: designs seen that meet every constraint.
+    u: (n, k), padded to as many columns as any sheet has, at least three. met: (n,), which of them meet every
+    constraint; these only each other displaces. band: by how much the others may violate constraints, relative.
+    feasible: designs seen that meet every constraint.
     """
 
     sheet: NDArray[np.int64]
     u: Array
     values: Array
+    met: NDArray[np.bool_]
     band: float = 0.0
     feasible: int = 0
 
     @classmethod
     def empty(cls, objectives: int) -> Archive:
         """Return an archive without designs."""
-        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)))
+        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
 
     def __len__(self) -> int:
         return len(self.u)
@@ -67,20 +69,33 @@ class Archive:
         _, values, violation = evaluator.screen(u, band=self.band)
         good = violation <= self.band + FEASIBLE
         self.feasible += int((violation <= FEASIBLE).sum())
-        self.take(index, u[good], values[good])
+        self.take(index, u[good], values[good], violation[good] <= FEASIBLE)
         return int(good.sum())
 
-    def take(self, index: int, u: Array, values: Array) -> None:
-        """Take in points (n, k) of a sheet that are known to be feasible, with their objectives (n, m) as minimised."""
+    def take(self, index: int, u: Array, values: Array, met: NDArray[np.bool_] | None = None) -> None:
+        """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
+
+        met: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
+        """
         self.sheet = np.concatenate([self.sheet, np.full(len(u), index)])
         self.u = stacked(self.u, u)
         self.values = np.concatenate([self.values, values])
-        alone = self.values.shape[1] == 1
-        self.keep(np.argsort(self.values[:, 0], kind="stable")[:_BEST] if alone else nondominated(self.values))
+        self.met = np.concatenate([self.met, np.ones(len(u), np.bool_) if met is None else met])
+        rows = _best(self.values)
+        if not self.met.all():
+            own = np.flatnonzero(self.met)
+            rows = np.concatenate([own[_best(self.values[own])], rows[~self.met[rows]]])
+        self.sheet, self.u, self.values, self.met = self.sheet[rows], self.u[rows], self.values[rows], self.met[rows]
 
-    def keep(self, rows: NDArray[np.int64]) -> None:
-        """Keep only these rows."""
-        self.sheet, self.u, self.values = self.sheet[rows], self.u[rows], self.values[rows]
+    def groups(self) -> tuple[NDArray[np.int64], ...]:
+        """Return the rows that meet every constraint and those that are to be moved there: choose from each alone."""
+        return tuple(rows for rows in (np.flatnonzero(self.met), np.flatnonzero(~self.met)) if len(rows))
+
+
+def _best(values: Array) -> NDArray[np.int64]:
+    """Return the rows worth keeping: the non-dominated ones, or many of a single objective, best first."""
+    alone = values.shape[1] == 1
+    return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
 
 
 def share(samples: int, evaluators: list[Evaluator]) -> int:
@@ -94,8 +109,9 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 class Run:
     """What a search tells while it runs: its rounds, the fronts that they ended with, and what it would give by now.
 
-    ledger: of its steps, the one that its evaluators have. archive: what it has found. pile: what the polish has made
-    of that.
+    ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
+    archive: what the search has found on the others. pile: the designs of the settled ones, and what the polish has
+    made of the archive.
     """
 
     problem: Problem
@@ -106,22 +122,23 @@ class Run:
     fronts: list[Array] = field(default_factory=list)
     archive: Archive | None = None
     pile: Pile | None = None
+    settled: list[Evaluator] = field(default_factory=list)
 
-    def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive, *more: Array) -> None:
-        """Record the end of a round. more: objectives (n, m) of further designs than those of the archive.
+    def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
+        """Record the end of a round; evaluators: those that the archive's designs are from.
 
         Of the last archive with designs the front is made if the search is told to end.
         """
         self.archive = archive if len(archive) else self.archive
-        values = np.concatenate([archive.values, *more])
+        values = np.concatenate([archive.values, *([] if self.pile is None else [self.pile.values])])
         values = values[nondominated(values)]
         self.fronts.append(values[:: 1 + len(values) // _SHOWN])
         entry = Progress(
             stage,
             len(self.told) + 1,
             max(self.rounds, len(self.told) + 1),
-            sum(evaluator.evaluations for evaluator in evaluators),
-            archive.feasible,
+            sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
+            archive.feasible + (0 if self.pile is None else self.pile.settled),
             hypervolume(self.fronts[-1], *scaling(values)) if len(values) else 0.0,
             self.ledger.seconds,
         )
@@ -175,7 +192,7 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
         parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
         for index, evaluator in enumerate(evaluators):
             own = of == index
-            if own.any() and evaluator.dimension:
+            if own.any():
                 count = max(1, int(samples * own.mean()))
                 points = around(parents[own][:, : evaluator.dimension], values[own], count, WIDTHS[step], random)
                 archive.screen(index, evaluator, points)

@@ -31,8 +31,8 @@ def so_far(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFro
     """
     run.ledger.close()
     pile, archive = run.pile, run.archive
-    if (pile is None or not len(pile)) and archive is not None:
-        pile = _as_found(problem, evaluators, archive)
+    if archive is not None and len(archive) and (pile is None or not pile.free.any()):
+        pile = _as_found(problem, evaluators, archive, pile)
     if pile is None or not len(pile):
         return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     pile = pile.part(_spread(pile.values, _MOST))
@@ -41,11 +41,12 @@ def so_far(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFro
     return assemble(problem, evaluators, pile, run, _soon(problem, evaluators, pile, rows))
 
 
-def _as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> Pile | None:
-    if not len(archive):
-        return None
-    pile = Pile(span_of(problem, archive.values))
-    rows = _spread(archive.values, problem.settings.designs)
+def _as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, settled: Pile | None) -> Pile:
+    """Return a pile of the settled designs and of those of an archive, moved onto the constraints."""
+    settled = settled or Pile(np.ones(archive.values.shape[1]))
+    pile = settled.only_settled(span_of(problem, np.concatenate([archive.values, settled.values])))
+    # What needs no move comes first.
+    rows = np.concatenate([some[_spread(archive.values[some], problem.settings.designs)] for some in archive.groups()])
     end = time.perf_counter() + _PROJECTING
     # Each batch is spread over the whole front.
     batches = -(-len(rows) // _BATCH)

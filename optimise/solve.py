@@ -10,9 +10,11 @@ import numpy as np
 from .assemble import empty
 from .best import Best, best_of
 from .certificate.infeasible import prove_infeasible
-from .deliver import as_found, deliver, planned
+from .default_search import search_by_default
+from .deliver import as_found, deliver
 from .elimination import Sheet, sheets
 from .engine.engine import Engine
+from .enumeration import enumerate_settled, searched
 from .evaluation import Evaluator
 from .front import ParetoFront, Progress
 from .gradients import require_gradients, without_gradient
@@ -20,8 +22,9 @@ from .identity import identity_of
 from .infeasibility import diagnose
 from .ledger import Cancelled, Ledger, Record
 from .methods.registry import require_eliminated, require_fit, search_of
+from .mirror import once
 from .problem import Problem
-from .search import WIDTHS, Archive, Callback, Run, explore, zoom
+from .search import Archive, Callback, Run, zoom
 from .so_far import so_far
 from .stationarity import Array
 from .zero_objectives import require_ranking
@@ -53,8 +56,8 @@ def solve(
     require_gradients(problem)
     require_ranking(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
-    require_eliminated(problem, evaluators)
+    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
+    require_eliminated(problem, searched(evaluators))
     run = Run(problem, 1, progress, ledger)
     if fronts is not None:
 
@@ -71,25 +74,24 @@ def solve(
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    method, finish = problem.settings.method, as_found
-    if method == "auto":
-        run.rounds, finish = 1 + len(WIDTHS) + planned(problem), deliver
-        archive = explore(problem, evaluators, run)
+    method, free = problem.settings.method, searched(evaluators)
+    if method == "auto" or not free:
+        front = search_by_default(problem, evaluators, run)
     else:
-        archive = search_of(method)(problem, evaluators, run)
-    front = finish(problem, evaluators, archive, run) if len(archive) else None
+        enumerate_settled(problem, evaluators, run)
+        front = as_found(problem, evaluators, search_of(method)(problem, free, run), run)
     if front is not None:
         return front
     if without_gradient(problem):
         return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method))
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
-    if len(diagnosis.feasible) and method != "auto":
+    if len(diagnosis.feasible) and method != "auto" and free:
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
-    if len(diagnosis.feasible):
+    if len(diagnosis.feasible) and free:
         archive = run.archive = Archive.empty(len(problem.objectives))
-        _seed(archive, evaluators, diagnosis.feasible)
-        zoom(problem, evaluators, archive, run)
-        front = deliver(problem, evaluators, archive, run) if len(archive) else None
+        _seed(archive, free, diagnosis.feasible)
+        zoom(problem, free, archive, run)
+        front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
     message = diagnosis.message or _THIN
@@ -117,7 +119,7 @@ _MISSED = (
 def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
     """Return the best of a problem's only objective for the search that wants to know it."""
     found = best_of(problem, run.ledger, evaluators[0].engine)
-    run.tell("diagnosing", evaluators, Archive.empty(len(run.problem.objectives)))
+    run.tell("diagnosing", searched(evaluators), Archive.empty(len(run.problem.objectives)))
     return found
 
 

@@ -47,7 +47,7 @@ class _Climbs:
     def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
         self.seed = problem.settings.seed
         self.dimension = max(evaluator.dimension for evaluator in evaluators)
-        default = 4 + math.floor(3.0 * math.log(max(1, self.dimension)))
+        default = 4 + math.floor(3.0 * math.log(self.dimension))
         self.size = max(4, min(problem.settings.samples or default, budget(problem)))
         self.dimensions = [evaluator.dimension for evaluator in evaluators]
         self.climbs: list[_Climb] = []

@@ -84,11 +84,7 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
     archive, seen = Archive.empty(1), Archive.empty(1)
     run.archive = seen
     for index, evaluator in enumerate(evaluators):
-        archive.screen(
-            index, evaluator, np.zeros((1, 0)) if evaluator.dimension == 0 else np.zeros((0, evaluator.dimension))
-        )
-        if evaluator.dimension:
-            _evolve(problem, evaluators, index, archive, seen, run)
+        _evolve(problem, evaluators, index, archive, seen, run)
     run.tell("evolving", evaluators, archive)
     return archive
 
@@ -149,12 +145,9 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     run.archive = seen
     run.rounds = 1 + len(evaluators)
     for index, evaluator in enumerate(evaluators):
-        if evaluator.dimension == 0:
-            archive.screen(index, evaluator, np.zeros((1, 0)))
-        else:
-            for u, values in _basins(problem, evaluators, index, seen):
-                archive.take(index, u[None], values[None])
-                archive.feasible += 1
+        for u, values in _basins(problem, evaluators, index, seen):
+            archive.take(index, u[None], values[None])
+            archive.feasible += 1
         run.tell("descending", evaluators, archive)
     return archive
 

@@ -43,14 +43,12 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     past: list[Generation] = []
     count = 0
     while True:
-        brood = _bred(run, evaluators[0], breed, past) if seen.dimension else _only(len(evaluators))
+        brood = _bred(run, evaluators[0], breed, past)
         if count + len(brood) > allowed and past:
             break
         past.append(seen.evaluate(brood))
         count += len(brood)
         run.tell("evolving", evaluators, seen.archive)
-        if not seen.dimension:
-            break
     return seen.archive
 
 
@@ -69,10 +67,7 @@ class _Seen:
 
     def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
         self.evaluators = evaluators
-        self.dimension = max(evaluator.dimension for evaluator in evaluators)
-        self.objectives = len(problem.objectives)
-        self.archive = Archive.empty(self.objectives)
-        self.archive.band = self.band = BAND if any(evaluator.loose for evaluator in evaluators) else 0.0
+        self.archive = Archive.empty(len(problem.objectives))
         self.known: dict[tuple[int, bytes], tuple[Array, float]] = {}
 
     def evaluate(self, brood: Brood) -> Generation:
@@ -83,7 +78,7 @@ class _Seen:
             own = [(key, row) for key, row in fresh.items() if key[0] == index]
             if own:
                 u = brood.u[[row for _, row in own], : evaluator.dimension]
-                values, violation = screened(evaluator, u, self.band)
+                values, violation = screened(evaluator, u, BAND if evaluator.loose else 0.0)
                 self.known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
                 self._archive(index, u, values, violation)
         return Generation(
@@ -103,9 +98,10 @@ class _Seen:
 
     def _archive(self, index: int, u: Array, values: Array, violation: Array) -> None:
         good = violation <= FEASIBLE
-        self.archive.feasible += 0 if self.band else int(good.sum())
+        met = np.full(int(good.sum()), not self.evaluators[index].loose)
+        self.archive.feasible += int(met.sum())
         if good.any():
-            self.archive.take(index, u[good], values[good])
+            self.archive.take(index, u[good], values[good], met)
 
 
 def screened(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
@@ -118,8 +114,3 @@ def screened(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, 
     undefined = (violation <= FEASIBLE) & ~np.isfinite(values).all(axis=1) | np.isnan(violation)
     violation = np.where(undefined, np.inf, violation)
     return np.where((violation <= FEASIBLE)[:, None], values, np.nan), violation
-
-
-def _only(sheets: int) -> Brood:
-    """Return the only point that each sheet has where nothing is free."""
-    return Brood(np.arange(sheets), np.zeros((sheets, 0)), np.zeros(0, np.int64))

@@ -79,7 +79,11 @@ class Programme:
         self._valid = True
 
     def begin(self, u: Array) -> Array:
-        """Return z at a point u (k,) where the evaluator is valid, s and t as low as they can be."""
+        """Return z at a point u (k,) where the evaluator is valid, s and t as low as they can be.
+
+        A piece that an equality holds is the highest one here; another one may be highest after a run of the solver.
+        """
+        self._u = None
         self._go(u)
         s = np.minimum(greatest(self._goals, self.m), self.form.ceilings)
         used = self.form.weights > 0.0
@@ -101,7 +105,7 @@ class Programme:
         self._go(z[: self.k])
         goals = self._goals.values - z[self.k + self._goals.owner]
         goals[~np.isfinite(self._goals.values)] = _ABSENT
-        limits = self._limits.values[~self._equal]
+        limits = self._limits.values[self._unequal]
         limits = np.where(np.isfinite(limits), limits, _ABSENT)
         if not self._valid:
             goals, limits = goals + _OUT, limits + _OUT
@@ -114,18 +118,23 @@ class Programme:
         goals[:, : self.k] = self._goals.gradients
         goals[np.arange(len(goals)), self.k + self._goals.owner] = -1.0
         goals[~np.isfinite(self._goals.values)] = 0.0
-        limits = np.where(np.isfinite(self._limits.values)[:, None], self._limits.gradients, 0.0)[~self._equal]
+        limits = np.where(np.isfinite(self._limits.values)[:, None], self._limits.gradients, 0.0)[self._unequal]
         return np.concatenate([goals, np.pad(limits, ((0, 0), (0, self.m + 1))), self._fixed])
 
     def equalities(self, z: Array) -> Array:
         """Return the rows h(z) = 0 of equalities that are left."""
         self._go(z[: self.k])
-        return self._limits.values[self._equal] + (0.0 if self._valid else _OUT)
+        return self._limits.values[self._held()] + (0.0 if self._valid else _OUT)
 
     def equal_slopes(self, z: Array) -> Array:
         """Return the derivatives of the equalities."""
         self._go(z[: self.k])
-        return np.pad(self._limits.gradients[self._equal], ((0, 0), (0, self.m + 1)))
+        return np.pad(self._limits.gradients[self._held()], ((0, 0), (0, self.m + 1)))
+
+    def _held(self) -> NDArray[np.int64]:
+        """Return the rows that are to vanish; for a piece that this design does not have the row of the highest."""
+        own, instead = self._equal.T
+        return np.where(np.isfinite(self._limits.values[own]), own, instead)
 
     def _go(self, u: Array) -> None:
         if self._u is not None and np.array_equal(u, self._u):
@@ -146,6 +155,7 @@ class Programme:
         )
         if first:
             self._equal = _equal_rows(self.evaluator, limits)
+            self._unequal = np.setdiff1d(np.arange(len(limits.owner)), self._equal)
             self._groups = _groups(self.evaluator, goals, limits)
         else:
             goals = _placed(goals, self._goals, self._groups[0])
@@ -153,16 +163,22 @@ class Programme:
         self._goals, self._limits = goals, limits
 
 
-def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.bool_]:
-    """Return which constraint rows are to vanish: of an equality the one that holds it from below, its highest peak.
+def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.int64]:
+    """Return the constraint rows (e, 2) of each equality that are to vanish: its highest piece, and the opposite row.
 
-    The rows that hold it from above say the same; one of two opposite inequalities has no interior.
+    Every piece has a row on one side, the highest alone one on the other side; both say the same of it, and a solver
+    given both has dependent constraints, at which it ends early. The rows of the other pieces stay inequalities.
     """
-    equal = np.zeros(len(limits.owner), dtype=bool)
+    found = []
     for owner, constraint in enumerate(evaluator.constraints):
         if constraint.equality:
-            equal[np.flatnonzero(limits.owner == owner)[-1]] = True
-    return equal
+            rows = np.flatnonzero(limits.owner == owner)
+            # The last row is the single one, or of the least of pieces the first.
+            pieces, single = (rows[:-1], rows[-1])
+            if limits.values[pieces].max() != -limits.values[single]:
+                pieces, single = rows[1:], rows[0]
+            found.append((pieces[np.argmax(limits.values[pieces])], single))
+    return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
 def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArray[np.int64]], ...]:

@@ -44,8 +44,14 @@ class Samples:
         return found
 
     def best(self, column: int, count: int) -> NDArray[np.int64]:
-        """Return at most `count` rows, the best in an objective first, each apart from the better ones."""
-        return apart(self.values[:, column], self.u, self.sheet, count)
+        """Return at most `count` rows, the best in an objective first, each apart from the better ones.
+
+        And as many of those that do not meet all constraints: none of these takes the place of one that does.
+        """
+        groups = [np.flatnonzero(self.feasible), np.flatnonzero(~self.feasible)]
+        return np.concatenate(
+            [rows[apart(self.values[rows, column], self.u[rows], self.sheet[rows], count)] for rows in groups]
+        )
 
 
 def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
@@ -54,7 +60,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
     Solvers remove the violation. Equalities that are left are met by no sample.
     """
     loose = any(evaluator.loose for evaluator in evaluators)
-    widest = max(1, max(evaluator.dimension for evaluator in evaluators))
+    widest = max(evaluator.dimension for evaluator in evaluators)
     for attempt, band in enumerate(BANDS[1:] if loose else BANDS):
         parts = []
         for index, evaluator in enumerate(evaluators):
@@ -66,6 +72,6 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Samples:
             padded[:, : u.shape[1]] = u[good]
             parts.append((np.full(len(padded), index), padded, values[good], violation[good] <= FEASIBLE))
         found = Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
-        if len(found) >= _ENOUGH or not any(evaluator.dimension for evaluator in evaluators):
+        if len(found) >= _ENOUGH:
             break
     return found

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.elimination import sheets
+from slidercrank.optimise.evaluation import Evaluator
 from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.methods.local import by_slsqp
+from slidercrank.optimise.methods.scalar import Form, Programme
+from slidercrank.optimise.methods.starts import samples
 from slidercrank.optimise.problem import Problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import excess, value
@@ -70,12 +75,26 @@ def test_the_longest_rod_without_offset_transmits_best(method: str) -> None:
     assert math.cos(-front.values[0, 0]) == pytest.approx(0.14 / 0.6, rel=1e-7)
 
 
-def test_an_equality_that_no_rule_eliminates_is_met() -> None:
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5])
+def test_an_equality_that_no_rule_eliminates_is_met(seed: int) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
-    front, expected = solve(asking(given, "slsqp")), solve(given)
+    front, expected = solve(asking(given, "slsqp", seed=seed)), solve(given)
     speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
     assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
-    assert front.values[0, 0] == pytest.approx(expected.values[0, 0], rel=1e-6)
+    assert front.values[0, 0] == pytest.approx(expected.values[0, 0], rel=1e-8)
+
+
+def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
+    """Not the best of many starts by luck: every one of a dozen ends where the default does."""
+    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
+    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
+    begun = samples(given, evaluators)
+    best = solve(given).values[0, 0]
+    for row in begun.best(0, 12):
+        programme = Programme(evaluators[0], Form.single(1, 0), np.zeros(1), np.ones(1))
+        found = by_slsqp(programme, begun.u[row])
+        assert found is not None
+        assert programme.objectives(found) == pytest.approx(best, rel=1e-8)
 
 
 @pytest.mark.parametrize("method", ["slsqp", "differential_evolution"])
