@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 .PHONY: run test lint benchmark pictures requests faults clean
 .DELETE_ON_ERROR:
 
-run: $(VENV)/.installed $(VENV)/.kernels
+run: $(VENV)/.installed
 	$(BIN)/slidercrank optimise runs/feeder.toml
 
 # At most 8 workers: each one loads its own numba.
@@ -19,7 +19,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-benchmark: $(VENV)/.installed-benchmark $(VENV)/.kernels
+benchmark: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks
 
 # The pictures of README and docs, on a quiet machine: their times are seen.
@@ -27,11 +27,11 @@ pictures: $(VENV)/.installed-benchmark $(VENV)/.kernels
 	$(BIN)/python -m benchmarks.pictures
 
 # Requests made from the description of the API: about twenty minutes.
-requests: $(VENV)/.installed-test $(VENV)/.kernels
+requests: $(VENV)/.installed-test
 	$(BIN)/python -m tests.service.api.schema_cases 10000 1
 
 # Kills, pauses, crashes of databases, full disks: about half an hour.
-faults: $(VENV)/.installed-test $(VENV)/.kernels
+faults: $(VENV)/.installed-test
 	$(BIN)/python -m faults
 
 clean:
@@ -60,8 +60,3 @@ $(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
 
 $(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test,benchmark])
-
-# numba renews a compiled kernel when its own file changes, not when a formula that it calls does.
-$(VENV)/.kernels: $(VENV)/.created $(shell find model optimise/certificate -name '*.py')
-	@find model optimise/certificate -name '*.nb[ic]' -delete
-	@touch $@

@@ -20,6 +20,9 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload, register_jitable
 
+from .kernel_cache import KernelCache
+from .kernel_folder import kernel_folder
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 STEP = 1e-30
@@ -42,8 +45,12 @@ def inlined(function: Function) -> Function:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function that Python calls; the machine code is kept on disk."""
-    return cast(Function, njit(nogil=True, cache=True, **(_OPTIONS | {"forceinline": False}))(function))
+    """Compile a function that Python calls; the machine code is kept on disk, where there is a place for it."""
+    compiled = njit(nogil=True, **(_OPTIONS | {"forceinline": False}))(function)
+    folder = kernel_folder()
+    if folder is not None:
+        compiled._cache = KernelCache(function, folder)
+    return cast(Function, compiled)
 
 
 def inverse(z: Any) -> Any:

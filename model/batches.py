@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from os import cpu_count
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,24 @@ def turning(designs: ArrayLike) -> NDArray[np.float64]:
 @lru_cache(maxsize=1)
 def threads() -> ThreadPoolExecutor:
     """Return the pool that kernels (which release the interpreter lock) share."""
-    return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank")
+    return ThreadPoolExecutor(max_workers=os.cpu_count() or 1, thread_name_prefix="slidercrank")
+
+
+_handing_out = Lock()  # held while chunks are handed to the pool, and while this process forks
+
+
+def _end_threads() -> None:
+    """End the pool once its chunks are done: a fork copies the pool but none of its threads."""
+    _handing_out.acquire()
+    if threads.cache_info().currsize:
+        threads().shutdown()
+        threads.cache_clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(
+        before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release
+    )
 
 
 def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -> None:
@@ -47,5 +65,7 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -
             work(0, count)
         return
     bounds = range(0, count, size)
-    for _ in threads().map(lambda begin: work(begin, min(begin + size, count)), bounds):
+    with _handing_out:
+        done = threads().map(lambda begin: work(begin, min(begin + size, count)), bounds)
+    for _ in done:
         pass

@@ -77,6 +77,7 @@ micro- = 1e-6 = µ- = μ- = u-
 milli- = 1e-3 = m-
 centi- = 1e-2 = c-
 deci- = 1e-1 = d-
+deca- = 1e1 = da-
 kilo- = 1e3 = k-
 mega- = 1e6 = M-
 giga- = 1e9 = G-
@@ -90,22 +91,32 @@ minute = 60 * second = min
 hour = 3600 * second = h
 inch = 0.0254 * metre = in = inches
 foot = 0.3048 * metre = ft = feet
-thou = 0.0000254 * metre
-pound = 0.45359237 * kilogram = lb
+thou = 0.0000254 * metre = mil
+pound = 0.45359237 * kilogram = lb = lbm
+ounce = pound / 16 = oz
 degree = 3.14159265358979323846264338327950288 / 180 * radian = deg = degrees
 arcminute = degree / 60 = arcmin
 arcsecond = degree / 3600 = arcsec
 gradian = 3.14159265358979323846264338327950288 / 200 * radian = gon
 turn = 6.28318530717958647692528676655900577 * radian = rev = revolution
-rpm = turn / minute
+rpm = turn / minute = RPM
 rps = turn / second
 newton = kilogram * metre / second ** 2 = N
 newton_metre = newton * metre = Nm
+newton_centimetre = 0.01 * newton * metre = Ncm
+newton_millimetre = 0.001 * newton * metre = Nmm
 newton_second = newton * second = Ns
 watt = newton * metre / second = W
 pascal = newton / metre ** 2 = Pa
+bar = 1e5 * pascal
 pound_force = 4.4482216152605 * newton = lbf
-kilogram_force = 9.80665 * newton = kgf
+ounce_force = pound_force / 16 = ozf
+kip = 1000 * pound_force
+psi = pound_force / inch ** 2
+ksi = 1000 * psi
+slug = pound_force * second ** 2 / foot
+horsepower = 550 * foot * pound_force / second = hp
+kilogram_force = 9.80665 * newton = kgf = kp
 """
 
 _BASES = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[angle]": "rad"}
@@ -143,7 +154,8 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 PATTERN = rf"^\s*{_NUMBER}\s*[^\d\s.+-].*$"
 """What a value with a unit looks like, for a JSON Schema."""
 _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*))?\s*", re.ASCII | re.DOTALL)
-_FACTOR = re.compile(r"\s*([*/·⋅]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
+_FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
+_WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
 _LONGEST = 60
 _SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
@@ -262,6 +274,9 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     if dimension != _unit(kind.unit)[1]:
         others = [other.name for other in (*KINDS, *_OTHERS) if _unit(other.unit)[1] == dimension]
         which = f", which is {others[0]}" if others else ""
+        force = _WEIGHT.sub(r"\1f", unit)
+        if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
+            write = f'the force of a weight has the unit lbf, ozf or kgf: write "{match[1]} {force}"'
         raise InputError(f"{rule}; got {shown(text)}{which}; {write}")
     return number * factor
 
@@ -270,7 +285,7 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 def _unit(text: str) -> tuple[Fraction, frozenset[tuple[str, int]]]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
-    Names are separated by spaces or signs of multiplication; one division sign, before the last name: a product after
+    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a product after
     it ("N/m s") reads either way and is refused.
     """
     rest, factor, dimension = text.rstrip(), Fraction(1), dict[str, int]()

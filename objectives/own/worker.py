@@ -38,6 +38,8 @@ class Worker:
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         """Return the function's answer for designs (n, 3); see `apply`."""
         with self._lock:
+            if self._process is not None and self._owner != os.getpid():
+                self._forget()
             if self._process is None:
                 self._start()
             machine = None if mechanism is self._mechanism else mechanism
@@ -55,10 +57,17 @@ class Worker:
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
         command = [sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()"]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._process, self._owner = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE), os.getpid()
         self._end = weakref.finalize(self, _end, self._process, self._log)
         self._send((self._log, self.limit, self.function, self.folders))
         self._answer(_START + self.limit)
+
+    def _forget(self) -> None:
+        """Leave the process to the one that started it, of which this one is a fork."""
+        assert self._process is not None
+        self._end.detach()
+        self._process.returncode = 0  # not a child of this process: nothing to wait for
+        self._process = self._mechanism = None
 
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None

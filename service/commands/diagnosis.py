@@ -153,18 +153,15 @@ def _room(name: str, folder: Path) -> Check:
 
 
 def _compiled() -> Check:
-    """Look at where the compiled model is kept: without a place for it every worker would compile anew for minutes."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    from ... import model
+    """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
+    from ...model.kernel_folder import choose_folder
 
-    beside = Path(model.__path__[0]) / "__pycache__"
-    folders = [Path(given)] if given else [beside, Path.home() / ".cache"]
-    found = [_writable("compiled model", folder) for folder in folders]
-    fine = next((check for check in found if check.grade == "ok"), None)
-    if fine is not None:
-        return fine
-    text = f"{found[0].text}; or name a folder in NUMBA_CACHE_DIR"
-    return Check(name="compiled model", grade="problem", text=text)
+    folder, _, refused = choose_folder()
+    if not refused:
+        return Check(name="compiled model", grade="ok", text=f"{folder} can be written")
+    grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
+    text = f"{refused}; it is {f'kept in {folder}' if folder else 'compiled anew at every start'}"
+    return Check(name="compiled model", grade=grade, text=f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 
 def _versions() -> Check:

@@ -1,0 +1,101 @@
+"""Where compiled kernels are kept: which places are taken, which are refused, and that none is stale."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model import kernel_folder
+from slidercrank.model.kernel_folder import choose_folder
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return a home of its own, with sources and a folder for temporary files of their own."""
+    for name in ("home", "temporary", "sources"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "sources/formula.py").write_text("1.0")
+    monkeypatch.setattr(kernel_folder, "_SOURCES", tmp_path / "sources")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    return tmp_path / "home"
+
+
+def cannot_be_written(place: Path) -> None:
+    """Put a file where the folder would have to be: that stops root too."""
+    place.write_text("")
+
+
+def test_kernels_are_kept_with_the_caches_of_the_user(home: Path) -> None:
+    found = choose_folder()
+    assert found.folder is not None
+    assert (found.folder.parent, found.new, found.refused) == (home / "slidercrank", True, "")
+    assert choose_folder() == (found.folder, False, "")
+
+
+def test_a_folder_that_is_asked_for_comes_first(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "asked"))
+    found = choose_folder()
+    assert found.folder is not None
+    assert found.folder.parent == tmp_path / "asked/slidercrank"
+    assert list(home.iterdir()) == []
+
+
+def test_without_a_home_that_can_be_written_they_are_private_temporary_files(home: Path, tmp_path: Path) -> None:
+    cannot_be_written(home / "slidercrank")
+    found = choose_folder()
+    assert found.folder is not None
+    assert found.folder.parent == tmp_path / f"temporary/slidercrank-{os.getuid()}"
+    assert found.folder.parent.stat().st_mode & 0o777 == 0o700
+    assert str(home / "slidercrank") in found.refused
+
+
+@pytest.mark.parametrize("kind", ["open to others", "a link", "of someone else"])
+def test_machine_code_of_strangers_is_not_run(
+    kind: str, home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cannot_be_written(home / "slidercrank")
+    place = tmp_path / f"temporary/slidercrank-{os.getuid()}"
+    if kind == "a link":
+        (tmp_path / "elsewhere").mkdir(mode=0o700)
+        place.symlink_to(tmp_path / "elsewhere")
+    else:
+        place.mkdir(mode=0o700)
+        if kind == "open to others":
+            place.chmod(0o777)
+        else:
+            stranger = os.getuid() + 1
+            monkeypatch.setattr(os, "getuid", lambda: stranger)
+            place.rename(place.with_name(f"slidercrank-{stranger}"))
+    found = choose_folder()
+    assert found.folder is None
+    assert "is not a folder that this user alone can write" in found.refused
+
+
+def test_a_user_without_a_home_keeps_nothing_in_the_current_folder(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    monkeypatch.chdir(home)
+    found = choose_folder()
+    assert found.folder is not None
+    assert found.folder.parent.parent == tmp_path / "temporary"
+    assert list(home.iterdir()) == []
+
+
+def test_every_change_of_a_formula_has_kernels_of_its_own_and_few_old_ones_stay(home: Path, tmp_path: Path) -> None:
+    found = []
+    for value in "12345":
+        (tmp_path / "sources/formula.py").write_text(value)
+        found.append(choose_folder().folder)
+        os.utime(str(found[-1]), (int(value), int(value)))
+    assert len(set(found)) == 5
+    kept = set((home / "slidercrank").iterdir())
+    assert set(found[-3:]) == kept
+    (tmp_path / "sources/formula.py").write_text("4")
+    assert choose_folder() == (found[3], False, "")

@@ -1,0 +1,76 @@
+"""An installed copy of the software: where it may not write, and what it leaves behind."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.packaging.test_layout import ORDER
+
+USE = """
+import numpy as np
+from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
+import slidercrank
+stroke = evaluate_closed_form(ClosedForm.STROKE, np.array([[0.1, 0.3, 0.0]]))[0]
+print(slidercrank.__file__, round(float(stroke[0]), 12))
+"""
+
+
+@pytest.fixture
+def copy(tmp_path: Path, pytestconfig: pytest.Config) -> Path:
+    """Return a copy as pip would install it."""
+    root, package = pytestconfig.rootpath, tmp_path / "site/slidercrank"
+    only = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(root / ".package/slidercrank", package, ignore=only)
+    for folder in ORDER:
+        shutil.copytree(root / folder, package / folder, ignore=only)
+    return package
+
+
+def used(package: Path, code: str = USE, *, before: tuple[str, ...] = (), **environment: str) -> tuple[str, str]:
+    """Return standard output and standard error of a process that uses the copy."""
+    known = {name: value for name, value in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
+    home = package.parent.parent / "home"
+    done = subprocess.run(
+        [*before, sys.executable, "-c", code],
+        env=known | {"PYTHONPATH": str(package.parent), "HOME": str(home)} | environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout, done.stderr
+
+
+def test_nothing_is_kept_beside_the_sources_that_an_uninstallation_would_leave(copy: Path) -> None:
+    assert used(copy) == (f"{copy / '__init__.py'} 0.2\n", "")
+    assert {file.suffix for file in copy.rglob("__pycache__/*")} <= {".pyc"}
+
+
+def test_a_damaged_kernel_is_compiled_anew(copy: Path) -> None:
+    expected = used(copy)
+    kernels = list((copy.parent.parent / "home").rglob("*.nbc"))
+    assert kernels
+    for file in kernels:
+        file.write_bytes(file.read_bytes()[:100])
+    assert used(copy) == expected
+    assert {file.stat().st_size for file in (copy.parent.parent / "home").rglob("*.nb[ic]")}.isdisjoint({100})
+
+
+def test_a_copy_that_cannot_be_written_in_a_home_that_cannot_says_so_once(copy: Path, tmp_path: Path) -> None:
+    home, temporary = tmp_path / "home", tmp_path / "temporary"
+    for folder in (home, temporary):
+        folder.mkdir()
+    for folder in (home, copy, *(found for found in copy.rglob("*") if found.is_dir())):
+        folder.chmod(0o555)
+    # Root may write everywhere unless it gives that up.
+    before = ("setpriv", "--inh-caps=-all", "--bounding-set=-all") if os.getuid() == 0 else ()
+    printed, said = used(copy, before=before, TMPDIR=str(temporary))
+    assert printed == f"{copy / '__init__.py'} 0.2\n"
+    assert said.startswith(f"slidercrank keeps compiled kernels in {temporary}/slidercrank-{os.getuid()}: {home}")
+    assert said.endswith("name a folder that can be written in NUMBA_CACHE_DIR\n")
+    assert used(copy, before=before, TMPDIR=str(temporary)) == (printed, "")
