@@ -53,7 +53,8 @@ def screen(figure: Figure, scale: float) -> Image:
     figure.set_dpi(_FINER * DOTS * scale)
     figure.canvas.draw()
     dots: Image = np.asarray(figure.canvas.buffer_rgba(), dtype=np.float64)  # type: ignore[attr-defined]
-    return dots[:, :, :3] / 255.0
+    colours: Image = dots[:, :, :3] / 255.0
+    return colours
 
 
 def ink(picture: Image, block: int) -> Image:
