@@ -52,16 +52,15 @@ def screen(figure: Figure, scale: float) -> Image:
     """Return a figure as matplotlib draws it on a screen, (h, w, 3), in dots a third as large as those of the paper."""
     figure.set_dpi(_FINER * DOTS * scale)
     figure.canvas.draw()
-    dots: Image = np.asarray(figure.canvas.buffer_rgba(), dtype=np.float64)  # type: ignore[attr-defined]
-    colours: Image = dots[:, :, :3] / 255.0
-    return colours
+    dots: Image = np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0  # type: ignore[attr-defined]
+    return dots
 
 
 def ink(picture: Image, block: int) -> Image:
     """Return the share of ink in square blocks of a picture, `block` dots wide."""
     rows, columns = (size // block * block for size in picture.shape[:2])
     grey = 1.0 - picture[:rows, :columns].mean(axis=2)
-    return grey.reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
+    return np.asarray(grey.reshape(rows // block, block, columns // block, block).mean(axis=(1, 3)))
 
 
 def around(blocks: Image) -> Image:
