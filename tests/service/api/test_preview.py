@@ -94,7 +94,10 @@ def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: 
     assert wrong["path"] == "constraints.time_ratio"
     assert "it is at most 1.28521" in wrong["sentence"]
     assert found["understood"] is None
-    assert any("time ratio at least 2 is asked, at most 1.28521 can be had" in sentence for sentence in found["allowed"]["said"])
+    assert any(
+        "time ratio at least 2 is asked, at most 1.28521 can be had" in sentence
+        for sentence in found["allowed"]["said"]
+    )
 
 
 def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:

@@ -135,7 +135,7 @@ def test_trade_offs_are_known_at_every_design(client: httpx.Client, solved: Solv
     for number in range(1, len(solved.result.designs) + 1):
         given = client.get(f"{solved.path}/designs/{number}/trade-offs").json()
         assert given["note"] == "", number
-        assert all("costs" in sentence for sentence in given["trade_offs"])
+        assert all("costs" in said or said.startswith("no design of the front") for said in given["trade_offs"])
 
 
 @pytest.mark.parametrize("moved", ["crank", "rod", "offset"])
