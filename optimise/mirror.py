@@ -68,7 +68,7 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
     if not len(designs):
         return True
     mirrored = designs * np.where(np.arange(designs.shape[1]) == 2, -1.0, 1.0)
-    names = {item.quantity for item in (*part.objectives, *constraints_of(part))}
+    names = {item.quantity for item in part.objectives} | {item.quantity for item in constraints_of(part)}
     return any(
         not np.allclose(
             part.quantity(name).evaluate(part.mechanism, designs).values,

@@ -17,7 +17,7 @@ from .stationarity import Array
 STATIONARY = 1e-6
 """Residual, objectives scaled by their range, below which a design counts as stationary."""
 EQUAL = 1e-9
-"""Of the objectives' range: what is as good as another design to this everywhere, and better somewhere, displaces it."""
+"""Of the objectives' range: a design as good as another one to this everywhere, and better somewhere, displaces it."""
 SAME = 1e-7
 """The same for designs that the polish has moved: it ends some of this away from where it would go."""
 COVERED = 1e-3

@@ -83,7 +83,7 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
     """
     archive, seen = Archive.empty(1), Archive.empty(1)
     run.archive = seen
-    for index, evaluator in enumerate(evaluators):
+    for index in range(len(evaluators)):
         _evolve(problem, evaluators, index, archive, seen, run)
     run.tell("evolving", evaluators, archive)
     return archive
@@ -144,7 +144,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     archive, seen = Archive.empty(1), Archive.empty(1)
     run.archive = seen
     run.rounds = 1 + len(evaluators)
-    for index, evaluator in enumerate(evaluators):
+    for index in range(len(evaluators)):
         for u, values in _basins(problem, evaluators, index, seen):
             archive.take(index, u[None], values[None])
             archive.feasible += 1

@@ -134,7 +134,7 @@ class Programme:
     def _held(self) -> NDArray[np.int64]:
         """Return the rows that are to vanish; for a piece that this design does not have the row of the highest."""
         own, instead = self._equal.T
-        return np.where(np.isfinite(self._limits.values[own]), own, instead)
+        return np.asarray(np.where(np.isfinite(self._limits.values[own]), own, instead))
 
     def _go(self, u: Array) -> None:
         if self._u is not None and np.array_equal(u, self._u):

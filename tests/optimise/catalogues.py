@@ -79,7 +79,7 @@ def random_job(*seed: int) -> Table:
         "constraints": constraints,
         "optimiser": {"designs": 1000, "seed": int(random.integers(1, 100))},
     }
-    more = [
+    more: list[tuple[str, list[Any]]] = [
         ("mechanism.speed", [f"{speed:.0f} rpm" for speed in random.uniform([60.0, 240.0], [230.0, 400.0])]),
         ("mechanism.slider.mass", [f"{mass:.2f} kg" for mass in random.uniform([0.5, 2.5], [2.4, 5.0])]),
         ("load.1.force", [f"{force:.0f} N" for force in random.uniform([20.0, 200.0], [190.0, 400.0])]),
@@ -134,7 +134,7 @@ def front_of(values: Array) -> Array:
 
 def _designs(part: Problem) -> list[Array]:
     """Return the designs (3,) that ranges of one value and closed forms of equalities give."""
-    wanted = {c.quantity: c.lower for c in part.constraints if c.equality}
+    wanted = {c.quantity: float(c.lower) for c in part.constraints if c.equality and c.lower is not None}
     ranges = {"crank": part.crank, "rod": part.rod, "offset": part.offset}
     known = {name: ends.lower for name, ends in ranges.items() if ends.fixed}
     if len(known) == 3:
@@ -142,7 +142,7 @@ def _designs(part: Problem) -> list[Array]:
     (free,) = set(ranges) - set(known)
     r, l, e = (known.get(name, math.nan) for name in ("crank", "rod", "offset"))
     found: list[float] = []
-    if wanted.get("stroke") is not None:
+    if "stroke" in wanted:
         s = wanted["stroke"]
         if free == "offset":
             square = (s * s / 4.0 - r * r) * (4.0 * l * l / (s * s) - 1.0)

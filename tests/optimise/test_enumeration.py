@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.ledger import Record
 from slidercrank.optimise.methods.registry import METHODS
 from slidercrank.optimise.problem import Problem, Variant
 from slidercrank.optimise.search import Archive
@@ -141,6 +142,32 @@ def test_a_catalogue_without_a_feasible_design_says_so() -> None:
     given = parse_job(listed(constraints={"stroke": {"min": "141.5 mm", "max": "141.6 mm"}}))
     assert not len(brute_force(given))
     assert solve(given).status == "infeasible"
+
+
+@pytest.mark.parametrize("kept", [0, 1, 2])
+def test_an_enumeration_goes_on_where_it_was_stopped_bit_for_bit(kept: int) -> None:
+    given = parse_job(random_job(0))
+    records: list[Record] = []
+    front = solve(given, keep=records.append)
+    again = solve(given, resume=records[:kept])
+    assert len(records) > 1
+    assert again.values.tobytes() == front.values.tobytes()
+    assert again.dimensions.tobytes() == front.dimensions.tobytes()
+    assert again.evaluations == front.evaluations
+
+
+def test_an_enumeration_that_is_stopped_gives_what_it_has() -> None:
+    given = parse_job(listed(constraints={}))
+    asked = 0
+
+    def cancelled() -> bool:
+        nonlocal asked
+        asked += 1
+        return asked > 40
+
+    front = solve(given, cancelled=cancelled)
+    assert front.status == "cancelled"
+    assert 0 < len(front) <= len(brute_force(given))
 
 
 def test_an_archive_keeps_what_is_feasible_whatever_nearly_is() -> None:

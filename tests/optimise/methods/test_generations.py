@@ -163,7 +163,7 @@ def test_nothing_free_is_one_design() -> None:
     for method in ("nsga2", "tpe", "cmaes", "random", "sobol"):
         front, generations = bred(replace(given, settings=replace(given.settings, method=method)))
         assert front.dimensions.tolist() == [[0.1, 0.3, 0.05]]
-        assert len(generations) == 1
+        assert not generations  # evaluated, not searched
 
 
 def test_reference_directions_are_about_as_many_as_designs() -> None:
