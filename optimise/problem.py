@@ -113,10 +113,10 @@ class Settings:
     def __post_init__(self) -> None:
         require_known_method(self.method)
         for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
-            value: object = getattr(self, name)
+            value = getattr(self, name)
             if value is None and name in ("samples", "evaluations"):
                 continue
-            if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+            if not _whole(value, least):
                 raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
         if self.method == "auto" and self.evaluations is not None:
             raise InputError(
@@ -297,6 +297,10 @@ def _require_stroke(stroke: object) -> None:
 
 def _finite(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
+
+
+def _whole(value: object, least: int) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= least
 
 
 def _shown(value: object) -> str:
