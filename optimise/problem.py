@@ -29,6 +29,10 @@ SENSES: dict[str, Sense] = {
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
+def _whole(value: object, least: int) -> bool:
+    return isinstance(value, Integral) and type(value) is not bool and int(value) >= least
+
+
 @dataclass(frozen=True, kw_only=True)
 class Range:
     """Where a dimension may lie, m; equal bounds fix it."""
@@ -297,10 +301,6 @@ def _require_stroke(stroke: object) -> None:
 
 def _finite(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
-
-
-def _whole(value: object, least: int) -> bool:
-    return isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= least
 
 
 def _shown(value: object) -> str:
