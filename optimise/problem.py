@@ -30,7 +30,9 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def _whole(value: object, least: int) -> bool:
-    return isinstance(value, Integral) and type(value) is not bool and int(value) >= least
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, Integral) and int(value) >= least
 
 
 @dataclass(frozen=True, kw_only=True)
