@@ -29,6 +29,12 @@ SENSES: dict[str, Sense] = {
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
+def _whole(value: object, least: int) -> bool:
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, Integral) and int(value) >= least
+
+
 @dataclass(frozen=True, kw_only=True)
 class Range:
     """Where a dimension may lie, m; equal bounds fix it."""
@@ -113,10 +119,10 @@ class Settings:
     def __post_init__(self) -> None:
         require_known_method(self.method)
         for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
-            value: object = getattr(self, name)
+            value = getattr(self, name)
             if value is None and name in ("samples", "evaluations"):
                 continue
-            if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+            if not _whole(value, least):
                 raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
         if self.method == "auto" and self.evaluations is not None:
             raise InputError(

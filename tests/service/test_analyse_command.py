@@ -29,7 +29,18 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
     assert row["stroke_mm"] == pytest.approx(1e3 * linkage.stroke, rel=1e-14)
     assert row["time_ratio"] == pytest.approx(linkage.time_ratio, rel=1e-14)
     for key, value in row.items():
-        unknown = ("torque", "force", "error", "slider_speed", "acceleration", "locking", "power", "inertia", "shaking")
+        unknown = (
+            "torque",
+            "force",
+            "error",
+            "slider_speed",
+            "acceleration",
+            "locking",
+            "power",
+            "inertia",
+            "shaking",
+            "loaded",
+        )
         assert (value is None) == any(word in key for word in unknown), key
     assert "need masses" in done.stderr
     assert "need a crank speed" in done.stderr
