@@ -15,12 +15,14 @@ from ..model.arithmetic import STEP
 from ..model.linkage import Linkage
 from ..model.mechanism import Mechanism
 from ..model.tolerance.sources import limits
-from .average_torque import MEAN_TORQUE, RMS_TORQUE
 from .position_error import POSITION_ERRORS
-from .quantity import DEGREE, MILLIMETRE, Array, Unit
+from .quantity import DEGREE, MILLIMETRE, Array, Quantity, Unit
 from .registry import QUANTITIES
 
 DIMENSIONS = ("crank", "rod", "offset")
+_TIE = 1e-9  # of a quantity: pieces that differ by less are equal
+_ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
+_BESIDE_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than rounding
 
 
 @dataclass(frozen=True)
@@ -58,50 +60,77 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
 
     One row a quantity, all of the registry and the dead centres, with the columns quantity, title, unit, value (as
     shown) and for each dimension
-    - <dimension>_per_mm: exact derivative, in the shown unit per mm;
+    - <dimension>_per_mm: exact derivative towards more of it, in the shown unit per mm;
     - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
       quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
-    - <dimension>_tolerance: first-order change for the dimension's tolerance, in the shown unit.
-    A quantity that is infinite has NaN in all; so has a position error without tolerances, which is not defined. Where
-    it has a kink (two equal peaks; no offset, for what depends on the size of the offset) the derivative is that of one
-    side: of the peak found, towards positive offsets.
+    - <dimension>_tolerance: first-order change for the dimension's tolerance, in the shown unit;
+    - the same three with _below: from the derivative on the side of smaller values (for a percentage, sizes).
+    The two differ where the quantity has a kink: two equal peaks; no offset, for what depends on its size. Derivatives
+    that are rounding are exactly zero. A quantity that is infinite has NaN in all; so has a position error without
+    tolerances, which is not defined.
     Raises `AssemblyError` unless the linkage turns fully.
     """
-    design = np.asarray(dimensions, dtype=np.float64).reshape(1, 3)
-    linkage = Linkage(design[0, 0], design[0, 1], design[0, 2], mechanism.branch)
+    design = np.asarray(dimensions, dtype=np.float64).reshape(3)
+    linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
+    design[2] = float(linkage.offset)
     tolerances = limits(mechanism, linkage)[:3]
-    rows, rms = [], RMS_TORQUE.evaluate(mechanism, design).values[0]
+    rows = []
     for quantity in QUANTITIES.values():
-        found = quantity.evaluate(mechanism, design, gradients=True)
-        assert found.gradients is not None
-        undefined = quantity in POSITION_ERRORS and not mechanism.tolerances.given
-        value = math.nan if undefined else float(found.values[0])
-        entry = (quantity.name, quantity.title, quantity.unit, value, found.gradients[0])
-        relative = not _balances_out(quantity.name, value, float(rms))
-        rows.append(_row(*entry, design[0], tolerances, relative))
+        value, below, above = _one_sided(quantity, mechanism, design)
+        if quantity in POSITION_ERRORS and not mechanism.tolerances.given:
+            value = math.nan
+        rows.append(_row(quantity.name, quantity.title, quantity.unit, value, (below, above), design, tolerances, True))
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)
+        both = np.array(slopes), np.array(slopes)
         relative = centre.unit is not DEGREE
-        rows.append(
-            _row(centre.name, centre.title, centre.unit, value, np.array(slopes), design[0], tolerances, relative)
-        )
+        rows.append(_row(centre.name, centre.title, centre.unit, value, both, design, tolerances, relative))
     return pd.DataFrame(rows)
 
 
-def _balances_out(name: str, value: float, rms: float) -> bool:
-    """Whether a mean torque is zero but for rounding: its percentages would be those of the rounding."""
-    return name == MEAN_TORQUE.name and abs(value) < 1e-9 * rms
+def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple[float, Array, Array]:
+    """Return value and the derivatives (3,) below and above a design, SI.
+
+    A greatest-of grows with the steepest of its equal pieces on either side: their greatest slope above, their least
+    below; a least-of the other way round.
+    """
+    sides = []
+    for side in (-1.0, 1.0):
+        at = design.copy()
+        if at[2] == 0.0:
+            at[2] = side * _BESIDE_ZERO
+        found = quantity.pieces(mechanism, at[None])
+        values, slopes = found.values[0], found.gradients[0]
+        best = values.min() if found.least else values.max()
+        with np.errstate(invalid="ignore"):
+            equal = np.abs(values - best) <= _TIE * abs(best)
+        equal |= values == best
+        steepest = slopes[equal].max(axis=0) if (side > 0.0) != found.least else slopes[equal].min(axis=0)
+        with np.errstate(invalid="ignore"):
+            sides.append(np.where(np.abs(steepest) * design[1] <= _ROUNDING * abs(best), 0.0, steepest))
+    value = float(quantity.evaluate(mechanism, design[None]).values[0])
+    return value, sides[0], sides[1]
 
 
 def _row(
-    name: str, title: str, unit: Unit, value: float, slopes: Array, design: Array, tolerances: Array, relative: bool
+    name: str,
+    title: str,
+    unit: Unit,
+    value: float,
+    sides: tuple[Array, Array],
+    design: Array,
+    tolerances: Array,
+    relative: bool,
 ) -> dict[str, Any]:
     row: dict[str, Any] = {"quantity": name, "title": title, "unit": unit.symbol, "value": unit.factor * value}
     known = math.isfinite(value)
     for n, dimension in enumerate(DIMENSIONS):
-        slope = float(slopes[n]) if known else math.nan
         defined = relative and known and value != 0.0 and design[n] != 0.0
-        row[f"{dimension}_per_mm"] = unit.factor * slope * 1e-3
-        row[f"{dimension}_percent"] = slope * float(design[n]) / value if defined else math.nan
-        row[f"{dimension}_tolerance"] = unit.factor * slope * float(tolerances[n])
+        below, above = (float(side[n]) if known else math.nan for side in sides)
+        # More of a negative offset's size lies below it.
+        less, more = (below, above) if design[n] >= 0.0 else (above, below)
+        for suffix, slope, share in (("", above, more), ("_below", below, less)):
+            row[f"{dimension}_per_mm{suffix}"] = unit.factor * slope * 1e-3
+            row[f"{dimension}_percent{suffix}"] = share * float(design[n]) / value if defined else math.nan
+            row[f"{dimension}_tolerance{suffix}"] = unit.factor * slope * float(tolerances[n])
     return row

@@ -207,7 +207,9 @@ class Evaluator:
                 found = found_of[name]
                 # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
                 bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
-                values = np.where(bounded, found.values, np.copysign(np.inf, found.values))
+                # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
+                unknown = np.isnan(found.values)
+                values = np.where(bounded | unknown, found.values, np.copysign(np.inf, found.values))
                 slopes = np.where(bounded[:, :, None], found.gradients, 0.0)
                 slopes = np.einsum("npd,ndk->npk", slopes, jacobian)
                 cache[name] = Pieces(values, slopes, found.labels, found.least)
@@ -323,8 +325,9 @@ def _stack(parts: list[tuple[int, Array, Array, Array]], n: int, k: int) -> Rows
     if not parts:
         return Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, dtype=np.int64))
     owner = np.concatenate([np.full(values.shape[1], index) for index, values, _, _ in parts])
+    values = np.concatenate([values for _, values, _, _ in parts], axis=1)
     return Rows(
-        np.concatenate([values for _, values, _, _ in parts], axis=1),
+        np.where(np.isnan(values), np.inf, values),
         np.concatenate([slopes for _, _, slopes, _ in parts], axis=1),
         np.concatenate([labels for _, _, _, labels in parts], axis=1),
         owner,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +94,7 @@ def _sought(
     """Return the worst point (3,) near a start. Of a least-of-the-greatest, several peaks may meet there (minimax)."""
     from scipy.optimize import minimize
 
+    search: Any = minimize  # its stubs do not follow SLSQP's
     begun = around(quantity, mechanism, design[None], start[None])
     many = np.isfinite(begun.values[0, 0]) if low else np.argmax(begun.values[0, 0]) == np.arange(begun.values.shape[2])
     size = abs(float(begun.values[0, 0].max())) or 1.0
@@ -108,7 +110,8 @@ def _sought(
         return np.where(kept, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * reach / size
 
     # Unknowns: the point and, of a minimax, the bound that no piece exceeds.
-    bounds = [(-1.0, 1.0)] * len(columns) + ([(None, None)] if low else [])
+    bounds: Any = [(-1.0, 1.0)] * len(columns) + ([(None, None)] if low else [])
+    options: Any = {"maxiter": _STEPS, "ftol": _EXACT}
     if low:
         top = float(pieces(start[columns])[0].max())
 
@@ -121,23 +124,24 @@ def _sought(
             known = np.isfinite(values)[:, None]
             return np.concatenate([np.where(known, -slopes[:, columns], 0.0), np.where(known, 1.0, 0.0)], axis=1)
 
-        result = minimize(
-            lambda z: z[-1],
+        limits_met: Any = [{"type": "ineq", "fun": room, "jac": room_slopes}]
+        result = search(
+            lambda z: float(z[-1]),
             np.append(start[columns], top),
             jac=lambda z: np.append(np.zeros(len(columns)), 1.0),
             bounds=bounds,
-            constraints=[{"type": "ineq", "fun": room, "jac": room_slopes}],
+            constraints=limits_met,
             method="SLSQP",
-            options={"maxiter": _STEPS, "ftol": _EXACT},
+            options=options,
         )
     else:
-        result = minimize(
+        result = search(
             lambda z: -float(pieces(z)[0][0]),
             start[columns],
             jac=lambda z: -pieces(z)[1][0, columns],
             bounds=bounds,
             method="SLSQP",
-            options={"maxiter": _STEPS, "ftol": _EXACT},
+            options=options,
         )
     found = start.copy()
     if np.isfinite(result.x).all():

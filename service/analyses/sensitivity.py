@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ...model.mechanism import Mechanism
 
 DIMENSIONS = ("crank", "rod", "offset")
+_SAME = 1e-9  # relative: derivatives that differ by less are equal
 # Not in the text: variants of others there, and what follows from the dimensions at a glance.
 _LEFT_OUT = (
     *("peak_torque_outward", "peak_torque_inward", "mean_torque", "rod_to_offset", "rod_to_crank"),
@@ -24,7 +25,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
-    (<dimension>_tolerance), in the unit of the entry.
+    (<dimension>_tolerance), in the unit of the entry; each once more with _below, for the side of smaller values.
     """
     import numpy as np
 
@@ -49,20 +50,31 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     for name in DIMENSIONS:
         table.add_column(name, justify="right", no_wrap=True)
         table.add_column("", justify="right", no_wrap=True)
+    kinks = False
     for row in numbers["quantities"]:
-        slopes = [row[f"{name}_per_mm"] for name in DIMENSIONS]
+        slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
         if row["quantity"] in _LEFT_OUT or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
         cells = []
-        for name, slope in zip(DIMENSIONS, slopes, strict=True):
-            relative = row[f"{name}_percent"]
-            cells += [_signed(slope), "" if relative is None else f"({_signed(relative, 3)} %)"]
+        for name in DIMENSIONS:
+            relative = _sides(row, f"{name}_percent", 3)
+            cells += [_sides(row, f"{name}_per_mm", 4), "" if relative == "-" else f"({relative} %)"]
+            kinks = kinks or " / " in cells[-2]
         table.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
     print_table(console, table)
+    if kinks:
+        console.print("a / b: at a kink, the derivative below and above the dimension", style="dim")
 
 
-def _signed(value: float | None, digits: int = 4) -> str:
+def _sides(row: dict[str, Any], key: str, digits: int) -> str:
+    """Return a derivative as text: both where the quantity has a kink."""
+    below, above = row[f"{key}_below"], row[key]
+    if below is None or above is None or abs(above - below) <= _SAME * max(abs(above), abs(below)):
+        return _signed(above, digits)
+    return f"{_signed(below, digits)} / {_signed(above, digits)}"
+
+
+def _signed(value: float | None, digits: int) -> str:
     if value is None or not math.isfinite(value):
         return "-"
-    # A derivative that is zero but for rounding of the complex step.
-    return "0" if abs(value) < 1e-12 else f"{value:+.{digits}g}"
+    return "0" if value == 0.0 else f"{value:+.{digits}g}"

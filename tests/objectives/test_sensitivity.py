@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -99,3 +101,49 @@ def test_dead_centres_move_as_their_closed_forms(branch: Branch) -> None:
 def test_linkage_that_does_not_turn_is_refused() -> None:
     with pytest.raises(AssemblyError, match="for full rotation"):
         sensitivity(SMOOTH, np.array([0.25, 0.3, 0.1]))
+
+
+@pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
+def test_both_sides_of_a_kink_are_those_of_one_sided_differences(machine: Mechanism) -> None:
+    random = np.random.default_rng(43)
+    for _ in range(3):
+        crank = random.uniform(0.03, 0.08)
+        design = np.array([crank, crank * random.uniform(1.5, 5.0), 0.0])
+        for plain in (machine, dataclasses.replace(machine, acceleration=0.0, gravity=(0.0, 0.0), loads=())):
+            table = sensitivity(plain, design).set_index("quantity")
+            for name, quantity in QUANTITIES.items():
+                row: Any = table.loc[name]
+                if not math.isfinite(row["value"]):
+                    continue
+
+                # Three-point one-sided differences over 1e-3 mm: off by its square.
+                steps = np.outer([0.0, 1.0, 2.0, -1.0, -2.0], [0.0, 0.0, 1e-6])
+                value, *around = quantity.unit.factor * quantity.evaluate(plain, design + steps).values
+                above = (-3.0 * value + 4.0 * around[0] - around[1]) / 2e-3
+                below = (3.0 * value - 4.0 * around[2] + around[3]) / 2e-3
+                size = abs(row["value"]) / (1e3 * crank)
+                assert row["offset_per_mm"] == pytest.approx(above, rel=1e-5, abs=1e-5 * size), name
+                assert row["offset_per_mm_below"] == pytest.approx(below, rel=1e-5, abs=1e-5 * size), name
+
+
+def test_an_in_line_linkage_has_more_torque_with_an_offset_of_either_sign() -> None:
+    machine = Mechanism(speed=10.0 * math.pi, slider_mass=1.0)
+    table = sensitivity(machine, np.array([0.05, 0.16, 0.0])).set_index("quantity")
+    torque = table.loc["peak_torque"]
+    assert torque["offset_per_mm"] > 0.006
+    assert torque["offset_per_mm_below"] == pytest.approx(-torque["offset_per_mm"], rel=1e-9)
+    # What is rounding is zero, not -23.5 %.
+    for name in ("mean_torque", "mean_power"):
+        row = table.loc[name]
+        assert row["value"] == 0.0
+        assert all(row[f"{each}_per_mm{side}"] == 0.0 for each in DIMENSIONS for side in ("", "_below"))
+    assert table.loc["rms_torque", "offset_per_mm"] == 0.0
+    assert table.loc["stroke", "offset_per_mm"] == 0.0
+
+
+def test_percentages_of_a_negative_offset_are_of_its_size() -> None:
+    machine = Mechanism(speed=10.0 * math.pi, slider_mass=1.0)
+    one, other = (sensitivity(machine, np.array([0.05, 0.16, e])).set_index("quantity") for e in (0.01, -0.01))
+    for side in ("", "_below"):
+        found = one.loc["peak_torque", f"offset_percent{side}"]
+        assert other.loc["peak_torque", f"offset_percent{side}"] == pytest.approx(found, rel=1e-9)

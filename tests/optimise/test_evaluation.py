@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from slidercrank.model.friction import Friction
 from slidercrank.model.loads import AngleTable, StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.optimise.elimination import sheets
@@ -151,6 +153,20 @@ def test_an_infinite_quantity_makes_rows_without_slope() -> None:
             owner = [c.quantity for c in evaluator.constraints].index("rod_to_offset")
             assert greatest(limits, owner)[0] == expected
             assert np.isfinite(limits.gradients).all()
+
+
+@pytest.mark.parametrize("bounds", [(1.0, None), (None, 1.0)], ids=["least", "greatest"])
+@pytest.mark.parametrize("speed", [30.0, -30.0])
+def test_what_is_not_a_number_meets_no_limit_and_is_no_optimum(bounds: Bounds, speed: float) -> None:
+    # The guide locks every design here: there is no mean power, and its NaN has the sign of the speed.
+    wanted = problem({"mean_power": "minimise"}, {"mean_torque": bounds})
+    machine = replace(wanted.mechanism, speed=speed, friction=Friction(guide=20.0))
+    wanted = replace(wanted, mechanism=machine)
+    (evaluator, *_) = (Evaluator(wanted, sheet) for sheet in sheets(wanted))
+    u = points(evaluator, 20)
+    goals, limits = evaluator.exact(u)
+    for rows, owner in ((goals, 0), (limits, [c.quantity for c in evaluator.constraints].index("mean_torque"))):
+        assert (greatest(rows, owner) == np.inf).all()
 
 
 def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:

@@ -13,12 +13,14 @@ import pytest
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.in_line import without_rounding
 from slidercrank.model.linkage import Linkage
+from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem import Objective
+from slidercrank.optimise.problem import Objective, Problem, Variant
 from slidercrank.optimise.solve import solve
+from slidercrank.optimise.zero_objectives import require_ranking
 
 JOB: dict[str, Any] = {
     "name": "idle",
@@ -64,13 +66,19 @@ def test_with_a_load_that_takes_work_the_remedy_holds() -> None:
         assert parse_job(job("mean_torque", **more)).objectives[0].quantity in ("mean_torque", "transmission_angle")
 
 
-def test_a_choice_of_loads_of_which_one_works_is_an_objective() -> None:
-    data = job("mean_torque", load=[{"force": {"choices": ["50 N", "200 N"]}, "opposes": "outward stroke"}])
-    try:
-        problem = parse_job(data)
-    except JobError as error:  # pragma: no cover - says how choices are written
-        pytest.fail(str(error))
-    assert len(problem.objectives) == 2
+def test_a_choice_of_machines_of_which_one_works_is_an_objective() -> None:
+    problem = parse_job(job("peak_torque"))
+    worked = replace(problem.mechanism, loads=(StrokeForce(outward=-200.0, inward=0.0),))
+
+    def chosen(*machines: Mechanism) -> Problem:
+        ranges: dict[str, Any] = {"crank": problem.crank, "rod": problem.rod, "offset": problem.offset}
+        variants = tuple(Variant(labels=(str(n),), mechanism=machine, **ranges) for n, machine in enumerate(machines))
+        objective = Objective(quantity="mean_torque", sense="minimise")
+        return replace(problem, choices=("load",), variants=variants, objectives=(objective,))
+
+    require_ranking(chosen(problem.mechanism, worked))
+    with pytest.raises(InputError, match="takes no work over a turn"):
+        require_ranking(chosen(problem.mechanism, problem.mechanism))
 
 
 def test_an_offset_that_is_rounding_is_none() -> None:

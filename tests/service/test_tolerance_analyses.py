@@ -164,14 +164,19 @@ def test_tornado_draws_the_percentages_most_sensitive_first(offset: float) -> No
     table = sensitivity(SMOOTH, np.array([0.14, 0.31, offset])).set_index("title")
     columns = [f"{name}_percent" for name in DIMENSIONS]
     for _, row in rows.iterrows():
-        np.testing.assert_array_equal(
-            row[columns].to_numpy(dtype=float), table.loc[row["title"], columns].to_numpy(dtype=float)
-        )
-    assert rows[columns].abs().max(axis=1).is_monotonic_decreasing
+        expected = table.loc[row["title"], columns].to_numpy(dtype=float, copy=True)
+        if not offset and not np.isnan(expected[0]):  # of no offset there is no percent: for 1 mm
+            expected[2] = 100.0 * float(table.loc[row["title"], "offset_per_mm"] / table.loc[row["title"], "value"])
+        np.testing.assert_allclose(row[columns].to_numpy(dtype=float), expected, rtol=1e-15)
+    both = [*columns, *(f"{column}_below" for column in columns)]
+    assert rows[both].abs().max(axis=1).is_monotonic_decreasing
     figure = tornado_figure(rows)
     for panel, column in zip(figure.axes, columns, strict=True):
         widths = [bar.get_width() for bar in panel.patches]  # type: ignore[attr-defined]
-        np.testing.assert_allclose(widths, rows[column].dropna(), rtol=1e-12)
+        drawn: list[float] = []
+        for below, above in rows[[f"{column}_below", column]].dropna().to_numpy():
+            drawn += [above] if math.isclose(below, above, rel_tol=1e-9) else [below, above]
+        np.testing.assert_allclose(widths, drawn, rtol=1e-12)
     assert overlaps(figure) == []
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from tests.model.bodies import bodies
 from tests.model.cases import Array
 
 STEP = 1e-30
-_FINE = {"xatol": 1e-12}
+_FINE: Any = {"xatol": 1e-12}
 
 
 class Energies:
@@ -40,7 +41,8 @@ class Energies:
         self.torque = -self.gain(0, self.starts[0], self.starts[1]) - self.gain(1, self.starts[1], self.starts[2])
         self.torque /= self.starts[2] - self.starts[0]
         nodes, weights = legendre.leggauss(20)
-        self.angle, self.share, self.stroke = [], [], []
+        self.angle: list[Array] = []
+        self.share: list[Array] = []
         for n in range(2):
             ends = np.linspace(self.starts[n], self.starts[n + 1], 301)
             self.angle.append((ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (1.0 + nodes)).ravel())
@@ -56,7 +58,7 @@ class Energies:
             found = found + part.mass * (x**2 + y**2) + part.inertia * turn**2
         return np.asarray(found)
 
-    def gain(self, n: int, start: float, theta: Array | float) -> Array | float:
+    def gain(self, n: int, start: float, theta: Any) -> Any:
         """Return what gravity and the load of stroke n do from one angle to another."""
         work = self.forces[n] * (self.x(theta) - self.x(start))
         for part in self.parts:
@@ -97,7 +99,7 @@ class Energies:
             for n, angle in enumerate(self.angle):
                 values = sign * (least - min(lows) + self.works[n]) / (self.inertias[n] + flywheel)
                 i = int(np.argmin(values))
-                around = sorted((float(angle[max(i - 1, 0)]), float(angle[min(i + 1, len(angle) - 1)])))
+                around: Any = sorted((float(angle[max(i - 1, 0)]), float(angle[min(i + 1, len(angle) - 1)])))
                 found = minimize_scalar(energy, args=(n, sign), bounds=around, method="bounded", options=_FINE)
                 ends = [energy(end, n, sign) for end in self.starts[n : n + 2]]
                 best = min(best, float(found.fun), *ends)

@@ -6,20 +6,20 @@ import { range, scale } from "./scale.js";
 const [HEIGHT, ROOM] = [200, { left: 12, right: 12, top: 26, bottom: 22 }];
 
 /**
- * Return a table of signed bars, the longest first. rows: each {title, value, text}; values that are null have no bar; largest: what
+ * Return a table of signed bars, the longest first. rows: each {title, value, text} and kink where neither way is better; values that are null have no bar; largest: what
  * a whole bar is; good(value): true, false, or null where neither way is better; caption: what the table is called; signed: whether
  * bars go both ways.
  */
 export function tornado(rows, { largest, good, caption, signed = true }) {
   const ordered = [...rows].sort((one, other) => Math.abs(other.value ?? 0) - Math.abs(one.value ?? 0));
   return h("table", { class: "tornado" }, h("caption", {}, caption),
-    h("tbody", {}, ordered.map(({ title, value, text }) => {
+    h("tbody", {}, ordered.map(({ title, value, text, kink = false }) => {
       const bar = h("span", { class: "bar" });
       const share = largest > 0 && value ? Math.min(Math.abs(value) / largest, 1) : 0;
       const whole = signed ? 50 : 100;
       bar.style.width = `${whole * share}%`;
       bar.style.left = signed ? `${value < 0 ? 50 - 50 * share : 50}%` : "0";
-      const way = value ? good(value) : null;
+      const way = value && !kink ? good(value) : null;
       if (way !== null) bar.classList.add(way ? "better" : "worse");
       return h("tr", {}, h("th", { scope: "row" }, title), h("td", { class: signed ? "bars" : "bars plain", "aria-hidden": "true" }, bar), h("td", { class: "number" }, text));
     })));

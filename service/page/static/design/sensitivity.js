@@ -24,20 +24,26 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
     measures.map(({ title }, n) => h("option", { value: n }, title)));
   const more = h("input", { type: "checkbox", onchange: () => { all = more.checked; draw(); } });
   fill(place, h("div", { class: "row" }, h("label", {}, "Change ", choice), h("label", {}, more, " all quantities")), bars,
-    h("p", { class: "quiet hint" }, "To first order, the other dimensions as they are. The longest bar matters most."));
+    h("p", { class: "quiet hint" }, "To first order, the other dimensions as they are. The longest bar matters most. Below and above: at a kink, the derivatives on either side of the dimension."));
 
   function draw() {
     const shown = all ? [...own, ...rest] : own;
     const relative = measure.key === "percent";
-    const value = (one, name) => one[`${name}_${measure.key}`];
-    const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => Math.abs(value(one, name) ?? 0))));
+    const value = (one, name) => one[`${name}_${measure.key}`] ?? null;
+    const below = (one, name) => one[`${name}_${measure.key}_below`] ?? value(one, name);
+    const size = (one, name) => Math.max(Math.abs(value(one, name) ?? 0), Math.abs(below(one, name) ?? 0));
+    const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => size(one, name))));
     fill(bars, shown.map((one) => {
       const objective = objectives.find(({ quantity }) => quantity === one.quantity);
-      const largest = relative && objective ? common : Math.max(...DIMENSIONS.map((name) => Math.abs(value(one, name) ?? 0)));
+      const largest = relative && objective ? common : Math.max(...DIMENSIONS.map((name) => size(one, name)));
       const unit = relative ? "%" : unitOf(one.unit);
+      const kinked = (name) => value(one, name) !== null && Math.abs(value(one, name) - below(one, name)) > 1e-9 * Math.max(Math.abs(value(one, name)), Math.abs(below(one, name)));
       const text = (number) => (number === null || number === undefined ? "–" : `${signed(relative ? number : inShown(number, one.unit))} ${unit}`);
       const good = (number) => !objective || objective.sense === "target" ? null : (number > 0) === (objective.sense === "maximise");
-      return tornado(DIMENSIONS.map((name) => ({ title: name, value: value(one, name) ?? null, text: text(value(one, name)) })), { largest, good, caption: one.title });
+      const row = (name) => kinked(name)
+        ? { title: name, value: Math.abs(below(one, name)) > Math.abs(value(one, name)) ? below(one, name) : value(one, name), text: `below ${text(below(one, name))}, above ${text(value(one, name))}`, kink: true }
+        : { title: name, value: value(one, name), text: text(value(one, name)) };
+      return tornado(DIMENSIONS.map(row), { largest, good, caption: one.title });
     }));
   }
 
@@ -46,6 +52,6 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
 }
 
 function signed(number) {
-  if (Math.abs(number) < 1e-12) return "0";
+  if (number === 0) return "0";
   return `${number > 0 ? "+" : "−"}${Number(Math.abs(number).toPrecision(3))}`;
 }
