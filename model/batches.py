@@ -50,9 +50,7 @@ def _end_threads() -> None:
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(
-        before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release
-    )
+    os.register_at_fork(before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release)
 
 
 def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -> None:

@@ -6,6 +6,7 @@
     |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
     |   `-- NotFound        what was asked for by its name or number is not there
+    |-- OutputLost          standard output that is closed or full
     |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
@@ -41,6 +42,10 @@ class JobError(InputError):
 
 class NotFound(InputError):
     """What was asked for by its name or number is not there."""
+
+
+class OutputLost(SlidercrankError):
+    """Standard output is closed, or what it goes to is full."""
 
 
 class EngineError(SlidercrankError):

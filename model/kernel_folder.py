@@ -45,7 +45,9 @@ def kernel_folder() -> Path | None:
     if folder is None:
         _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
     elif new and refused:
-        _log.warning(f"slidercrank keeps compiled kernels in {folder.parent}: {refused}; to keep them longer, {_REMEDY}")
+        _log.warning(
+            f"slidercrank keeps compiled kernels in {folder.parent}: {refused}; to keep them longer, {_REMEDY}"
+        )
     return folder
 
 

@@ -8,6 +8,7 @@ Nothing that is slow to import is imported here or at the top of the command mod
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import tempfile
@@ -17,7 +18,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from ..model.errors import SlidercrankError
+from ..model.errors import OutputLost, SlidercrankError
 from .commands.allocate import allocate
 from .commands.analyse import analyse
 from .commands.balance import balance
@@ -35,12 +36,18 @@ from .commands.runs import front
 from .commands.screen import give, say
 from .commands.sections import sections
 from .commands.serve import serve
+from .commands.streams import give_up_output, guard_streams
 from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"
+_SHORT = ("can't start new thread", "failed to map segment", "Cannot allocate memory", "cannot allocate memory")
+_MORE_MEMORY = (
+    "slidercrank: there must be memory enough for this; got less; end other programs, or raise the limits of this one "
+    "(ulimit -v, ulimit -u, a container's memory)"
+)
 
 
 class Commands(TyperGroup):
@@ -63,11 +70,26 @@ class Commands(TyperGroup):
         except Exception as error:
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
                 raise
+            if _short_of_memory(error):
+                say(_MORE_MEMORY)
+                raise typer.Exit(WRONG_INPUT) from None
             say(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "
                 f"input; see {_log_of(error)}"
             )
             raise typer.Exit(FAULT) from None
+
+
+def _short_of_memory(error: BaseException | None) -> bool:
+    """Whether a lack of memory, or of threads, is at the bottom of an error."""
+    while error is not None:
+        words = str(error)
+        if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
+            return True
+        if any(sign in words for sign in _SHORT):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _log_of(error: Exception) -> str:
@@ -147,8 +169,22 @@ for command in COMMANDS:
 
 def main() -> None:
     """Run the command line and exit."""
-    for stream in (sys.stdout, sys.stderr):
-        # A job's name may have characters that the terminal does not: never a reason to fail.
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
-    app(prog_name="slidercrank")
+    guard_streams()
+    try:
+        app(prog_name="slidercrank")
+    except OutputLost as error:  # of the help, which no command prints
+        say(f"slidercrank: {error}")
+        sys.exit(WRONG_INPUT)
+    except MemoryError:  # in telling of another error
+        say(_MORE_MEMORY)
+        sys.exit(WRONG_INPUT)
+    finally:
+        _last()
+
+
+def _last() -> None:
+    """Write what is kept back, while a failure can still be told."""
+    try:
+        sys.stdout.flush()
+    except (OutputLost, BrokenPipeError):
+        give_up_output()

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib.machinery import PathFinder
+from pathlib import Path
 from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
@@ -141,6 +144,27 @@ class OwnQuantity:
             return Worker(self.function, list(self.folders), self.limit)
         function = self.function
         return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
+
+    def require_function(self) -> None:
+        """Raise `InputError` where the module of "module:function" is not found, or does not name it; nothing is run."""
+        if not isinstance(self.function, str):
+            return
+        module, _, function = self.function.partition(":")
+        places: Sequence[str] | None = [*self.folders, *sys.path]
+        found = None
+        for part in module.split("."):
+            found = None if places is None else PathFinder.find_spec(part, places)
+            if found is None:
+                self._refuse(
+                    f"must be in a module beside the job file or installed; no module {module} is there; put "
+                    f"{module.split('.')[0]}.py beside the job, or correct module:function"
+                )
+            places = found.submodule_search_locations
+        source = Path(found.origin) if found is not None and found.origin else None
+        if source is not None and source.suffix == ".py":
+            text = source.read_text(encoding="utf-8", errors="replace")
+            if not re.search(rf"\b({re.escape(function)}\b|import\s+\*)", text):
+                self._refuse(f"must be in its module; {source} has no {function}; correct module:function")
 
     def _refuse(self, reason: str) -> NoReturn:
         known = self.function if isinstance(self.function, str) else getattr(self.function, "__qualname__", "function")

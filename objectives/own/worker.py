@@ -57,7 +57,10 @@ class Worker:
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
         command = [sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()"]
-        self._process, self._owner = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE), os.getpid()
+        self._process, self._owner = (
+            subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE),
+            os.getpid(),
+        )
         self._end = weakref.finalize(self, _end, self._process, self._log)
         self._send((self._log, self.limit, self.function, self.folders))
         self._answer(_START + self.limit)

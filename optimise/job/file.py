@@ -13,6 +13,7 @@ from typing import Any
 
 from ...model.errors import JobError
 from ..units import shown
+from .unquoted import remedy
 
 LARGEST = 1_000_000
 """Bytes. A job with the longest tables allowed takes a tenth of it."""
@@ -79,7 +80,7 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except JobError:
         raise
     except ValueError as error:
-        raise JobError(f"the file is no valid JSON: {error}; correct the line") from None
+        raise JobError(f"the file is no valid JSON: {error}; {remedy(text, str(error))}") from None
     if not isinstance(data, dict):
         raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
     return data
@@ -98,7 +99,7 @@ def toml_tables(text: str) -> dict[str, Any]:
     except RecursionError:
         raise _too_deep() from None
     except ValueError as error:
-        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
+        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; {remedy(text, str(error))}") from None
 
 
 def _too_deep() -> JobError:

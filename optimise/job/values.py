@@ -27,6 +27,16 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+def _note(info: core_schema.ValidationInfo, value: object, kind: Kind) -> None:
+    """Add numbers without a unit to the list that the context of a validation is, if it is one: name, number, kind."""
+    if not isinstance(info.context, list) or not kind.unit:
+        return
+    given = value["choices"] if isinstance(value, Mapping) else value
+    for one in given if isinstance(given, list | tuple) else [given]:
+        if isinstance(one, int | float):
+            info.context.append((info.field_name, one, kind))
+
+
 @dataclass(frozen=True)
 class Physical:
     """Marks a number as a physical value of a kind, read by `to_si`."""
@@ -38,8 +48,13 @@ class Physical:
         """Return the value in SI; raises InputError."""
         return to_si(value, self.kind, sign=self.sign)
 
+    def _noted(self, value: object, info: core_schema.ValidationInfo) -> float:
+        found = self.read(value)
+        _note(info, value, self.kind)
+        return found
+
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return described(self.kind, self.sign)
@@ -103,8 +118,13 @@ class RangeOf:
             raise InputError(f"choices must differ; got {shown(values)}; leave out the second")
         return Choices(tuple(lengths))
 
+    def _noted(self, value: object, info: core_schema.ValidationInfo) -> tuple[float, float] | Choices:
+        found = self.read(value)
+        _note(info, value, units.LENGTH)
+        return found
+
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         one = described(units.LENGTH, self.sign)["anyOf"]
@@ -150,8 +170,13 @@ class ToleranceOf:
             return Tolerance(fraction=cls.share(value) or 0.0)
         return Tolerance(absolute=value)
 
+    def _noted(self, value: object, info: core_schema.ValidationInfo) -> float | str:
+        found = self.read(value)
+        _note(info, value, units.LENGTH)
+        return found
+
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         share = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,13 +10,14 @@ import typer
 
 from ...model.errors import InputError
 from ..designs.design_analysis import analysis_of, numbers_of
+from ..designs.judged_rules import judged
 from ..designs.topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk
 from .interruption import Interruption
 from .options import length_option, speed_option, value_option
 from .screen import console, give, say, waiting
-from .tables import show_design
+from .tables import show_design, show_rules
 
 if TYPE_CHECKING:
     from ...model.linkage import Linkage
@@ -101,11 +102,13 @@ def analyse(
             lenient=ALL in (show or ()),
         )
     design = [topic for topic in found.topics if topic.name in found.found]
+    rules = [] if problem is None else judged(problem, row)
     if json:
-        give(json_text(found.record()))
+        give(json_text(found.record() | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
         screen = console()
         show_design(screen, row, only=[key for key in row if key not in TOLD_THERE])
+        show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
         for topic in design:

@@ -81,9 +81,14 @@ def _private(address: str) -> Iterator[Check]:
 
 def _database(address: str, database: Database) -> Iterator[Check]:
     from ..store.inspection import clock_ahead, damages, server_version
-    from ..store.schema_version import versions
+    from ..store.schema_version import strangers, versions
 
     yield Check(name="store", grade="ok", text=f"{database.name} answers, {server_version(database)}")
+    foreign = strangers(database)
+    if foreign:
+        text = f"they are of something else ({foreign}); name another store with --store"
+        yield Check(name="tables", grade="problem", text=text)
+        return
     version, latest, known = versions(database)
     if not known:
         text = f"they have version {version}, this software knows {latest}; install the release that made them"

@@ -16,10 +16,16 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
     """Check a job file and say what was understood of it."""
-    from ...optimise.job import load_job
+    from ...objectives.own.quantity import OwnQuantity
+    from ...optimise.job import load_job, read_job
+    from ...optimise.job.notes import notes_of
     from .summary import freedom_in_words, summarise
 
-    summary = summarise(load_job(job))
+    problem = load_job(job)
+    for own in problem.own:
+        if isinstance(own, OwnQuantity):
+            own.require_function()
+    summary = summarise(problem) | {"notes": notes_of(read_job(job))}
     if json:
         give(json_text(summary))
         return
@@ -35,6 +41,7 @@ def check(
         ("freedom", [freedom_in_words(summary)]),
         ("search", [summary["search"]]),
         ("warning", summary["warnings"]),
+        ("note", summary["notes"]),
     ]
     for title, lines in parts:
         for index, line in enumerate(lines):

@@ -193,8 +193,11 @@ def _contents(folder: Path) -> list[str]:
 def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:
     """Return what a job file states, and its tables, both with the options that were given."""
     from ...optimise.job import load_job, read_job
+    from ...optimise.job.notes import notes_of
 
     problem, tables = load_job(job), read_job(job)
+    for note in notes_of(tables):
+        say(f"note: {note}")
     settings = problem.settings
     if designs is not None:
         settings = replace(settings, designs=designs)

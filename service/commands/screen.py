@@ -32,8 +32,9 @@ def _console(stream: TextIO) -> Console:
 
 
 def say(message: str) -> None:
-    """Write a message to standard error."""
-    sys.stderr.write(f"{message}\n")
+    """Write a message to standard error; where nothing can be written there, it is lost."""
+    with contextlib.suppress(OSError):
+        sys.stderr.write(f"{message}\n")
 
 
 def give(text: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, get_args
 
 import typer
 
@@ -79,9 +79,17 @@ def parse_axis(text: str) -> Axis:
     """Return what is swept from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
     import numpy as np
 
-    from ...objectives.sweep import Axis
-    from ...optimise.units import ANGULAR_SPEED, LENGTH
+    from ...objectives.sweep import Axis, Parameter
+    from ...optimise.units import ANGULAR_SPEED, LENGTH, closest
 
+    known, asked = get_args(Parameter), text.partition("=")[0].strip()
+    if "=" in text and asked and asked not in known:
+        near = closest(asked, known)
+        meant = f"; did you mean {near}?" if near else ""
+        raise InputError(
+            f"a sweep is over {', '.join(known)}; got {asked!r}{meant}; another number of a job is set by analyse "
+            "--set, or varies in [variables]"
+        )
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
     if match is None and (several is None or not several[2].strip()):
         raise InputError(

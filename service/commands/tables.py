@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
+    from ..designs.judged_rules import JudgedRule
+
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
 _DIGITS = 4
@@ -165,3 +167,31 @@ def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
     steps = [round(index * (len(rest) - 1) / max(1, free - 1)) for index in range(free)]
     chosen = marked | {rest[step] for step in steps}
     return [row for row in rows if row in chosen]
+
+
+def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
+    """Print whether a design meets each rule of its job, those that it breaks first."""
+    broken = [rule for rule in rules if not rule.met]
+    if not rules:
+        return
+    screen.print()
+    if not broken:
+        screen.print("It meets every range and rule of the job.", soft_wrap=True)
+    for rule in broken:
+        value = "has no value" if rule.value is None else f"is {_of(rule.value, rule)}"
+        by = "" if rule.missed_by is None else f", by {_of(rule.missed_by, rule)}"
+        screen.print(f"Not met: {rule.title} {_asked(rule)} {value}{by}.", style="bold", soft_wrap=True)
+    for rule in (rule for rule in rules if rule.met):
+        value = "" if rule.value is None else _of(rule.value, rule)
+        screen.print(f"  met: {rule.title} {_asked(rule)}: {value}", soft_wrap=True, style="dim")
+
+
+def _asked(rule: JudgedRule) -> str:
+    if rule.lower is not None and rule.lower == rule.upper:
+        return f"(exactly {_of(rule.lower, rule)})"
+    ends = [("at least", rule.lower), ("at most", rule.upper)]
+    return f"({', '.join(f'{word} {_of(end, rule)}' for word, end in ends if end is not None)})"
+
+
+def _of(value: float, rule: JudgedRule) -> str:
+    return f"{value:.6g} {rule.unit}".rstrip()

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from ...optimise.problem import Problem, Range
 
 _RPM = 9.549296585513721  # in one rad/s
-_MET = 1e-8  # of a bound: designs meet their constraints to this
+MET = 1e-8
+"""Share of a bound to which designs meet their constraints."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Requirement:
         """Return whether a design meets it; one without the number does not."""
         slack = row.get(self.slack)
         size = max(abs(self.lower or 0.0), abs(self.upper or 0.0), 1e-300)
-        return isinstance(slack, float) and slack >= -_MET * size
+        return isinstance(slack, float) and slack >= -MET * size
 
 
 def requirements_of(part: Problem) -> list[Requirement]:
@@ -66,7 +67,7 @@ def outside(part: Problem, row: Row) -> list[str]:
     """Return the columns of crank, rod and offset that are out of their ranges."""
     found = []
     for column, (lower, upper) in ranges_of(part).items():
-        room = _MET * max(abs(lower), abs(upper))
+        room = MET * max(abs(lower), abs(upper))
         value = row[column]
         if not isinstance(value, float) or not lower - room <= value <= upper + room:
             found.append(column)

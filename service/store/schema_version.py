@@ -8,10 +8,11 @@ from alembic import command
 from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, inspect, text
 
 from ...model.errors import StoreError
 from .database import Database
+from .schema import metadata
 
 LOCK = 0x51C7  # PostgreSQL's advisory lock of whoever changes the tables
 
@@ -31,6 +32,12 @@ def upgrade(database: Database) -> None:
         if not database.sqlite:
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
         version = _version(connection)
+        foreign = _strangers(connection, scripts)
+        if foreign:
+            raise StoreError(
+                f"a store must be a database of its own; {database.name} has tables of something else ({foreign}), and "
+                "gets none; name another one with --store"
+            )
         if version is not None and version not in {script.revision for script in scripts.walk_revisions()}:
             raise StoreError(
                 f"the tables of a store must be of this release or an earlier one; {database.name} has version "
@@ -53,6 +60,24 @@ def _config() -> Config:
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
     return config
+
+
+def strangers(database: Database) -> str:
+    """Return, in words, the tables of a database that is something else's; empty for a store and for an empty one."""
+    scripts = ScriptDirectory.from_config(_config())
+    with database.reading() as connection:
+        return _strangers(connection, scripts)
+
+
+def _strangers(connection: Connection, scripts: ScriptDirectory) -> str:
+    version, names = _version(connection), set(inspect(connection).get_table_names())
+    if version is not None:
+        known = version in {script.revision for script in scripts.walk_revisions()}
+        found = set() if known or "jobs" in names else names
+    else:  # a database on a server may be shared, a file is not
+        found = names if connection.dialect.name == "sqlite" else names & set(metadata.tables)
+    listed = sorted(found)[:3]
+    return ", ".join(listed) + (" and more" if len(found) > 3 else "")
 
 
 def _version(connection: Connection) -> str | None:

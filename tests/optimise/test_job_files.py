@@ -46,6 +46,15 @@ CONTENTS = [
     (b"name = 'x'\nunit = '5 \xb5m'\n", ["byte 0xb5 in line 2", "save it as UTF-8"]),
     (b"name = 'x'\n[mechanism\n", ["no valid TOML", "line 2"]),
     (b"name = " + b"1" * 5000, ["no valid TOML"]),
+    (b"speed = 60 rpm", ['put 60 rpm in quotes: "60 rpm"']),
+    (b"a = 1\nspeed = 60rpm # fast", ["line 2", 'put 60rpm in quotes: "60rpm"']),
+    (b'crank = ["20 mm", 200 mm]', ['put 200 mm in quotes: "200 mm"']),
+    (b"slider = { mass = 1.5 kg }", ['put 1.5 kg in quotes: "1.5 kg"']),
+    (b"peak_torque = minimise", ['put minimise in quotes: "minimise"']),
+    (b"name = Sieve, quick return", ['put Sieve, quick return in quotes: "Sieve, quick return"']),
+    (b"offset = 5%", ['put 5% in quotes: "5%"']),
+    (b'x = "5 mm', ["correct the line"]),
+    (b"[mechanism", ["correct the line"]),
     (b"\xff\xd8\xff\xe0" + bytes(range(1, 200)), ["UTF-8 text; got byte 0xff in line 1"]),
 ]
 

@@ -56,7 +56,10 @@ GOOD = [
     ("25 Nm", units.TORQUE, 25.0),
     ("2.5 kNm", units.TORQUE, 2500.0),
     ("1 lbf inch", units.TORQUE, 4.4482216152605 * 0.0254),
-    *((f"1 {text}", units.TORQUE, 4.4482216152605 * 0.3048) for text in ("lbf ft", "ft-lbf", "lbf-ft", "ft lbf", "ft*lbf")),
+    *(
+        (f"1 {text}", units.TORQUE, 4.4482216152605 * 0.3048)
+        for text in ("lbf ft", "ft-lbf", "lbf-ft", "ft lbf", "ft*lbf")
+    ),
     *((f"1 {text}", units.TORQUE, 4.4482216152605 * 0.0254) for text in ("lbf in", "in-lbf", "lbf-in", "inch lbf")),
     *((f"2 {text}", units.TORQUE, 19.6133) for text in ("kgf m", "kgf-m", "m kgf", "kp m", "m-kp")),
     *((f"50 {text}", units.TORQUE, 0.05) for text in ("N mm", "N-mm", "mm N", "Nmm")),

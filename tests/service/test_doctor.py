@@ -182,3 +182,22 @@ def test_a_store_that_others_may_read_is_noted(file: Path, command: Command) -> 
     code, found = looked_at(command)
     assert (code, found["permissions"][0]) == (0, "note")
     assert f"chmod 600 {file}" in found["permissions"][1]
+
+
+@pytest.mark.parametrize("made", ["CREATE TABLE parts(name)", "CREATE TABLE alembic_version(version_num)"])
+def test_a_database_of_something_else_is_a_problem_and_gets_no_tables(made: str, file: Path, command: Command) -> None:
+    connection = sqlite3.connect(file)
+    connection.execute(made)
+    connection.commit()
+    names = "SELECT name FROM sqlite_master"
+    before = connection.execute(names).fetchall()
+    if "alembic" in made:
+        connection.execute("INSERT INTO alembic_version VALUES ('9999')")
+        connection.commit()
+    done = command("jobs")
+    assert done.exit_code == 2
+    assert "a store must be a database of its own" in done.stderr
+    assert connection.execute(names).fetchall() == before
+    connection.close()
+    code, found = looked_at(command)
+    assert (code != 0, found["tables"][0]) == (True, "problem")

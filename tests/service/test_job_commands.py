@@ -53,3 +53,39 @@ def test_check_refuses_a_wrong_job(tmp_path: Path, runs: Path, command: Command)
 
 def test_schema_is_that_of_job_files(command: Command) -> None:
     assert json.loads(command("schema").stdout) == job_schema()
+
+
+def test_a_number_without_a_unit_is_told_as_it_is_read(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text().replace('"300 rpm"', "60").replace('["20 mm", "200 mm"]', "[0.02, 0.2]")
+    job.write_text(text)
+    found = command("check", job).stdout
+    assert "speed = 60 is 60 rad/s (572.958 rpm)" in found
+    assert "crank = 0.2 is 0.2 m (200 mm)" in found
+
+
+@pytest.mark.parametrize(("gravity", "told"), [(None, True), ("0", False), ('"9.81 m/s^2"', False)])
+def test_forgotten_gravity_is_told(gravity: str | None, told: bool, tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    lines = [line for line in job.read_text().splitlines() if not line.startswith("gravity")]
+    if gravity is not None:
+        lines.insert(lines.index("[mechanism]") + 1, f"gravity = {gravity}")
+    job.write_text("\n".join(lines))
+    done = command("check", job)
+    assert done.exit_code == 0, done.stderr
+    assert ("masses are given but no gravity" in done.stdout) == told
+
+
+@pytest.mark.parametrize(
+    ("module", "said"), [(None, "no module mine is there"), ("x = 1", "has no jerk"), ("def jerk(d): ...", None)]
+)
+def test_a_missing_function_is_found_without_running_anything(
+    module: str | None, said: str | None, tmp_path: Path, command: Command
+) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text() + '\n[quantity.own]\nfunction = "mine:jerk"\n')
+    if module is not None:
+        (tmp_path / "mine.py").write_text(module)
+    done = command("check", job)
+    assert done.exit_code == (0 if said is None else 2)
+    assert (said or "") in done.stderr

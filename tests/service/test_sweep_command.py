@@ -150,3 +150,11 @@ def test_unusual_sweeps_can_be_drawn(axes: list[Axis], of: list[str]) -> None:
     table = sweep(SMOOTH, np.array([0.04, 0.1, 0.0]), axes, of)
     figure = sweep_figure(table, axes, [QUANTITIES[name] for name in of], title="A name that is long " * 8)
     assert overlaps(figure) == []
+
+
+@pytest.mark.parametrize(("name", "said"), [("mechanism.slider.mass", "--set"), ("ofset", "did you mean offset?")])
+def test_a_name_that_is_not_swept_is_what_is_wrong(name: str, said: str, command: Command, job: Path) -> None:
+    done = command("sweep", job, "--over", f"{name}=1 kg..2 kg:3", "--of", "stroke")
+    assert done.exit_code == 2
+    assert f"a sweep is over crank, rod, offset, speed; got {name!r}" in done.stderr
+    assert said in done.stderr

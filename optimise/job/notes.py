@@ -1,0 +1,37 @@
+"""What is allowed in a job, and yet is often not what was meant: told, not refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..units import ANGLE, ANGULAR_SPEED, LENGTH, Kind, per_si
+from .model import job_with
+from .own import declared
+
+_MOST = 6  # plain numbers that are told one by one
+_USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
+
+
+def notes_of(data: Mapping[str, Any]) -> list[str]:
+    """Return notes on the tables of a valid job, each a sentence: numbers without a unit, masses without gravity."""
+    plain: list[tuple[str | None, float, Kind]] = []
+    job = job_with(declared(data, allowed=True)).model_validate(data, context=plain)
+    told = [_told(*found) for found in dict.fromkeys(plain) if found[1]]
+    notes = []
+    if told:
+        more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
+        notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
+    machine = job.machine()
+    moving = machine.crank, machine.rod
+    if job.mechanism.gravity is None and (machine.slider_mass or any(getattr(link, "mass", 1.0) for link in moving)):
+        notes.append(
+            'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
+        )
+    return notes
+
+
+def _told(name: str | None, value: float, kind: Kind) -> str:
+    usual = _USUAL.get(kind)
+    also = f" ({value * per_si(usual):.6g} {usual})" if usual else ""
+    return f"{f'{name} = ' if name else ''}{value:g} is {value:g} {kind.unit}{also}"

@@ -1,0 +1,56 @@
+"""Standard output and standard error that may be closed, full, or unable to show a character."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from typing import Any
+
+from ...model.errors import OutputLost
+
+
+class Output(io.TextIOWrapper):
+    """Standard output; raises `OutputLost` where it cannot be written, `BrokenPipeError` where nobody reads on."""
+
+    def write(self, text: str) -> int:
+        """Write text."""
+        try:
+            return super().write(text)
+        except OSError as error:
+            raise _lost(error) from None
+
+    def flush(self) -> None:
+        """Write what is kept back."""
+        try:
+            super().flush()
+        except OSError as error:
+            raise _lost(error) from None
+
+
+def guard_streams() -> None:
+    """Make standard streams that say why they fail, and show "?" for characters that the terminal does not have."""
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
+    if sys.stdout is None:
+        # Reading only, so that every attempt to write fails as on the closed stream itself.
+        binary: Any = os.fdopen(os.open(os.devnull, os.O_RDONLY), "wb")
+        sys.stdout = Output(binary, encoding="utf-8")
+    elif isinstance(sys.stdout, io.TextIOWrapper):
+        encoding, at_once = sys.stdout.encoding, sys.stdout.line_buffering
+        sys.stdout = Output(sys.stdout.detach(), encoding=encoding, errors="replace", line_buffering=at_once)
+    if isinstance(sys.stderr, io.TextIOWrapper):
+        sys.stderr.reconfigure(errors="replace")
+
+
+def give_up_output() -> None:
+    """Send what is still kept back to nowhere: the end of the process would try again, and fail aloud."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _lost(error: OSError) -> Exception:
+    if isinstance(error, BrokenPipeError):
+        return error
+    return OutputLost(
+        f"standard output must take what is written; got: {error.strerror or error}; make room, or write elsewhere"
+    )

@@ -1,0 +1,53 @@
+"""Standard output that is closed, full or no longer read; too little memory: a sentence and an exit code each."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.service.conftest import Command
+
+
+def run(command: str) -> subprocess.CompletedProcess[str]:
+    script = f"'{sys.executable}' -m slidercrank {command}"
+    return subprocess.run(["bash", "-c", script], capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("command", ["--version > /dev/full", "--version >&-", "--help > /dev/full"])
+def test_output_that_cannot_be_written_is_one_sentence(command: str) -> None:
+    done = run(command)
+    assert done.returncode == 2
+    assert done.stderr.startswith("slidercrank: standard output must take what is written; got: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_output_that_nobody_reads_on_is_no_error() -> None:
+    assert run("schema | head -1").stderr == ""
+
+
+@pytest.mark.parametrize("errors", ["2> /dev/full", "2>&-"])
+def test_messages_that_cannot_be_written_leave_the_exit_code(errors: str) -> None:
+    assert run(f"check nowhere.toml {errors}").returncode == 2
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        MemoryError(),
+        RuntimeError("can't start new thread"),
+        OSError(12, "Cannot allocate memory"),
+        ImportError("libx.so: failed to map segment from shared object"),
+    ],
+)
+def test_too_little_memory_is_no_fault_of_the_software(
+    error: Exception, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise ValueError("what came of it") from error
+
+    monkeypatch.setattr("slidercrank.service.commands.diagnosis.diagnose", fail)
+    done = command("doctor")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "there must be memory enough" in done.stderr
