@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from ..objectives.own.interruption import interrupted_by
 from .assemble import empty
 from .certificate.infeasible import prove_infeasible
 from .deliver import as_found, deliver, planned
@@ -62,7 +63,8 @@ def solve(
 
         run.progress = told
     try:
-        return _searched(problem, evaluators, run)
+        with interrupted_by(ledger.interrupt):
+            return _searched(problem, evaluators, run)
     except Cancelled:
         return so_far(problem, evaluators, run)
 
