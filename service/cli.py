@@ -38,6 +38,7 @@ from .commands.serve import serve
 from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
+from .disk_room import full_places, is_full
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"
@@ -63,6 +64,9 @@ class Commands(TyperGroup):
         except Exception as error:
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
                 raise
+            if isinstance(error, OSError) and is_full(error):
+                say(f"slidercrank: what is computed is written to disks; {full_places(error)}; make room")
+                raise typer.Exit(WRONG_INPUT) from None
             say(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "
                 f"input; see {_log_of(error)}"
