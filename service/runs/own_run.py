@@ -89,11 +89,16 @@ def take_up(store: Store, job: Job) -> Claim:
 
 
 @contextlib.contextmanager
-def told(claim: Claim) -> Iterator[None]:
-    """While entered, an error ends the job in the store too, so that it can be resumed at once."""
+def told(claim: Claim, *, listed: bool = True) -> Iterator[None]:
+    """While entered, an error ends the job in the store too, so that it can be resumed at once.
+
+    listed: whether its store lasts longer than the run.
+    """
     try:
         yield
     except StoreError as error:
+        if not listed:
+            raise
         remedy = f"then go on with: slidercrank optimise --resume {claim.job.run}"
         raise StoreError(f"{error}; what was found until then is kept; {remedy}") from error
     except LeaseLost:
