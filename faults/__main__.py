@@ -15,11 +15,13 @@ from typing import Annotated, Literal
 import typer
 
 from .commits import commits
+from .disk import disk
 from .flood import flood
 from .full import full
 from .kills import kills
 from .pauses import pauses
 from .restarts import restarts
+from .runaway import runaway
 from .verdict import Verdict
 
 app = typer.Typer(add_completion=False, help=__doc__)
@@ -40,6 +42,8 @@ def _all(context: typer.Context) -> None:
         lambda: _pauses("postgresql"),
         lambda: _restarts(300.0),
         _full,
+        lambda: _disk(5),
+        lambda: _runaway(1),
         lambda: _commits("sqlite"),
         lambda: _commits("postgresql"),
         _dask,
@@ -76,6 +80,18 @@ def _restarts(seconds: Annotated[float, typer.Option(help="For how long, s.")] =
 def _full(count: Count = 50, seed: Seed = 1) -> None:
     """Let the disk be full at random moments (SQLite)."""
     _report(f"disk full {count} times on sqlite", lambda: full(count, seed))
+
+
+@app.command("disk")
+def _disk(count: Annotated[int, typer.Option(help="How often each disk is filled.")] = 5, seed: Seed = 1) -> None:
+    """Let the disks of `optimise` and of `serve` be full: store, runs, figures, kernels, temporary files (as root)."""
+    _report(f"each disk full {count} times", lambda: disk(count, seed))
+
+
+@app.command("runaway")
+def _runaway(count: Annotated[int, typer.Option(help="Rounds of all kinds.")] = 1, seed: Seed = 1) -> None:
+    """Let own functions loop: before and after records, cancelled, killed, ended."""
+    _report(f"own functions that loop, {count} rounds", lambda: runaway(count, seed))
 
 
 @app.command("commits")

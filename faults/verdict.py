@@ -73,6 +73,7 @@ KINDS_OF_WRONG = (
     "rounds amiss",
     "events missed",
     "late",
+    "left",
 )
 
 

@@ -112,6 +112,11 @@ class Ledger:
         if self._cancelled is not None and self._next is None and self._cancelled():
             raise Cancelled
 
+    def interrupt(self) -> None:
+        """Raise `Cancelled` if the search is to end, also while it replays; for what may never end by itself."""
+        if self._cancelled is not None and self._cancelled():
+            raise Cancelled
+
     def close(self) -> None:
         """Neither ask nor keep from now on: what follows belongs to no step."""
         self._cancelled = self._keep = self._next = None

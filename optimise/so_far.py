@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..objectives.own.interruption import interrupted_by
+from ..objectives.own.quantity import runs_own
 from .assemble import assemble, empty, span_of, table_of
 from .challenge import by_sheet
 from .evaluation import Evaluator
 from .front import ParetoFront
+from .ledger import Cancelled
 from .pile import Pile
 from .problem import Problem
 from .recorded import projected
@@ -19,6 +23,7 @@ from .stationarity import Array
 
 _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
+_OWN = 1.0  # s, after which no call of an own function goes on
 _BATCH = 16  # designs moved at a time
 _TRIED = 50  # designs that tell how long all take
 _MOST = 1000  # designs: to choose among more would take longer
@@ -27,9 +32,29 @@ _MOST = 1000  # designs: to choose among more would take longer
 def so_far(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     """Return the front of what a search has polished, else of what it has found, moved onto the constraints.
 
-    Where that or the quantities of all designs would take longer than a moment, it has fewer of them, evenly spread.
+    Where that or the quantities of all designs would take longer than a moment, it has fewer of them, evenly spread;
+    none where functions of the job's own do not return in that time.
     """
     run.ledger.close()
+    end = time.monotonic() + _OWN
+
+    def give_up() -> None:
+        if time.monotonic() > end:
+            raise Cancelled
+
+    try:
+        with interrupted_by(give_up) if any(map(runs_own, problem.own)) else contextlib.nullcontext():
+            return _front(problem, evaluators, run)
+    except Cancelled:
+        return empty(problem, evaluators, run, "cancelled", _SLOW)
+
+
+_SLOW = (
+    "cancelled; functions of its own took too long to tell of what was found, of which all is kept for when it goes on"
+)
+
+
+def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     pile, archive = run.pile, run.archive
     if archive is not None and len(archive) and (pile is None or not pile.free.any()):
         pile = _as_found(problem, evaluators, archive, pile)

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from ..objectives.own.interruption import interrupted_by
 from .assemble import empty
 from .best import Best, best_of
 from .certificate.infeasible import prove_infeasible
@@ -68,7 +69,8 @@ def solve(
 
         run.progress = told
     try:
-        return _searched(problem, evaluators, run)
+        with interrupted_by(ledger.interrupt):
+            return _searched(problem, evaluators, run)
     except Cancelled:
         return so_far(problem, evaluators, run)
 

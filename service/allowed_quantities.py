@@ -1,11 +1,20 @@
-"""Which functions of their own jobs of others may name."""
+"""Which functions of their own jobs of others may name, and how long a call of one may take."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from ..model.errors import JobError
+
+if TYPE_CHECKING:
+    from ..optimise.problem import Problem
+
+LONGEST_CALL = 300.0
+"""s, that a call takes at most in a job of the service, whatever limit the job gives it."""
+LONGEST_ANSWER = 10.0
+"""s, that a call takes at most while a request waits for it."""
 
 
 def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None:
@@ -21,3 +30,12 @@ def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None
                 f"quantity.{name[:60]}: only functions that the operator allows are run here; got {shown(function)}; "
                 f"{remedy}"
             )
+
+
+def bounded(problem: Problem, seconds: float) -> Problem:
+    """Return a problem whose functions of its own are not called for longer than so many s at a time."""
+    from ..objectives.own.quantity import bounded
+
+    return (
+        replace(problem, own=tuple(bounded(quantity, seconds) for quantity in problem.own)) if problem.own else problem
+    )

@@ -40,6 +40,7 @@ from .commands.streams import give_up_output, guard_streams
 from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
+from .disk_room import full_places, is_full
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"
@@ -72,6 +73,9 @@ class Commands(TyperGroup):
                 raise
             if _short_of_memory(error):
                 say(_MORE_MEMORY)
+                raise typer.Exit(WRONG_INPUT) from None
+            if isinstance(error, OSError) and is_full(error):
+                say(f"slidercrank: what is computed is written to disks; {full_places(error)}; make room")
                 raise typer.Exit(WRONG_INPUT) from None
             say(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "

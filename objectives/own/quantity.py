@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.machinery import PathFinder
 from pathlib import Path
-from typing import Any, Literal, NoReturn, get_args
+from typing import Any, Literal, NoReturn, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from ...model.batches import turning
 from ...model.errors import InputError
 from ...model.mechanism import Mechanism
 from ...model.self_locking import locking_margin
-from ..quantity import Array, Pieces, Unit, Values
+from ..quantity import Array, Pieces, Quantity, Unit, Values
 from .apply import Answer, Function, Refused, apply
 from .worker import Worker
 
@@ -61,7 +61,8 @@ class OwnQuantity:
     function: takes `Designs`, returns (n,), or (n, k) of which the greatest counts, SI. "module:function" runs in a
     process of its own, within the limit; a Python function runs in this one, without. unit: as it is shown.
     gradient: "complex step" for a function that runs on complex numbers, else "finite differences"; "none" for methods
-    that need no gradient. folders: where the module may lie. limit: s, of a call for up to 256 designs.
+    that need no gradient. folders: where the module may lie. limit: s, of a call for up to 256 designs. longest: what
+    whoever runs the function lets a call take, whatever the limit is.
 
     Every method raises `InputError` naming the quantity for a function that raises, returns anything but finite numbers
     of the right shape, does not return in time, ends the process, or has no such gradient.
@@ -74,6 +75,7 @@ class OwnQuantity:
     gradient: Gradient = "complex step"
     folders: tuple[str, ...] = ()
     limit: float = LIMIT
+    longest: float = field(default=float("inf"), compare=False)
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -141,7 +143,7 @@ class OwnQuantity:
 
     def _call(self) -> Call:
         if isinstance(self.function, str):
-            return Worker(self.function, list(self.folders), self.limit)
+            return Worker(self.function, list(self.folders), self.limit, self.longest)
         function = self.function
         return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
 
@@ -255,6 +257,20 @@ class OwnQuantity:
                 'or set gradient = "finite differences"'
             )
         self._session.checked.append(mechanism)
+
+
+def bounded(quantity: Quantity, longest: float) -> Quantity:
+    """Return a quantity whose calls of own functions take at most so long, s; also one that is made of such a one."""
+    if isinstance(quantity, OwnQuantity):
+        return replace(quantity, longest=longest)
+    inner = getattr(quantity, "inner", None)
+    return quantity if inner is None else replace(cast(Any, quantity), inner=bounded(inner, longest))
+
+
+def runs_own(quantity: Quantity) -> bool:
+    """Whether a quantity, or one that it is made of, is a function of the user's own."""
+    inner = getattr(quantity, "inner", None)
+    return isinstance(quantity, OwnQuantity) or (inner is not None and runs_own(inner))
 
 
 def own_quantities() -> dict[str, Any]:

@@ -1,38 +1,63 @@
-"""The other end of `child`: starting the process, asking it, and saying what became of it."""
+"""The other end of `child`: starting the process, asking it, and saying what became of it.
+
+The process is in a group with a guard, a shell that reads from a pipe which nobody writes to. It ends when this process
+does, by whatever: then the guard kills the group, also a function that holds the interpreter, ignores signals or forks.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import pickle
+import queue
 import re
+import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import weakref
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
 from ...model.mechanism import Mechanism
 from .apply import Answer, Array, Refused
 from .child import HEAD, unpacked
+from .interruption import ask
 
 _START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit after which the process is ended from here
+_TICK = 0.1  # s between two questions whether the call is to end
+_FAREWELL = 0.5  # s that a call which is to end may still take: a process that answers is kept
+_ENDING = 5.0  # s that a process without an output has to end
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
+_CHILD = (sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()")
+_GUARD = ("/bin/sh", "-c", 'read _; rm -f "$1"; kill -9 0', "guard")  # its own group
+
+Message = tuple[bytes, bytes]
+Process = subprocess.Popen[bytes]
 
 
 class Worker:
-    """A process that runs one function. Raises `Refused` for all that it does wrong, and is then over."""
+    """A process that runs one function. Raises `Refused` for all that it does wrong, and is then over.
 
-    def __init__(self, function: str, folders: list[str], limit: float) -> None:
-        """Take "module:function", the folders where its module may lie, and the time limit of a call, s."""
-        self.function, self.folders, self.limit = function, folders, limit
-        self._process: subprocess.Popen[bytes] | None = None
+    A call also ends, and the process with it, by what `interruption.ask` raises.
+    """
+
+    def __init__(self, function: str, folders: list[str], limit: float, longest: float = float("inf")) -> None:
+        """Take "module:function", the folders where its module may lie, and the time limit of a call, s.
+
+        longest: limit beyond which whoever runs the function does not let it go.
+        """
+        self.function, self.folders = function, folders
+        self.limit, self.longest = min(limit, longest), longest
+        self._process: Process | None = None
+        self._guard: Process | None = None
         self._mechanism: Mechanism | None = None
+        self._late = False
         self._lock = threading.Lock()
 
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
@@ -48,29 +73,40 @@ class Worker:
             return unpacked(self._answer(self.limit))
 
     def close(self) -> None:
-        """End the process."""
+        """End the process and all that it started."""
         if self._process is not None:
+            self._process = self._mechanism = None
             self._end()
 
     def _start(self) -> None:
         # Only a name: the child opens it, and what it says of a crash is read here.
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
-        command = [sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()"]
-        self._process, self._owner = (
-            subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE),
-            os.getpid(),
-        )
-        self._end = weakref.finalize(self, _end, self._process, self._log)
+        group: dict[str, Any] = {}
+        guard: Process | None = None
+        if os.name == "posix":
+            # The guard comes first: there is no moment at which the child runs without it.
+            guard = subprocess.Popen((*_GUARD, self._log), stdin=subprocess.PIPE, process_group=0)
+            group = {"process_group": guard.pid}
+        process = subprocess.Popen(_CHILD, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **group)
+        self._process, self._guard, self._owner, self._late = process, guard, os.getpid(), False
+        self._end = weakref.finalize(self, _end, process, guard, self._log)
+        self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
+        threading.Thread(
+            target=_listen, args=(process.stdout, self._messages), name="own function", daemon=True
+        ).start()
         self._send((self._log, self.limit, self.function, self.folders))
         self._answer(_START + self.limit)
 
     def _forget(self) -> None:
         """Leave the process to the one that started it, of which this one is a fork."""
-        assert self._process is not None
         self._end.detach()
-        self._process.returncode = 0  # not a child of this process: nothing to wait for
-        self._process = self._mechanism = None
+        for one in (self._process, self._guard):
+            if one is not None:
+                assert one.stdin is not None
+                one.stdin.close()  # the copy of the pipe here would keep the guard from its work
+                one.returncode = 0  # not a child of this process: nothing to wait for
+        self._process = self._guard = self._mechanism = None
 
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None
@@ -80,53 +116,84 @@ class Worker:
             self._process.stdin.flush()
 
     def _answer(self, limit: float) -> bytes:
-        assert self._process is not None
-        assert self._process.stdout is not None
-        # The child watches its time itself; this is for a child that cannot.
-        timer = threading.Timer(limit + _GRACE, self._process.kill)
-        timer.daemon = True
-        timer.start()
-        try:
-            head = self._process.stdout.read(HEAD.size)
-            kind, length = HEAD.unpack(head) if len(head) == HEAD.size else (b"", 0)
-            content = self._process.stdout.read(length)
-        finally:
-            timer.cancel()
+        kind, content = self._next(limit)
         if kind == b"W":
             return self._answer(_START + self.limit)
-        if not kind or len(content) < length:
+        if not kind:
             self._refuse(self._fate())
         if kind == b"E":
             self._refuse(content.decode())
         return content
 
+    def _next(self, limit: float) -> Message:
+        """Return what the process says next, nothing if it has ended. What interrupts ends a process that is slow."""
+        # The child watches its time itself; this is for a child that cannot.
+        end = time.monotonic() + limit + _GRACE
+        try:
+            while True:
+                with contextlib.suppress(queue.Empty):
+                    return self._messages.get(timeout=_TICK)
+                ask()
+                if time.monotonic() > end and not self._late:
+                    self._late = True
+                    self._end()
+        except BaseException:
+            try:
+                kind, _ = self._messages.get(timeout=_FAREWELL)
+            except queue.Empty:
+                kind = b""
+            if kind not in (b"A", b"R"):
+                self.close()
+            raise
+
     def _refuse(self, reason: str) -> None:
         self.close()
-        self._process = None
         raise Refused(reason)
 
     def _fate(self) -> str:
         """Return why the process ended."""
         assert self._process is not None
-        code = self._process.wait()
-        text = Path(self._log).read_text(encoding="utf-8", errors="replace")
+        try:
+            code = self._process.wait(_ENDING)
+        except subprocess.TimeoutExpired:  # it closed its output and goes on
+            self._process.kill()
+            code = self._process.wait()
+        text = Path(self._log).read_text(encoding="utf-8", errors="replace") if Path(self._log).exists() else ""
         frames = [(Path(file), line) for file, line in _FRAME.findall(text)]
         module = self.function.partition(":")[0].rpartition(".")[2]
         own = [frame for frame in frames if frame[0].stem == module] or frames  # the last call comes first
         where = f" ({own[0][0].name}:{own[0][1]})" if own else ""
-        if "Timeout (" in text or code == -9:
-            return (
-                f"must return within {self.limit:g} s; it still ran{where} then; correct it, or raise the limit if it "
-                "is only slow"
-            )
+        if "Timeout (" in text or self._late:
+            raised = "correct it, or raise the limit if it is only slow"
+            remedy = raised if self.limit < self.longest else "no call may take longer here; correct it"
+            return f"must return within {self.limit:g} s; it still ran{where} then; {remedy}"
+        if code == -9:
+            return "must return; its process was killed, for lack of memory perhaps; let it take less"
         return f"must return, not end the process; it ended with code {code}{where}; correct the function"
 
 
-def _end(process: subprocess.Popen[bytes], log: str) -> None:
-    for stream in (process.stdin, process.stdout):
-        if stream is not None:
-            with contextlib.suppress(OSError):  # what was not sent yet has nobody to read it
-                stream.close()
+def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
+    """Put what a process says into a queue, and an empty message at its end."""
+    with stream, contextlib.suppress(OSError, ValueError):
+        while len(head := stream.read(HEAD.size)) == HEAD.size:
+            kind, length = HEAD.unpack(head)
+            content = stream.read(length)
+            if len(content) < length:
+                break
+            messages.put((kind, content))
+    messages.put((b"", b""))
+
+
+def _end(process: Process, guard: Process | None, log: str) -> None:
+    if guard is not None:
+        with contextlib.suppress(OSError):  # all of them have ended
+            os.killpg(guard.pid, signal.SIGKILL)
+        guard.wait()
+        assert guard.stdin is not None
+        guard.stdin.close()
     process.kill()
     process.wait()
+    assert process.stdin is not None
+    with contextlib.suppress(OSError):  # what was not sent yet has nobody to read it
+        process.stdin.close()
     Path(log).unlink(missing_ok=True)

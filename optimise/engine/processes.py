@@ -13,6 +13,7 @@ from itertools import islice
 from typing import Any, cast
 
 from ...model.errors import EngineError, InputError
+from ...objectives.own.interruption import ask
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3
@@ -20,6 +21,7 @@ MOST_BREAKS = 3
 _STARTS = 8  # in a row that may fail
 _START = 3.0  # s, that it takes about to start them and to load what is compiled
 _TICK = 0.1  # s, between two questions whether to stop
+_FAREWELL = 0.5  # s that work under way may still take then; processes that have finished it are kept
 
 
 class Processes:
@@ -97,6 +99,7 @@ class Processes:
                     del running[future]
                 if poll is not None:
                     poll()
+                ask()
         except BrokenProcessPool:
             self.close()
             for future, index in running.items():
@@ -106,7 +109,17 @@ class Processes:
         except BaseException:
             for future in running:
                 future.cancel()
+            if wait([future for future in running if future.running()], timeout=_FAREWELL).not_done:
+                self._abandon()
             raise
+
+    def _abandon(self) -> None:
+        """Kill processes whose work nobody waits for, and that may never end."""
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            for process in list((cast(Any, pool)._processes or {}).values()):
+                process.kill()
+            pool.shutdown(cancel_futures=True)
 
     def _started(self) -> ProcessPoolExecutor:
         """Return the pool, its first process ready: how a process starts is not the fault of what it is given."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..allowed_quantities import require_allowed
+from ..allowed_quantities import LONGEST_ANSWER, bounded, require_allowed
 from .job_requests import require_no_file
 
 if TYPE_CHECKING:
@@ -24,4 +24,4 @@ def given_problem(
 
     require_no_file(tables)
     require_allowed(tables, allowed)
-    return parse_job(tables, values, allow_user_code=bool(allowed))
+    return bounded(parse_job(tables, values, allow_user_code=bool(allowed)), LONGEST_ANSWER)

@@ -21,9 +21,10 @@ class Live(Shown):
 
 
 class Ready(Shown):
-    """The service has its database."""
+    """The service has its database. takes_jobs: whether a worker was heard of lately, be it busy."""
 
     status: Literal["ready"] = "ready"
+    takes_jobs: bool
     workers: Count
     waiting: Count
 
@@ -36,8 +37,10 @@ async def show_live() -> Live:
 
 @router.get("/health/ready")
 def show_ready(store: StoreDep) -> Ready:
-    """Return that the database can be read, how many workers were heard of lately, and how many jobs wait for them."""
-    return Ready(workers=live_workers(store), waiting=store.counts().get("queued", 0))
+    """Return that the database can be read and has room, how many workers there are, and how many jobs wait."""
+    store.require_room()
+    workers = live_workers(store)
+    return Ready(takes_jobs=workers > 0, workers=workers, waiting=store.counts().get("queued", 0))
 
 
 @router.get(

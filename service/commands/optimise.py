@@ -82,7 +82,7 @@ def optimise(
             begin = _again(resume or "", jobs, runs_place(runs))
         interruption = opened.enter_context(Interruption())
         run, problem, claim = opened.enter_context(begin)
-        opened.enter_context(told(claim))
+        opened.enter_context(told(claim, listed=listed))
         opened.enter_context(Pulse(claim))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 LEASE = 3600.0
 """s. A run that is stopped by Ctrl-Z for less goes on where it was; one that was killed is free again after this, or
 when it is resumed."""
+_PATIENCE = 2.0  # s that it waits for room on the disk of the store: somebody sits before it
 _WORKER = "command line"
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
@@ -37,6 +38,7 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
     """Put the job of a new folder into the store and return its claim; the folder takes the name that it has there."""
     worker = _worker()
     claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
+    claim.most_full = _PATIENCE
     folder.rename(claim.job.run)
     folder.keep_files({file.name: file.content for file in files})
     return claim
@@ -76,20 +78,30 @@ def take_up(store: Store, job: Job) -> Claim:
     """
     alone = (job.worker or "").startswith(_WORKER)
     try:
-        return store.go_on(job.id, worker=_worker(), lease=LEASE, alone=alone)
+        claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=alone)
     except InputError:
         state = store.job(job.id).state
         raise RunError(
             f"only an interrupted or cancelled run can go on; {job.run} is {state}; run its job anew"
         ) from None
+    claim.most_full = _PATIENCE
+    return claim
 
 
 @contextlib.contextmanager
-def told(claim: Claim) -> Iterator[None]:
-    """While entered, an error ends the job in the store too, so that it can be resumed at once."""
+def told(claim: Claim, *, listed: bool = True) -> Iterator[None]:
+    """While entered, an error ends the job in the store too, so that it can be resumed at once.
+
+    listed: whether its store lasts longer than the run.
+    """
     try:
         yield
-    except (LeaseLost, StoreError):
+    except StoreError as error:
+        if not listed:
+            raise
+        remedy = f"then go on with: slidercrank optimise --resume {claim.job.run}"
+        raise StoreError(f"{error}; what was found until then is kept; {remedy}") from error
+    except LeaseLost:
         raise
     except BaseException as error:
         with contextlib.suppress(LeaseLost, StoreError):  # the error that is under way matters more

@@ -27,6 +27,7 @@ from pathlib import Path
 from types import TracebackType
 
 from ...model.errors import InputError, RunError
+from ..disk_room import is_full, room
 from .result import Result, csv_text, json_text
 
 MARK = "UNFINISHED"
@@ -241,10 +242,14 @@ def sync(path: Path) -> None:
 
 @contextlib.contextmanager
 def disk(place: Path) -> Iterator[None]:
-    """Turn an error of the disk into a `RunError` that names the place."""
+    """Turn an error of the disk into a `RunError` that names the place, and how much room it has where it is full."""
     try:
         yield
     except OSError as error:
+        if is_full(error):
+            raise RunError(
+                f"a run needs room on its disk; {room(place)}; make room, or choose another place"
+            ) from error
         reason = error.strerror or str(error)
         raise RunError(
             f"{place} must be a folder that can be written; got: {reason}; free or permit it, or choose another place"

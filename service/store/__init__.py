@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .claim import Claim
-from .records import NO_LIMITS, Artefact, Event, Job, Limits, State, Worker
+from .records import NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, State, Worker
 from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
 from .watching import News
 
@@ -11,6 +11,7 @@ __all__ = [
     "LEASE",
     "MOST_ATTEMPTS",
     "MOST_QUEUED",
+    "NOT_DONE",
     "NO_LIMITS",
     "Artefact",
     "Claim",

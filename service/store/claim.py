@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -12,8 +14,9 @@ from sqlalchemy import ColumnElement, Connection, Double, and_, case, cast, dele
 
 from ...model.errors import LeaseLost
 from ..runs.result import Result, finite
-from .clock import now
-from .database import Database, Unavailable
+from .claiming import MOST_DELAY
+from .clock import JUMP, now
+from .database import Database, Full, Unavailable
 from .events_log import Told, add_events, state_event
 from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
 from .records import NOT_DONE, Artefact, Job
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
     from ...optimise.front import Progress
     from ...optimise.ledger import Record
 
+_log = logging.getLogger(__name__)
+_TOLD = 1.0  # s after which it is told that a write has to wait
 _PAUSE = 0.25  # s between two tries of a write that the database refused
 Rest = Callable[[Connection], None]
 
@@ -32,11 +37,14 @@ class Claim:
     """The right to write of a job until its lease ends.
 
     Every write is one transaction that holds only if the fence is still that of this claim and the lease has not ended,
-    by the clock of the database; else nothing is written and `LeaseLost` is raised, also when no other worker has come
-    yet. Every write renews the lease. A write that the database refuses, or whose answer is lost, is tried again for as
-    long as the lease lasts, and takes effect once. Threads may share a claim.
+    by the monotonic clock of this process or by that of the database, which may jump; else nothing is written and
+    `LeaseLost` is raised, also when no other worker has come yet. Every write renews the lease. A write that the
+    database refuses, or whose answer is lost, is tried again for as long as the lease lasts, and takes effect once.
+    Threads may share a claim.
 
-    begun: whether its search has evaluated anything yet.
+    begun: whether its search has evaluated anything yet. astray: whether the lease ends at another time than it should,
+    by the clock of the database, which has jumped; it is to be renewed. most_full: for how long, in s, a write is tried
+    again while the disk of the database is full; for as long as the lease lasts, if that ends earlier.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
@@ -52,6 +60,8 @@ class Claim:
         self._records = job.records
         self._kept: list[Record] = []
         self._renewed = time.monotonic()
+        self.astray = False
+        self.most_full = math.inf
 
     @property
     def age(self) -> float:
@@ -87,12 +97,14 @@ class Claim:
 
     def look(self) -> None:
         """Look whether the job is to be cancelled, without writing. Raises `LeaseLost` if another worker has it."""
-        query = select(jobs.c.cancel_asked).where(self._mine, jobs.c.state == "running")
+        left = (jobs.c.lease_until - now()).label("left")
+        query = select(jobs.c.cancel_asked, left).where(self._mine, jobs.c.state == "running")
         with self._database.reading() as connection:
-            asked = connection.scalar(query)
-        if asked is None:
+            row = connection.execute(query).first()
+        if row is None:
             raise self._lost()
-        self.cancel_asked = self.cancel_asked or asked
+        self.cancel_asked = self.cancel_asked or row.cancel_asked
+        self.astray = not 0.5 * self.lease <= row.left <= self.lease + JUMP
 
     def say(self, text: str) -> None:
         """Add a message to the events of the job."""
@@ -138,24 +150,28 @@ class Claim:
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Give the job back after an error.
 
-        again: whether another attempt may succeed; it is then queued for `delay` s from now on, unless it has used up
-        its attempts. Else it is set aside as failed.
+        again: whether another attempt may succeed; it is then queued for `delay` s from now on, at most a minute,
+        unless it has used up its attempts. Else it is set aside as failed.
         """
         attempts = 0 if self._kept else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
         if again and attempts < self.job.most_attempts:
-            self._end("queued", f"{reason}{tries}", {"due": now() + cast(literal(delay), Double), "finished": None})
+            self._end("queued", f"{reason}{tries}", {"due": _in(min(delay, MOST_DELAY)), "finished": None})
         else:
             self._end("failed", f"{reason}{tries}", {})
 
-    def give_up(self) -> None:
+    def give_up(self, reason: str = NOT_DONE) -> None:
         """End the job, cancelled, with what it had found before this claim."""
-        self._end("cancelled", NOT_DONE, {})
+        self._end("cancelled", reason, {})
 
-    def hand_back(self, reason: str) -> None:
-        """Queue the job again as it is, without counting the attempt: its worker stops in an orderly way."""
+    def hand_back(self, reason: str, *, delay: float = 0.0) -> None:
+        """Queue the job again as it is, without counting the attempt: what stops it is no fault of its own.
+
+        delay: after which it may be claimed, in s, at most a minute.
+        """
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
-        self._end("queued", reason, {"finished": None, "attempts": fewer})
+        later = {"due": _in(min(delay, MOST_DELAY))} if delay else {}
+        self._end("queued", reason, {"finished": None, "attempts": fewer, **later})
 
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
         reason = plain(reason)
@@ -174,7 +190,7 @@ class Claim:
             values: dict[str, Any] = {
                 "writes": self._writes + 1,
                 "events": jobs.c.events + len(told),
-                "lease_until": now() + cast(literal(self.lease), Double),
+                "lease_until": _in(self.lease),
                 "records": self._records + len(rows),
             }
             if rows:
@@ -188,18 +204,21 @@ class Claim:
     def _commit(
         self, values: dict[str, Any], told: Sequence[Told], rows: list[dict[str, Any]], rest: Rest | None
     ) -> None:
-        tried = False
+        tried, told_why, began = False, False, time.monotonic()
         while True:
             started = time.monotonic()
             try:
                 with self._database.writing() as connection:
                     self._change(connection, values, told, rows, rest, tried)
-                self._renewed = started
+                self._renewed, self.astray = started, False
                 return
-            except Unavailable:
-                if self.age > self.lease:
+            except Unavailable as error:
+                waited = time.monotonic() - began
+                if self.age > self.lease or (isinstance(error, Full) and waited > self.most_full):
                     raise
-                tried = True
+                if waited > _TOLD and not told_why:
+                    _log.warning("waits to write: %s", error)
+                tried, told_why = True, told_why or waited > _TOLD
                 time.sleep(_PAUSE)
 
     def _change(
@@ -211,7 +230,9 @@ class Claim:
         rest: Rest | None,
         tried: bool,
     ) -> None:
-        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes, jobs.c.lease_until > now())
+        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
+        if self.age > self.lease:
+            held = and_(held, jobs.c.lease_until > now())
         row = connection.execute(
             update(jobs).where(held).values(values).returning(jobs.c.events, jobs.c.cancel_asked)
         ).first()
@@ -237,3 +258,7 @@ class Claim:
             f"only the holder of a lease writes of a job; claim {self.job.fence} of job {self.job.id} has lost it; "
             "leave the job: another worker goes on from what was committed"
         )
+
+
+def _in(seconds: float) -> ColumnElement[float]:
+    return now() + cast(literal(seconds), Double)

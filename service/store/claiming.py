@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from sqlalchemy import Connection, and_, func, or_, select, update
+from sqlalchemy import Connection, and_, exists, func, not_, or_, select, update
 
-from .clock import now
+from .clock import JUMP, Jumps, now
 from .events_log import add_events, state_event
 from .records import SHOWN, Job, job_of
-from .schema import jobs
+from .schema import jobs, workers
 from .submitting import in_hand
+
+MOST_DELAY = 60.0
+"""s after which a job is due again at the latest: one that is due later was queued under a clock set back since."""
+# Every write of a job is a sign of life of its worker. One in the future was given under a clock set back since, and a
+# worker that lives gives another one at once: so the lease, which lies as far in the future, is of one that does not.
+_FROM_LATER = exists(select(workers.c.id).where(workers.c.id == jobs.c.worker, workers.c.seen > now() + JUMP))
+ENDED_LEASE = or_(jobs.c.lease_until < now(), _FROM_LATER)
+"""Whether the lease of a running job has ended."""
+_DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
 
 # Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
     select(jobs.c.id, jobs.c.state, jobs.c.attempts, jobs.c.most_attempts, jobs.c.worker)
     .where(
         or_(
-            and_(jobs.c.state == "queued", jobs.c.due <= now()),
-            and_(jobs.c.state == "running", jobs.c.lease_until < now()),
+            and_(jobs.c.state == "queued", _DUE),
+            and_(jobs.c.state == "running", ENDED_LEASE),
         )
     )
     .order_by(jobs.c.priority.desc(), jobs.c.id)
@@ -24,14 +33,18 @@ _CLAIMABLE = (
 )
 
 
-def any_claimable(connection: Connection) -> bool:
-    """Whether some job waits for a worker; asked before claiming, so that idle workers do not write."""
-    return connection.execute(_CLAIMABLE).first() is not None
+def any_claimable(connection: Connection, jumps: Jumps) -> bool:
+    """Whether some job waits for a worker; asked before claiming, so that idle workers do not write.
+
+    jumps: of the database's clock; none is to be claimed soon after one.
+    """
+    settled = jumps.settled(connection.execute(select(now())).scalar_one())
+    return settled and connection.execute(_CLAIMABLE).first() is not None
 
 
 def running(connection: Connection) -> int:
     """Return how many jobs are in the hands of workers whose lease has not ended."""
-    held = and_(jobs.c.state == "running", jobs.c.lease_until >= now())
+    held = and_(jobs.c.state == "running", not_(ENDED_LEASE))
     return connection.scalar(select(func.count()).where(held)) or 0
 
 

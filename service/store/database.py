@@ -21,6 +21,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, Invalidate
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import InputError, StoreError
+from ..disk_room import LEAST, free, room
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
@@ -37,8 +38,15 @@ _POSTGRESQL = {
 }
 
 
+_DISK_FULL = "53100"  # of PostgreSQL
+
+
 class Unavailable(StoreError):
     """What the database refuses may succeed later: it restarts, its disk is full, another writer is at work."""
+
+
+class Full(Unavailable):
+    """The disk of the database has no room."""
 
 
 class Database:
@@ -54,10 +62,28 @@ class Database:
         self._secrets = _secrets(url)
         self.sqlite = url.get_backend_name() == "sqlite"
         self._file = _File(url.database) if self.sqlite and url.database else None
+        self._folder = Path(url.database or ".").parent if self.sqlite else None
         self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite:
             self._use_write_ahead_log()
+
+    def require_room(self) -> None:
+        """Raise `Full` if the disk of a file has no room; of a server's nothing is known."""
+        if self._folder is not None and free(self._folder) < LEAST:
+            raise self._full("its disk is full")
+
+    def _full(self, reason: str) -> Full:
+        there = "" if self._folder is None else f"; {room(self._folder)}"
+        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; make room")
+
+    def _is_full(self, error: Exception) -> bool:
+        cause = error.orig if isinstance(error, DBAPIError) else error
+        if self._folder is None:
+            return getattr(cause, "sqlstate", None) == _DISK_FULL
+        code = (getattr(cause, "sqlite_errorcode", None) or 0) & 0xFF
+        lacking = (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN)  # as it says where its log has no room
+        return code == sqlite3.SQLITE_FULL or (code in lacking and free(self._folder) < LEAST)
 
     def close(self) -> None:
         """Close all connections."""
@@ -90,6 +116,8 @@ class Database:
         try:
             yield
         except (DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
+            if self._is_full(error):
+                raise self._full(self._without_secrets(_reason(error))) from error
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "

@@ -109,7 +109,10 @@ SILENT = 120.0
 
 @dataclass(frozen=True, kw_only=True)
 class Worker:
-    """Who solves jobs. started, seen: when it began, and when it was heard of last. silent: seconds since then."""
+    """Who solves jobs.
+
+    started, seen: when it began, and when it was heard of last. silent: seconds between then and now.
+    """
 
     id: str
     started: float

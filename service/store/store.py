@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from typing import Any
 
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
-from ...model.errors import InputError, NotFound
+from ...model.errors import InputError, NotFound, StoreError
 from ..runs.result import Result
 from ..runs.run_folder import run_name
 from ..runs.stored_runs import result_from
 from .claim import Claim
-from .claiming import any_claimable, claim_next, running
-from .clock import now
+from .claiming import ENDED_LEASE, any_claimable, claim_next, running
+from .clock import Jumps, now
 from .database import Database
 from .events_log import add_events
 from .packing import plain, rows_of
@@ -47,6 +48,7 @@ class Store:
         self._database = Database(address)
         self.name = self._database.name
         self.most_queued = most_queued
+        self._jumps = Jumps()
         try:
             upgrade(self._database)
         except BaseException:
@@ -124,9 +126,22 @@ class Store:
         return Claim(self._database, held, lease)
 
     def job(self, number: int) -> Job:
-        """Return where a job stands."""
+        """Return where a job stands. While the disk of the store is full, that is the reason of jobs not ended."""
         with self._database.reading() as connection:
-            return the_job(connection, number)
+            found = the_job(connection, number)
+        return self._waiting([found])[0]
+
+    def require_room(self) -> None:
+        """Raise `StoreError`, which names the disk, where the disk of the store has no room."""
+        self._database.require_room()
+
+    def _waiting(self, found: list[Job]) -> list[Job]:
+        try:
+            self.require_room()
+        except StoreError as error:
+            reason = f"waits: {error}"
+            return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
+        return found
 
     def find(self, run: str) -> Job | None:
         """Return the job of a run folder's name, None if there is none."""
@@ -149,7 +164,8 @@ class Store:
         if before is not None:
             query = query.where(jobs.c.id < before)
         with self._database.reading() as connection:
-            return [job_of(row) for row in connection.execute(query)]
+            found = [job_of(row) for row in connection.execute(query)]
+        return self._waiting(found)
 
     def counts(self) -> dict[str, int]:
         """Return how many jobs are in each state that any is in."""
@@ -233,7 +249,7 @@ class Store:
         """
         with self._database.writing() as connection:
             job = the_job(connection, number, lock=True)
-            ended = select(jobs.c.lease_until < now()).where(jobs.c.id == number)
+            ended = select(ENDED_LEASE).where(jobs.c.id == number)
             if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
                 left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
                 return become(connection, job, "cancelled", NOT_DONE, **left)
@@ -272,7 +288,7 @@ class Store:
         if not 0.0 < lease <= 3600.0:
             raise InputError(f"a lease lasts more than 0 s and at most an hour; got {lease} s")
         with self._database.reading() as connection:
-            if not any_claimable(connection):
+            if not any_claimable(connection, self._jumps):
                 return None
         with self._database.writing() as connection:
             if most_running is not None:
@@ -296,7 +312,11 @@ class Store:
             connection.execute(delete(workers).where(workers.c.id == worker))
 
     def workers(self) -> list[Worker]:
-        """Return all workers that came and have not left, the one heard of last first."""
-        query = select(*workers.c, (now() - workers.c.seen).label("silent")).order_by(workers.c.seen.desc())
+        """Return all workers that came and have not left, the one heard of last first.
+
+        One that was heard of in the future, by a clock set back since, counts as silent for as long.
+        """
+        silent = func.abs(now() - workers.c.seen).label("silent")
+        query = select(*workers.c, silent).order_by(silent)
         with self._database.reading() as connection:
             return [Worker(**row._mapping) for row in connection.execute(query)]

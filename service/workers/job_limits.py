@@ -21,7 +21,7 @@ class Budget:
 
     def __init__(self, limits: Limits) -> None:
         """Begin with limits; the one of memory is not looked at here."""
-        self._limits = limits
+        self.limits = limits
         self._began = time.monotonic()
         self._evaluations = 0
 
@@ -31,15 +31,16 @@ class Budget:
 
     def spent(self) -> bool:
         """Whether the search is to end with what it has."""
-        return bool(self._reason())
+        return bool(self.reason())
 
     def explained(self, result: Result) -> Result:
         """Return a result with the limit that ended its search in its message, if one did."""
-        reason = self._reason() if result.status == "cancelled" else ""
+        reason = self.reason() if result.status == "cancelled" else ""
         return replace(result, message=f"{result.message}; {reason}") if reason else result
 
-    def _reason(self) -> str:
-        seconds, evaluations = self._limits.seconds, self._limits.evaluations
+    def reason(self) -> str:
+        """Return which limit is reached, in words; nothing if none is."""
+        seconds, evaluations = self.limits.seconds, self.limits.evaluations
         if seconds is not None and time.monotonic() - self._began >= seconds:
             return f"its search took longer than its limit of {seconds:g} s"
         if evaluations is not None and self._evaluations >= evaluations:

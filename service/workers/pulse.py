@@ -6,12 +6,14 @@ import contextlib
 import contextvars
 import logging
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable
 
 from ...model.errors import LeaseLost, StoreError
-from ..store import Claim
+from ..store import NOT_DONE, Claim
+from .memory import Memory
 from .sizes import size_text
 
 _log = logging.getLogger(__name__)
@@ -19,6 +21,9 @@ PULSE = 0.25
 """Time between two beats, s: a cancelled job has to end within 2 s, of which its search takes up to one to hear."""
 EXHAUSTED = 75
 """Exit code of a process whose job took more memory than it may; another process is to take its place."""
+DEAF = 76
+"""Exit code of a process whose search did not end when it was told to; another process is to take its place."""
+_HEARS = 60.0  # s that a search has to end once it is told to: a kernel that is being compiled hears of nothing
 Stop = Callable[[], bool]
 
 
@@ -33,14 +38,19 @@ class Pulse:
         claim: Claim,
         *,
         memory: int | None = None,
+        taken: Memory | None = None,
+        over: Callable[[], str] | None = None,
         stop: Stop | None = None,
         grace: float | None = None,
         patience: float | None = None,
     ) -> None:
         """Care for a claim.
 
-        memory: what this process and its children may take, in bytes. Beyond it the job is set aside as failed and the
-        process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
+        memory: what the job may take, in bytes, as `taken` measures it. Beyond it the job is set aside as failed and
+        the process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
+        over: says why the search is to end with what it has, nothing as long as it is not. Where it does not within a
+        minute, also after a cancellation, the job ends without it and the process with the exit code `DEAF`; only where
+        there is a grace, too.
         grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
         ends with 0. For as long as it takes, if None.
         patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. While
@@ -49,6 +59,9 @@ class Pulse:
         self.claim = claim
         self.lost = ""
         self._memory = memory
+        self._taken = taken or Memory()
+        self._over = over or (lambda: "")
+        self._told: float | None = None
         self._stop = stop or (lambda: False)
         self._grace = grace
         self._patience = patience
@@ -73,8 +86,9 @@ class Pulse:
         while not self.lost and not self._end.wait(min(PULSE, lease / 10.0)):
             self._look_at_memory()
             self._look_at_stop()
+            self._look_at_deaf()
             try:
-                if self.claim.age > lease / 3.0:
+                if self.claim.age > lease / 3.0 or self.claim.astray:
                     self.claim.renew()
                 else:
                     self.claim.look()
@@ -94,7 +108,7 @@ class Pulse:
             self.lost = "it was cancelled before its search began"
 
     def _look_at_memory(self) -> None:
-        taken = memory_taken() if self._memory is not None else 0
+        taken = self._taken.of_the_job() if self._memory is not None else 0
         if self._memory is None or taken <= self._memory or self._end.is_set():
             return
         reason = (
@@ -105,6 +119,20 @@ class Pulse:
         with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends, and it counts as an attempt
             self.claim.fail(reason, again=False)
         leave(EXHAUSTED)
+
+    def _look_at_deaf(self) -> None:
+        reason = NOT_DONE if self.claim.cancel_asked else self._over()
+        if self._grace is None or not reason:
+            return
+        self._told = time.monotonic() if self._told is None else self._told
+        if time.monotonic() - self._told < _HEARS or self._end.is_set():
+            return
+        _log.error("ended: its search did not within %g s of being told to", _HEARS)
+        try:
+            self.claim.give_up(f"{reason}; its search did not end when it was told to")
+        except (LeaseLost, StoreError):
+            return  # it has ended after all; or its writes find out
+        leave(DEAF)
 
     def _look_at_stop(self) -> None:
         if self._grace is None or not self._stop():
@@ -118,23 +146,13 @@ class Pulse:
         leave(0)
 
 
-def memory_taken() -> int:
-    """Return the memory of this process and its children, in bytes, as far as it is in main memory."""
-    import psutil
-
-    own = psutil.Process()
-    taken = int(own.memory_info().rss)
-    for child in own.children(recursive=True):
-        with contextlib.suppress(psutil.Error):  # it has just ended
-            taken += int(child.memory_info().rss)
-    return taken
-
-
 def leave(code: int) -> None:
-    """End this process at once, whatever its other threads do, and its children before it."""
+    """End this process at once, whatever its other threads do, and before it its children with their groups."""
     import psutil
 
     for child in psutil.Process().children(recursive=True):
-        with contextlib.suppress(psutil.Error):
+        with contextlib.suppress(psutil.Error, OSError):
+            if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:
+                os.killpg(child.pid, signal.SIGKILL)
             child.kill()
     os._exit(code)

@@ -12,8 +12,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from .pulse import EXHAUSTED
-from .worker_process import MARGIN, REFUSED, WorkerSettings
+from .pulse import DEAF, EXHAUSTED
+from .worker_process import MARGIN, REFUSED, STALE, WorkerSettings
 
 _log = logging.getLogger(__name__)
 WORKER = (sys.executable, "-m", "slidercrank.service.workers.worker_process")
@@ -37,7 +37,7 @@ class _Place:
 class Supervisor:
     """While entered, keeps a number of worker processes running, watched by a thread.
 
-    A worker that ends is replaced: at once, if it had run for a minute or its job took too much memory, else after half
+    A worker that ends is replaced: at once, if it had run for a minute or ended because of its jobs, else after half
     a second, doubled each time up to 30 s. On leaving, all are asked to stop, which they do within their grace; those
     that do not are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
     """
@@ -109,7 +109,7 @@ class Supervisor:
             place.done = True
             _log.info("worker %d ended: no job waits", place.number)
             return
-        soon = code != EXHAUSTED and time.monotonic() - place.started < _SOON
+        soon = code not in (EXHAUSTED, DEAF, STALE) and time.monotonic() - place.started < _SOON
         self._plan(place, f"ended: {reason_of(code)}", soon=soon)
 
     def _plan(self, place: _Place, what: str, *, soon: bool) -> None:
@@ -143,6 +143,10 @@ def reason_of(code: int) -> str:
     """Return why a process ended, from its exit code."""
     if code == EXHAUSTED:
         return "its job took more memory than it may"
+    if code == DEAF:
+        return "its job did not end when it was told to"
+    if code == STALE:
+        return "earlier jobs left memory in it"
     if code == REFUSED:
         return "it could do nothing as it was started, see above"
     if code < 0:

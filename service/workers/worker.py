@@ -14,12 +14,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
-from ..allowed_quantities import require_allowed
+from ..allowed_quantities import LONGEST_CALL, bounded, require_allowed
+from ..disk_room import full_places, is_full
 from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
 from .job_limits import Budget, within
 from .logs import about
+from .memory import TOLERATED, Memory
 from .pulse import PULSE, Pulse, Stop
 from .so_far import front_so_far
 
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
+_FULL = 10.0  # s until a job is tried again that found a disk full
 _PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 
@@ -57,6 +60,10 @@ class Stopped(Exception):
     """The worker is to stop, so its job goes back."""
 
 
+class Stale(Exception):
+    """Earlier jobs have left so much memory that a fresh process is to take the next one."""
+
+
 def worker_name() -> str:
     """Return a name for a worker that no other one has: machine, process, and some letters."""
     return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
@@ -78,8 +85,9 @@ def work(
     stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
     the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
 
-    While the database cannot be reached, it is tried again every second.
+    While the database cannot be reached, it is tried again every second. Raises `Stale`, only where there is a grace.
     """
+    memory = Memory()
     name = name or worker_name()
     stop = stop or (lambda: False)
     taken, greeted, away = 0, -lease, False
@@ -102,7 +110,12 @@ def work(
                 _log.info("the store is there again")
                 away = False
             if claim is not None:
-                solve_claimed(store, claim, stop, terms, engine)
+                memory.begin()
+                if _leaves_room(claim, memory, terms):
+                    with contextlib.suppress(StoreError):
+                        store.part(name)
+                    raise Stale
+                solve_claimed(store, claim, stop, terms, engine, memory)
                 taken += 1
             elif drain:
                 break
@@ -113,18 +126,45 @@ def work(
     return taken
 
 
-def solve_claimed(store: Store, claim: Claim, stop: Stop, terms: Terms = DEFAULT, engine: Engine | None = None) -> None:
+def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
+    """Whether a job is handed back, for a fresh process: earlier jobs have left too much memory in this one."""
+    most = within(claim.job.limits, terms.limits).memory
+    if terms.grace is None or most is None or memory.left <= TOLERATED * most:
+        return False
+    with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
+        claim.hand_back("a fresh worker takes it: earlier jobs left memory in this one")
+    return True
+
+
+def solve_claimed(
+    store: Store,
+    claim: Claim,
+    stop: Stop,
+    terms: Terms = DEFAULT,
+    engine: Engine | None = None,
+    memory: Memory | None = None,
+) -> None:
     """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
 
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
     """
     limits = within(claim.job.limits, terms.limits)
+    budget = Budget(limits)
     with about(job=claim.job.id):
         _log.info("claimed")
+        pulse = Pulse(
+            claim,
+            memory=limits.memory,
+            taken=memory,
+            over=budget.reason,
+            stop=stop,
+            grace=terms.grace,
+            patience=_PATIENCE,
+        )
         try:
-            with Pulse(claim, memory=limits.memory, stop=stop, grace=terms.grace, patience=_PATIENCE) as pulse:
-                _end(claim, lambda: _solve(store, claim, Budget(limits), terms, engine, pulse, stop))
+            with pulse:
+                _end(claim, lambda: _solve(store, claim, budget, terms, engine, pulse, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
 
@@ -141,15 +181,25 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         _log.warning("failed: %s", error)
     except (LeaseLost, StoreError):
         raise
+    except OSError as error:
+        if not is_full(error):
+            _stumble(claim, error)
+            return
+        claim.hand_back(f"waits: a job needs room on the disks it writes to; {full_places(error)}", delay=_FULL)
+        _log.warning("handed back: %s; it is tried again in %g s", full_places(error), _FULL)
     except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
-        claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
-        _log.warning("stopped by an error", exc_info=error)
+        _stumble(claim, error)
     except BaseException:
         with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
             claim.hand_back("its worker was interrupted; another one goes on")
         raise
+
+
+def _stumble(claim: Claim, error: Exception) -> None:
+    claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
+    reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
+    _log.warning("stopped by an error", exc_info=error)
 
 
 def _solve(
@@ -161,6 +211,7 @@ def _solve(
     tables = store.tables(claim.job.id)
     require_allowed(tables, terms.allowed_quantities)
     problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
+    problem = bounded(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
     latest: list[Array] = []
 

@@ -21,7 +21,7 @@ from ..store import LEASE, Store
 from ..store.database import Unavailable
 from .logs import Format, set_up_logs
 from .pulse import leave
-from .worker import Terms, work
+from .worker import Stale, Terms, work
 
 GRACE = 10.0
 """Time that a worker has to stop, s; then its job is handed back wherever its search is."""
@@ -31,6 +31,8 @@ NICENESS = 10
 """How much a worker yields to others of this machine: the API answers while all workers are busy."""
 REFUSED = 2
 """Exit code of a worker that can do nothing as it was started."""
+STALE = 77
+"""Exit code of a worker in which earlier jobs have left so much memory that a fresh one takes its place."""
 _log = logging.getLogger(__name__)
 
 
@@ -80,6 +82,8 @@ def main() -> int:
             )
     except _Ended:
         return 0
+    except Stale:
+        return STALE
     except SlidercrankError as error:
         _log.error("%s", error)
         return REFUSED

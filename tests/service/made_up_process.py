@@ -3,6 +3,8 @@
     rounds   `ROUNDS` rounds of 0.05 s, the same records every time
     stuck    one round, then it hears nothing any more
     greedy   one round, then it takes 300 MB and hears nothing any more
+    leaves   it ends after its rounds and leaves 300 MB in its process
+    loops    one round, then it loops and hears nothing, as an own function in this process may
 
 Run as `python -m tests.service.made_up_process` in place of `slidercrank.service.workers.worker_process`. It imports
 little, so that it starts within a second.
@@ -19,12 +21,14 @@ import numpy as np
 from slidercrank.optimise.ledger import Identity, Record
 from slidercrank.service.runs.result import Result, Wanted
 from slidercrank.service.store import Claim, Store
+from slidercrank.service.workers import pulse as pulses
 from slidercrank.service.workers import worker
 from slidercrank.service.workers.job_limits import Budget
 from slidercrank.service.workers.pulse import Pulse, Stop
 from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20
+_LEFT: list[object] = []
 _WANTED = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
 
 
@@ -55,7 +59,9 @@ def solve(
         if claim.job.name == "greedy":
             taken = np.ones(300_000_000, dtype=np.uint8)
             time.sleep(float(taken.sum()))
-        if claim.job.name == "stuck":
+        if claim.job.name == "leaves" and not _LEFT:
+            _LEFT.append(np.ones(300_000_000, dtype=np.uint8))
+        if claim.job.name in ("stuck", "loops"):
             time.sleep(1000.0)
     claim.finish(_result("done"))
 
@@ -84,4 +90,5 @@ def _result(status: str) -> Result:
 
 if __name__ == "__main__":
     worker._solve = solve
+    pulses._HEARS = 1.0
     sys.exit(main())

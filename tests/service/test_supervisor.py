@@ -131,6 +131,33 @@ def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_on
     assert "worker 1 ended: its job took more memory than it may; another one starts in 0 s" in caplog.messages
 
 
+def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> None:
+    leaves = put_in(store, "leaves")
+    fits = put_in(store, "rounds", Limits(memory=350_000_000))
+    greedy = put_in(store, "greedy", Limits(memory=350_000_000))
+    with Supervisor(settings(store), 1, program=MADE_UP):
+        until(lambda: store.job(greedy.id).state == "failed", "end of the jobs")
+    assert (store.job(leaves.id).state, store.job(fits.id).state) == ("done", "done")
+    told = [event.data.get("reason") for event in store.events(fits.id)]
+    assert "a fresh worker takes it: earlier jobs left memory in this one" in told
+    assert re.search(r"it may take 350 MB of memory; its worker took \d{3} MB", store.job(greedy.id).reason)
+
+
+@pytest.mark.parametrize("ends", ["cancelled", "out of time"])
+def test_a_job_that_hears_nothing_does_not_keep_its_worker(ends: str, store: Store) -> None:
+    loops = put_in(store, "loops", Limits(seconds=0.3) if ends == "out of time" else None)
+    after = put_in(store, "rounds")
+    with Supervisor(settings(store), 1, program=MADE_UP):
+        until(lambda: store.job(loops.id).records == 1, "first round")
+        if ends == "cancelled":
+            store.cancel(loops.id)
+        until(lambda: store.job(after.id).state == "done", "end of the next job")
+    ended = store.job(loops.id)
+    assert (ended.state, ended.records) == ("cancelled", 1)
+    assert ended.reason.endswith("; its search did not end when it was told to")
+    assert ended.reason.startswith("its search took longer" if ends == "out of time" else "cancelled before")
+
+
 def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
     job = put_in(store, "stuck")
     script = (

@@ -52,7 +52,7 @@ def test_a_killed_job_goes_on_and_finds_the_same_designs(
     monkeypatch.setattr("slidercrank.optimise.solve.solve", dying)
     claim = store.claim("second", lease=60.0)
     assert claim is not None
-    claim.hand_back = lambda reason: None  # type: ignore[method-assign] # the dead do not
+    claim.hand_back = lambda reason, **_: None  # type: ignore[method-assign] # the dead do not
     with pytest.raises(Killed):
         solve_claimed(store, claim, lambda: False)
     kept = claim.records()

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from slidercrank.service.store import Store
@@ -20,10 +23,27 @@ def figures(client: httpx.Client) -> dict[tuple[str, tuple[str, ...]], float]:
 
 def test_the_service_tells_whether_it_can_work(client: httpx.Client, store: Store) -> None:
     assert client.get("/health/live").json() == {"status": "live"}
-    assert client.get("/health/ready").json() == {"status": "ready", "workers": 0, "waiting": 0}
+    assert client.get("/health/ready").json() == {"status": "ready", "takes_jobs": False, "workers": 0, "waiting": 0}
     store.greet("one")
     add(store)
-    assert client.get("/health/ready").json() == {"status": "ready", "workers": 1, "waiting": 1}
+    assert client.get("/health/ready").json() == {"status": "ready", "takes_jobs": True, "workers": 1, "waiting": 1}
+
+
+def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reason_of_jobs_that_wait(
+    client: httpx.Client, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add(store)
+    monkeypatch.setattr("slidercrank.service.disk_room.shutil.disk_usage", lambda _: SimpleNamespace(free=4096))
+    refused = client.get("/health/ready")
+    assert refused.status_code == 503
+    reason = client.get("/jobs/1").json()["reason"]
+    for said in (refused.json()["detail"], reason, client.get("/jobs").json()["jobs"][0]["reason"]):
+        assert "the store needs room on its disk" in said
+        assert "has 4.1 kB free; make room" in said
+    assert client.get("/health/live").is_success
+    monkeypatch.undo()
+    assert client.get("/health/ready").is_success
+    assert client.get("/jobs/1").json()["reason"] == ""
 
 
 def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: Store) -> None:

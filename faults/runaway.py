@@ -1,0 +1,227 @@
+"""Own functions that never return, by every way of looping: cancelled, out of time, killed with their worker, ended."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from collections.abc import Mapping
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from .lifeline import die_with_parent
+from .serving import Serving, alive, left_over
+from .verdict import Verdict
+
+SOON = 2.0  # s, within which a function is gone once its call is to end
+SLACK = 1.0  # s, for looking at it on a busy machine
+LOOPS = {
+    "python": "while True: pass",
+    "sleeps": "import time; time.sleep(1e6)",
+    "holds the interpreter": "7 ** 10 ** 9",
+    "ignores signals": (
+        "import signal\n    for n in (1, 2, 3, 10, 12, 15): signal.signal(n, signal.SIG_IGN)\n    while True: pass"
+    ),
+    "forks": "import os\n    os.fork()\n    while True: pass",
+    "forks twice": "import os\n    if not os.fork(): os.fork()\n    while True: pass",
+    "catches all": "while True:\n        try: sum(range(99))\n        except BaseException: pass",
+}
+_FUNCTION = """
+calls = 0
+
+def judge(designs):
+    global calls
+    calls += 1
+    if calls > {after}:
+        loop()
+    return designs.crank
+
+def loop():
+    {loop}
+"""
+_JOB = """
+name = "own"
+[mechanism]
+speed = "300 rpm"
+[variables]
+crank = ["20 mm", "60 mm"]
+rod = ["80 mm", "300 mm"]
+offset = ["5 mm", "60 mm"]
+[objectives]
+mine = "minimise"
+time_ratio = "maximise"
+[optimiser]
+method = "nsga2"
+samples = 20
+evaluations = 2000
+designs = 4
+[quantity.mine]
+function = "FUNCTION"
+unit = "mm"
+gradient = "none"
+limit = "1e5 s"
+"""
+_WHEN = {"before": 0, "after": 12}
+
+
+def runaway(count: int, seed: int) -> Verdict:
+    """Let functions loop in a service and on the command line, `count` rounds of all; return what came of it."""
+    chance, verdict = random.Random(seed), Verdict()
+    with tempfile.TemporaryDirectory(prefix="faults-") as name:
+        folder = Path(name)
+        for number, loop in enumerate(LOOPS.values()):
+            for when, after in _WHEN.items():
+                text = _FUNCTION.format(after=after, loop=loop)
+                (folder / f"loops_{number}_{when}.py").write_text(text)
+        for _ in range(count):
+            kinds = list(range(len(LOOPS)))
+            chance.shuffle(kinds)
+            each = cycle(kinds)
+            _in_a_service(verdict, folder, each)
+            for when in _WHEN:
+                for blow in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+                    _on_the_command_line(verdict, folder, f"loops_{next(each)}_{when}:judge", when, blow)
+    return verdict
+
+
+def _tables(function: str) -> Mapping[str, Any]:
+    return tomllib.loads(_JOB.replace("FUNCTION", function))
+
+
+def _in_a_service(verdict: Verdict, folder: Path, kinds: cycle[int]) -> None:
+    allowed = [f"loops_{number}_{when}:judge" for number in range(len(LOOPS)) for when in _WHEN]
+    options = [word for function in allowed for word in ("--allow-quantity", function)]
+    options += ["--lease", "2", "--grace", "1"]
+    for end in (signal.SIGTERM, signal.SIGKILL):
+        with Serving(str(folder / f"{end.name}.db"), *options, folder=str(folder)) as serving:
+            serving.until_ready()
+            for when in _WHEN:
+                _cancelled(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
+                _out_of_time(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
+                _worker_killed(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
+            function = f"loops_{next(kinds)}_after:judge"
+            _under_way(verdict, serving, function, "after")
+            serving.stop_watching()
+            serving.process.send_signal(end)
+            # Its workers have their grace, which is a second, and five more to end.
+            _gone(verdict, f"{function}, service ended by {end.name}", serving.functions(), 1.0 + 5.0 + SOON)
+        serving.judge(verdict)
+        left_over(verdict, serving, within=10.0)
+
+
+def _under_way(verdict: Verdict, serving: Serving, function: str, when: str, **limits: float) -> int:
+    """Return the number of a job whose function has come to its loop."""
+    verdict.jobs += 1
+    number = serving.submit(_tables(function), **limits)
+    if not serving.until(lambda: _loops(serving, number, when), 120.0):
+        verdict.violate("lost", f"{function}: it does not loop: {serving.job(number)}")
+    return number
+
+
+def _loops(serving: Serving, number: int, when: str) -> bool:
+    functions = serving.functions()
+    return bool(functions) and (when == "before" or serving.job(number)["records"] > 2) and _busy(functions)
+
+
+def _busy(functions: list[psutil.Process]) -> bool:
+    """Whether functions are past their imports, by the time that they have taken."""
+    try:
+        return any(time.time() - process.create_time() > 8.0 for process in functions)
+    except psutil.NoSuchProcess:
+        return False
+
+
+def _cancelled(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
+    number = _under_way(verdict, serving, function, when)
+    functions = serving.functions()
+    serving.cancel(number)
+    _gone(verdict, f"{function}, cancelled", functions, SOON)
+    _ended(verdict, serving, number, function, "cancelled")
+
+
+def _out_of_time(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
+    begin = time.monotonic()
+    number = _under_way(verdict, serving, function, when, seconds=15.0)
+    functions = serving.functions()
+    _gone(verdict, f"{function}, out of time", functions, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0)
+    _ended(verdict, serving, number, function, "cancelled")
+
+
+def _worker_killed(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
+    number = _under_way(verdict, serving, function, when)
+    functions = serving.functions()
+    for worker in serving.workers():
+        worker.kill()
+    _gone(verdict, f"{function}, worker killed", functions, SOON)
+    serving.cancel(number)
+    _ended(verdict, serving, number, function, "cancelled")
+
+
+def _ended(verdict: Verdict, serving: Serving, number: int, function: str, state: str) -> None:
+    serving.until(lambda: serving.job(number)["state"] == state, 30.0)
+    job = serving.job(number)
+    if job["state"] != state:
+        verdict.violate("lost", f"{function}: {job['state']}, {job['reason']}")
+
+
+def _gone(verdict: Verdict, what: str, functions: list[psutil.Process], within: float) -> None:
+    begin = time.monotonic()
+    while any(map(alive, functions)) and time.monotonic() - begin < within + SLACK:
+        time.sleep(0.02)
+    verdict.resumed(time.monotonic() - begin)
+    if any(map(alive, functions)):
+        verdict.violate("left", f"{what}: its process goes on after {within + SLACK:.1f} s")
+
+
+def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: str, blow: signal.Signals) -> None:
+    verdict.jobs += 1
+    job = folder / "job.toml"
+    job.write_text(_JOB.replace("FUNCTION", function))
+    runs = folder / f"runs {function} {blow.name}".replace(":", " ")
+    process = subprocess.Popen(
+        [
+            sys.executable,
+            "-m",
+            "slidercrank",
+            "optimise",
+            str(job),
+            "--runs",
+            str(runs),
+            "--no-figures",
+            "--cores",
+            "1",
+        ],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, "SLIDERCRANK_STORE": str(runs.with_suffix(".db"))},
+        preexec_fn=die_with_parent,
+    )
+    own = psutil.Process(process.pid)
+    end = time.monotonic() + 120.0
+    functions: list[psutil.Process] = []
+    while not (functions and _busy(functions)) and time.monotonic() < end and process.poll() is None:
+        functions = own.children(recursive=True)
+        time.sleep(0.1)
+    if process.poll() is not None or not functions:
+        verdict.violate("lost", f"{function} on the command line: it ended with {process.poll()} before {blow.name}")
+        return
+    process.send_signal(blow)
+    _gone(verdict, f"{function} on the command line, {blow.name}", functions, SOON)
+    try:
+        code = process.wait(30.0)
+    except subprocess.TimeoutExpired:
+        verdict.violate("late", f"{function} on the command line: it goes on after {blow.name}")
+        process.kill()
+        return
+    expected = {signal.SIGINT: 130, signal.SIGTERM: -signal.SIGTERM, signal.SIGKILL: -signal.SIGKILL}[blow]
+    if code != expected:
+        verdict.violate("lost", f"{function} on the command line: exit code {code} after {blow.name}")

@@ -1,0 +1,139 @@
+"""Calls of own functions that do not return: what ends them, and that nothing of them is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.objectives.own.apply import Refused
+from slidercrank.objectives.own.interruption import interrupted_by
+from slidercrank.objectives.own.worker import Worker
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")
+DESIGNS = np.array([[0.03, 0.1, 0.01]])
+MODULE = """
+import os, signal, time
+
+def one(designs):
+    return designs.crank[:, 0]
+
+def slow(designs):
+    time.sleep(0.3)
+    return designs.crank[:, 0]
+
+def holds(designs):
+    7 ** 10 ** 9
+
+def forks(designs):
+    for number in (1, 2, 15):
+        signal.signal(number, signal.SIG_IGN)
+    os.fork()
+    while True:
+        pass
+
+def killed(designs):
+    os.kill(os.getpid(), 9)
+"""
+
+
+class Over(Exception):
+    """What ends a call here."""
+
+
+@pytest.fixture
+def worker(tmp_path: Path) -> Callable[[str], Worker]:
+    """Return what makes a worker of one of the functions."""
+    (tmp_path / "loops.py").write_text(MODULE)
+    return lambda name: Worker(f"loops:{name}", [str(tmp_path)], 1e5)
+
+
+def functions(of: int) -> list[psutil.Process]:
+    """Return the processes below another one, guards included."""
+    return psutil.Process(of).children(recursive=True)
+
+
+def gone(processes: list[psutil.Process], within: float = 5.0) -> bool:
+    """Whether processes end in that time; one that nobody has waited for has ended."""
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        if not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in processes):
+            return True
+        time.sleep(0.02)
+    return False
+
+
+@pytest.mark.parametrize("function", ["holds", "forks"])
+def test_a_call_that_does_not_return_is_ended_with_all_that_it_started(
+    function: str, worker: Callable[[str], Worker]
+) -> None:
+    seen: list[psutil.Process] = []
+    begin: list[float] = []
+
+    def end_soon() -> None:
+        found = functions(os.getpid())
+        if not begin and sum("own.child" in " ".join(each.cmdline()) for each in found) > (function == "forks"):
+            begin.append(time.monotonic())
+        if begin and time.monotonic() - begin[0] > 2.0:
+            seen.extend(found)
+            raise Over
+
+    with interrupted_by(end_soon), pytest.raises(Over):
+        worker(function)(Mechanism(), DESIGNS, None)
+    assert len(seen) >= 2  # the function and its guard
+    assert gone(seen)
+
+
+def test_a_call_about_to_return_leaves_its_process_for_the_next_one(worker: Callable[[str], Worker]) -> None:
+    asked = worker("slow")
+    asked(Mechanism(), DESIGNS, None)
+    (guard, child) = sorted(each.pid for each in functions(os.getpid()))
+
+    def end() -> None:
+        raise Over
+
+    with interrupted_by(end), pytest.raises(Over):
+        asked(Mechanism(), 2.0 * DESIGNS, None)
+    assert asked(Mechanism(), 3.0 * DESIGNS, None).values == 3.0 * DESIGNS[0, 0]  # not the answer that came too late
+    assert sorted(each.pid for each in functions(os.getpid())) == [guard, child]
+    asked.close()
+    assert functions(os.getpid()) == []
+
+
+def test_a_process_that_is_killed_is_told_apart_from_one_that_takes_too_long(worker: Callable[[str], Worker]) -> None:
+    with pytest.raises(Refused, match="its process was killed, for lack of memory perhaps"):
+        worker("killed")(Mechanism(), DESIGNS, None)
+
+
+def test_no_limit_goes_beyond_what_is_allowed(tmp_path: Path, worker: Callable[[str], Worker]) -> None:
+    worker("one")
+    asked = Worker("loops:holds", [str(tmp_path)], 1e9, 0.5)
+    with pytest.raises(Refused, match=r"must return within 0.5 s; .* no call may take longer here; correct it"):
+        asked(Mechanism(), DESIGNS, None)
+
+
+def test_a_function_does_not_outlive_a_killed_process(tmp_path: Path, worker: Callable[[str], Worker]) -> None:
+    worker("forks")
+    code = (
+        "import numpy as np\n"
+        "from slidercrank.model.mechanism import Mechanism\n"
+        "from slidercrank.objectives.own.worker import Worker\n"
+        f"Worker('loops:forks', [{str(tmp_path)!r}], 1e5)(Mechanism(), np.array([[0.03, 0.1, 0.01]]), None)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", code]) as asking:
+        end = time.monotonic() + 60.0
+        while len(functions(asking.pid)) < 3:  # guard, function, and its fork
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        left = functions(asking.pid)
+        asking.send_signal(signal.SIGKILL)
+    assert gone(left)
