@@ -206,6 +206,18 @@ def test_watching_ends_with_the_exit_code_of_the_job(
     ]
 
 
+def test_watching_a_resumed_job_ends_with_its_last_end(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    command("cancel", 1)
+    command("resume", 1)
+    claim = store.claim("first")
+    assert claim is not None
+    watched = events_until_end(store, 1)
+    assert [next(watched).data.get("state") for _ in range(4)] == ["queued", "cancelled", "queued", "running"]
+    claim.finish(result("done", rows=[]))
+    assert [event.data["state"] for event in watched] == ["done"]
+
+
 def test_watching_a_failed_job_ends_with_2(store: Store, job: Path, command: Command) -> None:
     command("submit", job)
     claim = store.claim("first")

@@ -94,7 +94,8 @@ export function watch(place, job, { signal, changed }) {
 
   async function look() {
     timer = null;
-    if (asking || over || signal.aborted) return;
+    if (over || signal.aborted) return;
+    if (asking) return soon(); // what is on its way may be older than what made one ask
     asking = true;
     try {
       const now = await get(`jobs/${job.id}`, {}, signal);
@@ -139,10 +140,8 @@ export function watch(place, job, { signal, changed }) {
     changed(now);
   }
 
-  const connected = (yes) => {
-    lost.hidden = yes;
-    soon(yes ? OFTEN : 0); // whether the service is away, or only the job
-  };
+  // The events stop when the service is away, and when the job has ended: the look at the job tells which.
+  const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
   signal.addEventListener("abort", () => [timer, silent].forEach(clearTimeout));
   fill(front, h("p", { class: "quiet" }, job.state === "queued" ? "Waits for a worker." : "Nothing yet."));
