@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .assemble import assemble, span_of
+from .assemble import SELECTING, assemble, span_of
 from .challenge import by_sheet, challengers
 from .evaluation import Evaluator
 from .front import ParetoFront
@@ -31,7 +31,7 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     """Return the front from the designs of an archive; None if no candidate could be made feasible."""
     pile = Pile(span_of(problem, archive.values))
     several = len(problem.objectives) > 1
-    rows = _choice(problem, archive, evaluators[0]) if several else _spread(archive, 0, _STARTS)
+    rows = _choice(problem, archive, evaluators[0], run) if several else _spread(archive, 0, _STARTS)
     starts = by_sheet(evaluators, archive.sheet, archive.u, rows)
     if several:
         starts += _extremes(evaluators, archive, pile.span)
@@ -44,7 +44,7 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
                 run.tell("polishing", evaluators, archive, pile.values)
         if attempt == ROUNDS - 1 or not len(pile):
             break
-        starts = challengers(problem, evaluators, archive, pile, attempt)
+        starts = challengers(problem, evaluators, archive, pile, attempt, run.stage(SELECTING))
         if not starts:
             break
     if not len(pile):
@@ -59,7 +59,7 @@ def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, ru
     """
     pile = Pile(span_of(problem, archive.values))
     several = len(problem.objectives) > 1
-    rows = _choice(problem, archive, evaluators[0]) if several else np.arange(min(len(archive), _STARTS))
+    rows = _choice(problem, archive, evaluators[0], run) if several else np.arange(min(len(archive), _STARTS))
     for index, u in by_sheet(evaluators, archive.sheet, archive.u, rows):
         valid = u[evaluators[index].valid(u)]
         pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
@@ -77,17 +77,17 @@ def planned(problem: Problem) -> int:
     return -(-_candidates(problem) // BATCH)
 
 
-def _choice(problem: Problem, archive: Archive, evaluator: Evaluator) -> NDArray[np.int64]:
+def _choice(problem: Problem, archive: Archive, evaluator: Evaluator, run: Run) -> NDArray[np.int64]:
     """Return the rows of the archive whose polish is to become the front; a step of the evaluator's ledger."""
     best = np.argmin(archive.values, axis=0)
     rows = np.arange(len(archive))
     if len(rows) > _POOL:
         rows = np.unique(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
-    values, ledger = archive.values[rows], evaluator.ledger
+    values, ledger, stand = archive.values[rows], evaluator.ledger, run.stage(SELECTING)
 
     def compute() -> tuple[NDArray[np.int64]]:
-        return (choose(values, _candidates(problem), always=always, poll=ledger.poll),)
+        return (choose(values, _candidates(problem), always=always, stand=stand),)
 
     return rows[integers(ledger.step("choice", (values,), compute, evaluator)[0])]
 

@@ -21,14 +21,18 @@ from .stationarity import multipliers
 Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range per range: a loss below is rounding
 Status = Literal["done", "cancelled", "infeasible"]
+REPEATING = "repeating rounds"
+"""Stage of a search that goes on: its rounds are those of the earlier run, without evaluating anything."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a search stands after one of its rounds.
+    """Where a search stands after one of its rounds, or in a long stage between two.
 
     round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
-    hypervolume: of the front so far, in the unit box of the final scaling; not comparable between runs.
+    hypervolume: what those dominate; it never falls. While the search goes on it is told in boxes that the first
+    feasible designs span, and may exceed 1; in the history of a front, as a share of the box of that front. Not
+    comparable between runs. step, steps: how far the stage is, 0 of 0 at the end of a round.
     """
 
     stage: str
@@ -38,6 +42,13 @@ class Progress:
     feasible: int
     hypervolume: float
     seconds: float
+    step: int = 0
+    steps: int = 0
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the search only repeats what an earlier run of it did."""
+        return self.stage == REPEATING
 
 
 @dataclass(frozen=True)
@@ -53,7 +64,7 @@ class ParetoFront:
     design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
     free unknowns scaled to the unit box.
     hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
-    history: rounds. versions: of this software and what computed the numbers.
+    history: rounds, with hypervolumes in the same box. versions: of this software and what computed the numbers.
     """
 
     problem: Problem

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from .elimination import ZERO
 from .evaluation import FEASIBLE, Evaluator
-from .hypervolume import nondominated
+from .hypervolume import Stand, nondominated, unheard
 from .polish import Polished
 from .sampling import stacked
 from .stationarity import Array
@@ -63,8 +61,8 @@ class Pile:
         part.goals, part.active = [self.goals[row] for row in rows], [self.active[row] for row in rows]
         return part
 
-    def best(self, poll: Callable[[], None] = lambda: None) -> NDArray[np.int64]:
-        """Return the rows that none dominates, fewer where they hardly differ; ascending. poll: called for each."""
+    def best(self, stand: Stand = unheard) -> NDArray[np.int64]:
+        """Return the rows that none dominates, fewer where they hardly differ; ascending. stand: called for each."""
         scaled = self.values / self.span
         doubtful = self.residual > STATIONARY
         covered = COVERED if len(self.span) > 1 else SAME
@@ -72,7 +70,7 @@ class Pile:
         if len(sure):
             apart = np.zeros(len(scaled))
             for row in np.flatnonzero(doubtful).tolist():
-                poll()
+                stand(0, len(scaled))
                 apart[row] = np.min(np.max(sure - scaled[row], axis=1))
             rows = np.flatnonzero(~doubtful | (apart > covered))
         else:
@@ -81,8 +79,8 @@ class Pile:
         kept: list[int] = []
         # What is proven first, then what is best in an objective.
         order = np.lexsort([scaled[rows].sum(axis=1), np.where(_leads(scaled[rows]), 0, 1), doubtful[rows]])
-        for row in rows[order].tolist():
-            poll()
+        for done, row in enumerate(rows[order].tolist()):
+            stand(done, len(rows))
             if not kept or np.min(np.max(scaled[kept] - scaled[row], axis=1)) > SAME:
                 kept.append(row)
         return np.array(sorted(kept), dtype=np.int64)

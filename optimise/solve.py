@@ -29,6 +29,7 @@ def solve(
     problem: Problem,
     *,
     progress: Callback | None = None,
+    stages: Callback | None = None,
     fronts: Callable[[Array], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     resume: Sequence[Record] = (),
@@ -37,8 +38,9 @@ def solve(
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
-    progress: called after every round. fronts: called just before that with the objectives of the front so far, see
-    `Run.front_so_far`. cancelled: asked many times a second; when it says so, what was found so far is
+    progress: called after every round. stages: called about twice a second in a long stage between two rounds, or after
+    the last. fronts: called just before `progress` with the objectives of the front so far, see `Run.front_so_far`.
+    cancelled: asked many times a second; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
@@ -52,7 +54,7 @@ def solve(
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in sheets(problem)]
     require_eliminated(problem, evaluators)
-    run = Run(problem, 1, progress, ledger)
+    run = Run(problem, 1, progress, ledger, stages=stages)
     if fronts is not None:
 
         def told(entry: Progress) -> None:
@@ -88,11 +90,12 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
         if front is not None:
             return front
     message = diagnosis.message or _THIN
-    if diagnosis.message and prove_infeasible(problem, poll=run.ledger.poll):
+    if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage("proving"), 0, 1)):
         message += "; proven: no design of the ranges meets them all"
     return empty(problem, evaluators, run, "infeasible", message)
 
 
+_DIAGNOSING = "diagnosing"
 _THIN = (
     "designs that meet all requirements to rounding exist, but none that meets the equalities exactly; "
     "widen the ranges a little"
@@ -110,10 +113,11 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> float |
     run, evaluators: of the search that wants to know it.
     """
     own = [Evaluator(problem, sheet, run.ledger, evaluators[0].engine) for sheet in sheets(problem)]
-    inner = Run(problem, 1, ledger=run.ledger)
+    inner = Run(problem, 1, lambda at: run.stand(_DIAGNOSING, at.round, at.rounds), run.ledger)
+    inner.stages = lambda at: run.stand(_DIAGNOSING, at.round, at.rounds)
     archive = explore(problem, own, inner)
     front = deliver(problem, own, archive, inner) if len(archive) else None
-    run.tell("diagnosing", evaluators, Archive.empty(len(run.problem.objectives)))
+    run.tell(_DIAGNOSING, evaluators, Archive.empty(len(run.problem.objectives)))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -105,7 +105,8 @@ class _Seen:
         good = violation <= FEASIBLE
         self.archive.feasible += 0 if self.band else int(good.sum())
         if good.any():
-            self.archive.take(index, u[good], values[good])
+            within = np.zeros(int(good.sum()), dtype=bool) if self.band else None  # the band alone is known to hold
+            self.archive.take(index, u[good], values[good], met=within)
 
 
 def screened(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:

@@ -59,8 +59,13 @@ class JobProgress(Shown):
     rounds: int = Field(description="how many are planned")
     evaluations: int
     feasible: int = Field(description="designs that meet every constraint")
-    hypervolume: float | None = Field(description="of the front so far; not comparable between jobs")
+    hypervolume: float | None = Field(
+        description="what the feasible designs so far dominate, in boxes that the first of them span; it never falls; "
+        "not comparable between jobs"
+    )
     seconds: float | None
+    step: int = Field(default=0, description="how far the stage is, in a long one between two rounds")
+    steps: int = Field(default=0, description="how far it goes; 0 at the end of a round")
     front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
 
 

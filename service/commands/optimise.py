@@ -215,9 +215,14 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
             )
             show(at)
 
+        def between(at: Progress) -> None:
+            claim.tell(at)
+            show(at)
+
         return solve(
             problem,
             progress=tell,
+            stages=between,
             cancelled=lambda: interruption.asked() or claim.cancel_asked,
             resume=tuple(claim.records()),
             keep=claim.keep,

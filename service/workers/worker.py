@@ -175,7 +175,8 @@ def _solve(
         return _ends(claim, pulse, stop) or budget.spent()
 
     def search(past: Sequence[Record]) -> ParetoFront:
-        return solve(problem, progress=tell, fronts=show, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+        heard = {"progress": tell, "stages": tell, "fronts": show}
+        return solve(problem, **heard, cancelled=over, resume=past, keep=claim.keep, engine=engine)
 
     try:
         front = search(claim.records())
