@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from ..objectives.kinds import System, shown_in
 from .hypervolume import scaling
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .pile import STATIONARY
@@ -196,23 +197,34 @@ class ParetoFront:
                 rates[b, b] = np.nan
         return rates
 
-    def trade_offs(self, row: int) -> list[str]:
-        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ..."."""
+    def trade_offs(self, row: int, system: System = "metric") -> list[str]:
+        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
+
+        system: of the units that they are told in.
+        """
         rates = self.rates(row)
         sentences = []
         for b, gain in enumerate(self.objectives):
-            span = np.ptp(self.values[:, b]) * self.problem.quantity(gain.quantity).unit.factor
+            one = self._unit(gain, system)[1]  # of the metric unit that rates are in
+            span = np.ptp(self.values[:, b]) * self.problem.quantity(gain.quantity).unit.factor * one
             step = 10.0 ** np.floor(np.log10(0.1 * span)) if span > 0.0 else 1.0  # a readable step within the range
             payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
             if payers:
-                costs = " and ".join(self._change(self.objectives[a], step * rates[a, b], gain=False) for a in payers)
-                sentences.append(f"{self._change(gain, step, gain=True)} costs {costs}")
+                losses = [
+                    self._change(self.objectives[a], step / one * rates[a, b], system, gain=False) for a in payers
+                ]
+                sentences.append(f"{self._change(gain, step / one, system, gain=True)} costs {' and '.join(losses)}")
         return sentences
 
-    def _change(self, objective: Objective, amount: float, *, gain: bool) -> str:
-        """Return a change of an objective in words."""
+    def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
+        """Return the unit that a system shows for an objective, and what its metric one is in that."""
+        return shown_in(self.problem.quantity(objective.quantity).unit.symbol, system)
+
+    def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
+        """Return a change of an objective, given in its metric unit, in words."""
         shown = self.problem.quantity(objective.quantity)
-        size = f"{amount:.3g} {shown.unit.symbol}".strip()
+        unit, factor = self._unit(objective, system)
+        size = f"{amount * factor:.3g} {unit}".strip()
         if objective.sense == "target":
             return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
         more = (objective.sense == "maximise") == gain

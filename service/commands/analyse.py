@@ -124,7 +124,7 @@ def _topic_options(
     at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
-    from ...optimise.units import ANGLE, LENGTH
+    from ...objectives.kinds import ANGLE, LENGTH
 
     options: dict[str, dict[str, Any]] = {}
     for option, topic, given in (

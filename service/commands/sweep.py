@@ -78,8 +78,8 @@ def parse_axis(text: str) -> Axis:
     """Return what is swept from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
     import numpy as np
 
+    from ...objectives.kinds import ANGULAR_SPEED, LENGTH
     from ...objectives.sweep import Axis
-    from ...optimise.units import ANGULAR_SPEED, LENGTH
 
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
     if match is None and (several is None or not several[2].strip()):

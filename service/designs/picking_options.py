@@ -84,8 +84,9 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
+    from ...objectives.kinds import RATIO
     from ...objectives.registry import quantity
-    from ...optimise.units import RATIO, kind_of, to_si
+    from ...optimise.units import kind_of, to_si
 
     try:
         if value.endswith("%"):

@@ -8,9 +8,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from slidercrank.model.errors import InputError
+from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise import units
-from slidercrank.optimise.units import KINDS, Kind, closest, kind_of, shown, to_si
+from slidercrank.optimise.units import closest, kind_of, shown, to_si
 
 GOOD = [
     ("80 mm", units.LENGTH, 0.08),
