@@ -183,7 +183,15 @@ _PER_ANGLE = Kind(
     metric=Face("mm/rad", "_mm_per_rad", 1e3),
     inch=Face("in/rad", "_in_per_rad", 1.0 / _INCH),
 )
-SHOWN = (*(kind for kind in KINDS if kind.metric is not None), _JERK, _PER_ANGLE)
+_PER_SQUARED_ANGLE = Kind(
+    name="a length per squared angle",
+    unit="m/rad^2",
+    example="",
+    limit=0.0,
+    metric=Face("mm/rad^2", "_mm_per_rad2", 1e3),
+    inch=Face("in/rad^2", "_in_per_rad2", 1.0 / _INCH),
+)
+SHOWN = (*(kind for kind in KINDS if kind.metric is not None), _JERK, _PER_ANGLE, _PER_SQUARED_ANGLE)
 """Kinds that are shown: the one table of units for columns, figures, reports and the page."""
 
 

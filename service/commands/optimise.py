@@ -97,7 +97,7 @@ def optimise(
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
         if figures and result.status == "done":
-            _draw(front, run, interruption)
+            _draw(front, run, interruption, units)
     shown = shown_front(front, result, units)
     if json:
         give(json_text(shown.record()))
@@ -244,11 +244,11 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
         )
 
 
-def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption) -> None:
+def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
     from ..figures import draw_front
 
     with waiting("drawing the figures"), disk(run.figures):
-        for file in draw_front(front, run.figures):
+        for file in draw_front(front, run.figures, units):
             run.log(f"figures/{file.name}")
             if interruption.asked():
                 run.log("interrupted; the other figures are left out")

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
+from ...objectives.kinds import System, shown_in
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
 from .style import INK, MUTED, SMALL, TEXT, TITLE, new_figure, place, shown, unit_text, write
@@ -55,11 +56,12 @@ def design_sheet(
     subtitle: str = "",
     bold: Collection[str] = (),
     torque: bool = True,
+    system: System = "metric",
 ) -> Figure:
     """Return the sheet of one fully turning linkage.
 
     numbers: its row of the table of quantities; those that are missing or None are left out. bold: columns printed
-    bold. torque: whether the drive torque is known.
+    bold. torque: whether the drive torque is known. system: of the units that all is shown in.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
     title = textwrap.shorten(title, 120, placeholder=" ...")
@@ -67,13 +69,13 @@ def design_sheet(
     write(figure, _LEFT, _HEIGHT - 0.53, subtitle, color=MUTED)
 
     picture = place(figure, _LEFT, _TABLE + 0.35, _SPLIT - _LEFT - 0.6, _HEIGHT - _TABLE - 1.05)
-    draw_mechanism(picture, mechanism, linkage)
+    draw_mechanism(picture, mechanism, linkage, system)
     caption = "Drawn where the transmission angle is least; dead centres in grey outline."
     write(figure, _LEFT, _TABLE + 0.18, caption, fontsize=SMALL, color=MUTED)
     for column, rows in enumerate(_NUMBERS):
-        _column(figure, _LEFT + 2.95 * column, rows, numbers, bold)
+        _column(figure, _LEFT + 2.95 * column, rows, numbers, bold, system)
 
-    curves = cycle_curves(mechanism, linkage, torque=torque)
+    curves = cycle_curves(mechanism, linkage, torque=torque, system=system)
     count = len(curves.curves)
     height = (_HEIGHT - _TOP - _BOTTOM + _GAP) / count - _GAP
     width = _WIDTH - _SPLIT - _RIGHT
@@ -88,16 +90,18 @@ def _column(
     rows: tuple[tuple[str, str, str], ...],
     numbers: Mapping[str, Any],
     bold: Collection[str],
+    system: System,
 ) -> None:
     y = _TABLE - 0.12
     for title, column, unit in rows:
         value = numbers.get(column)
         if value is None:
             continue
+        unit, factor = shown_in(unit, system)
         weight = "bold" if column in bold else "normal"
         style = {"fontsize": TEXT, "weight": weight, "color": INK}
         write(figure, x, y, title, **style)
-        write(figure, x + 2.2, y, shown(float(value), 5, zeros=True), ha="right", **style)
+        write(figure, x + 2.2, y, shown(float(value) * factor, 5, zeros=True), ha="right", **style)
         if unit:
             write(figure, x + 2.26, y, unit_text(unit), **style)
         y -= 0.2

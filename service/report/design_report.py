@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
-from ..designs.columns import DIMENSIONS
+from ..designs.columns import DIMENSIONS, find_column
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
@@ -42,8 +42,8 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    lengths = [f"{name} {with_unit(row[f'{name}_mm'], 'mm')}" for name in DIMENSIONS]
-    lengths.append(f"stroke {with_unit(row['stroke_mm'], 'mm')}")
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, "stroke")]
+    lengths = [f"{column.title} {with_unit(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(
         f"{wanted.title} {with_unit(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...objectives.kinds import System
+from ..designs.shown_units import result_in
 from ..designs.stored_designs import StoredDesign, design_of, front_of
 from ..runs.result import Result, Row
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 class Subject:
     """One design of a run. number: of the design, from 1. run: what the run is called.
 
+    result: in the units of the system.
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
     """
 
@@ -29,6 +32,7 @@ class Subject:
     design: StoredDesign
     versions: Mapping[str, str]
     certificate: Mapping[str, Any] | None = None
+    system: System = "metric"
 
     @property
     def row(self) -> Row:
@@ -50,13 +54,14 @@ def subject_of(
     versions: Mapping[str, str],
     certificate: Mapping[str, Any] | None = None,
     front: ParetoFront | None = None,
+    system: System = "metric",
 ) -> Subject:
-    """Return the subject of a report. front: of the result, where there is one already.
+    """Return the subject of a report. front: of the result, where there is one already. system: of its units.
 
     Raises `RunError` for a design that does not belong to the problem.
     """
     return Subject(
-        result=result,
+        result=result_in(result, system),
         number=number,
         run=run,
         problem=problem,
@@ -64,4 +69,5 @@ def subject_of(
         design=design_of(problem, result.designs[number - 1]),
         versions=versions,
         certificate=certificate,
+        system=system,
     )
