@@ -9,6 +9,8 @@ from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import NotFound
+from ...objectives.kinds import System
+from .models import UnitsAsked
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
@@ -65,9 +67,9 @@ def list_figures(found: FrontDep) -> FiguresModel:
     response_class=Response,
     responses={200: {"content": {"image/png": {}}}},
 )
-def draw_png(found: FrontDep, name: Name) -> Response:
+def draw_png(found: FrontDep, name: Name, units: UnitsAsked = "metric") -> Response:
     """Draw a figure."""
-    return Response(_image(found, name, "png"), media_type="image/png")
+    return Response(_image(found, name, "png", units), media_type="image/png")
 
 
 @router.get(
@@ -75,14 +77,14 @@ def draw_png(found: FrontDep, name: Name) -> Response:
     response_class=Response,
     responses={200: {"content": {"image/svg+xml": {}}}},
 )
-def draw_svg(found: FrontDep, name: Name) -> Response:
+def draw_svg(found: FrontDep, name: Name, units: UnitsAsked = "metric") -> Response:
     """Draw a figure."""
     # Opened by itself it is a document: it runs nothing and fetches nothing.
     policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}
-    return Response(_image(found, name, "svg"), media_type="image/svg+xml", headers=policy)
+    return Response(_image(found, name, "svg", units), media_type="image/svg+xml", headers=policy)
 
 
-def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
+def _image(found: StoredFront, name: str, kind: Literal["png", "svg"], units: System) -> bytes:
     """Return a figure as a file; what was drawn before is kept with the front."""
     from ..figures.of_front import FrontFigure, front_figures, sheet_of
     from ..figures.style import image
@@ -93,23 +95,24 @@ def _image(found: StoredFront, name: str, kind: Literal["png", "svg"]) -> bytes:
         found.row(row + 1)
     elif not found.result.designs:
         raise _unknown(name, [])
-    drawn = found.image(name, kind)
+    kept = f"{kind} {units}"
+    drawn = found.image(name, kept)
     if drawn is not None:
         return drawn
     with DRAWING.turn():
-        drawn = found.image(name, kind)  # by whoever was first
+        drawn = found.image(name, kept)  # by whoever was first
         if drawn is not None:
             return drawn
         if single is not None:
-            figure = FrontFigure((name,), "", lambda: sheet_of(found.front, row, f"design {row + 1}"))
+            figure = FrontFigure((name,), "", lambda: sheet_of(found.front, row, f"design {row + 1}", units))
         else:
-            listed = front_figures(found.front)
+            listed = front_figures(found.front, units)
             named = next((item for item in listed if name in item.names), None)
             if named is None:
                 raise _unknown(name, [name for item in listed for name in item.names])
             figure = named
         content = image(figure.draw(), kind)
-        found.keep_image(figure.names, kind, content)
+        found.keep_image(figure.names, kept, content)
         return content
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any
 
-from fastapi import Path
+from fastapi import Path, Query
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticKnownError
 
+from ...objectives.kinds import System
 from ..store import State
 
 LARGEST = 2**53 - 1
@@ -26,6 +27,10 @@ Whole = Annotated[int, BeforeValidator(_plain)]
 JobNumber = Annotated[Whole, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
+UnitsAsked = Annotated[
+    System, Query(description="of what is given; in the inch system keys such as crank_mm become crank_in")
+]
+"""A query parameter."""
 
 
 class Shown(BaseModel):

@@ -37,7 +37,7 @@ def counted(designs: np.ndarray, ideal: np.ndarray, span: np.ndarray) -> float:
     scaled = scaled[(scaled < REFERENCE).all(axis=1)]
     scaled = scaled[np.argsort(scaled[:, 0])]
     ends = [*scaled[1:, 0], REFERENCE]
-    return sum((end - x) * (REFERENCE - y) for (x, y), end in zip(scaled, ends, strict=True)) / REFERENCE**2
+    return float(sum((end - x) * (REFERENCE - y) for (x, y), end in zip(scaled, ends, strict=True))) / REFERENCE**2
 
 
 @pytest.mark.parametrize("seed", range(20))

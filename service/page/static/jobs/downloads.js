@@ -2,16 +2,25 @@
 
 import { address, get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { apiSystem } from "../lib/numbers.js";
 
 const FRONT = [["export.csv", "Designs as CSV"], ["export.json", "Front as JSON"], ["export.parquet", "Designs as Parquet"]];
 
 /** Return a list of files behind a button; those that have to be asked for are asked for when it opens. */
 export function downloads(job, { designs, signal }) {
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
+  // In the units that the reader prefers at the moment.
+  const shown = (path, attributes, name) => {
+    const link = h("a", { ...attributes }, name);
+    const renew = () => (link.href = address(`jobs/${job.id}/${path}`, { units: apiSystem() }));
+    renew();
+    window.addEventListener("units", renew, { signal });
+    return link;
+  };
   const files = h("ul");
   const figures = h("ul");
   const list = h("div", { class: "chooser-list panel" },
-    designs && [h("h2", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => file(path, name)))],
+    designs && [h("h2", {}, "Front"), h("ul", {}, FRONT.map(([path, name]) => h("li", {}, shown(path, { download: "" }, name))))],
     h("h2", {}, "Files of the job"), files,
     designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;
@@ -34,7 +43,7 @@ export function downloads(job, { designs, signal }) {
     fill(figures, h("li", { class: "quiet" }, "Looking …"));
     try {
       const found = await get(`jobs/${job.id}/figures`, {}, signal);
-      const as = (name, kind) => h("a", { href: address(`jobs/${job.id}/figures/${name}.${kind}`), download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
+      const as = (name, kind) => shown(`figures/${name}.${kind}`, { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
       fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
     } catch (problem) {
       fill(figures, h("li", {}, problem.message));
