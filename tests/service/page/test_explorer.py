@@ -129,7 +129,8 @@ def test_sentences_exports_and_figures_follow_the_units_of_the_reader(open_page:
     with page.expect_download() as download:
         page.get_by_role("link", name="Designs as CSV").click()
     assert download.value.path().read_text().startswith("crank_in,rod_in,offset_in")
-    expect(page.get_by_role("link", name=re.compile("as SVG")).first).to_have_attribute("href", re.compile("units=inch"))
+    figure = page.get_by_role("link", name=re.compile("as SVG")).first
+    expect(figure).to_have_attribute("href", re.compile("units=inch"))
     page.reload()
     expect(page.get_by_label("Units")).to_have_value("inch")
     expect(costs).to_contain_text("costs")
