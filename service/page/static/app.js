@@ -78,4 +78,6 @@ document.querySelector(".skip").addEventListener("click", (event) => {
 });
 window.addEventListener("hashchange", showView);
 showPreferences();
-readySystem().catch(() => {}).finally(showView); // what is wrong with the service, the view says
+const units = readySystem().catch(() => {}); // what is wrong with the service, the view says
+if (system() === "inch") units.then(showView);
+else showView();

@@ -15,14 +15,14 @@ export function apiSystem() {
   return system() === "inch" ? "inch" : null;
 }
 
-/** Make ready to show numbers in the system that the reader chose. Without an answer of the service they are metric. */
-export async function readySystem(name = system()) {
-  SYSTEMS[name] ??= (await get("units"))[name];
+/** Make ready to show numbers in any system. Without an answer of the service they are metric. */
+export async function readySystem() {
+  SYSTEMS.inch ??= (await get("units")).inch;
 }
 
 /** Choose a system; everything that shows numbers is drawn again (event "units" of the window). */
 export async function chooseSystem(name) {
-  await readySystem(name);
+  await readySystem();
   localStorage.setItem("units", name);
   window.dispatchEvent(new Event("units"));
 }
