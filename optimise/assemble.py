@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
@@ -13,13 +11,15 @@ from .constant import is_constant
 from .evaluation import Evaluator, constraints_of
 from .front import ParetoFront, Status
 from .gradients import without_gradient
-from .hypervolume import choose, hypervolume, scaling
+from .hypervolume import Stand, choose, hypervolume, scaling, unheard
 from .identity import versions
 from .pile import STATIONARY, Pile
 from .problem import Problem, choice_field
 from .search import Run
 from .stationarity import Array, multipliers
 
+SELECTING, FINISHING = "selecting designs", "finishing designs"
+"""Stages after the rounds: the best designs are chosen, then all that is to be known of each is computed."""
 _AT_ONCE = 100  # designs analysed between two questions whether to end
 _GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
 
@@ -32,7 +32,7 @@ def assemble(
     rows: those to deliver, of a search that was told to end.
     """
     status: Status = "done" if rows is None else "cancelled"
-    rows = _best(problem, pile, run.ledger.poll) if rows is None else rows
+    rows = _best(problem, pile, run.stage(SELECTING)) if rows is None else rows
     values = pile.values[rows]
     rows = rows[np.lexsort(values.T[::-1])]
     values, dimensions = pile.values[rows], pile.dimensions[rows]
@@ -50,7 +50,7 @@ def assemble(
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
     variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[rows]], dtype=np.int64)
-    table = table_of(problem, variants, dimensions, run.ledger.poll)
+    table = table_of(problem, variants, dimensions, run.stage(FINISHING))
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
     evaluations = sum(evaluator.evaluations for evaluator in evaluators)
@@ -77,30 +77,29 @@ def assemble(
     )
 
 
-def _best(problem: Problem, pile: Pile, poll: Callable[[], None]) -> NDArray[np.int64]:
-    rows = pile.best(poll)
+def _best(problem: Problem, pile: Pile, stand: Stand) -> NDArray[np.int64]:
+    rows = pile.best(stand)
     if len(problem.objectives) == 1:
         return rows
     best = tuple(dict.fromkeys(np.argmin(pile.values[rows], axis=0).tolist()))
-    return rows[choose(pile.values[rows], problem.settings.designs, always=best, poll=poll)]
+    return rows[choose(pile.values[rows], problem.settings.designs, always=best, stand=stand)]
 
 
-def table_of(
-    problem: Problem, variants: NDArray[np.int64], dimensions: Array, poll: Callable[[], None]
-) -> pd.DataFrame:
+def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> pd.DataFrame:
     """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
 
-    variants: (n,). dimensions: (n, 3 + v). poll: called every second or sooner.
+    variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
     """
-    parts = []
+    parts, done = [], 0
     for variant in np.unique(variants).tolist():
         own = np.flatnonzero(variants == variant)
         part = problem.part(variant)
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
-            poll()
+            stand(done, len(dimensions))
             table = analyse(part.mechanism, dimensions[rows], own=problem.own)
-            poll()
+            stand(done, len(dimensions))
             _slacks(table, part, dimensions[rows])
+            done += len(rows)
             for place, name in enumerate(problem.choices):
                 label = problem.variants[variant].labels[place]
                 table.insert(list(table.columns).index("stroke_mm"), choice_field(name), label)

@@ -14,7 +14,7 @@ from .evaluation import Evaluator
 from .ledger import Ledger
 from .mirror import once
 from .problem import Constraint, Objective, Problem, Sense, Settings, Variant
-from .search import Run
+from .search import Callback, Run
 from .stationarity import Array
 
 _SAMPLES = 2048
@@ -29,13 +29,15 @@ class Best:
     design: Array
 
 
-def best_of(problem: Problem, ledger: Ledger | None = None, engine: Engine | None = None) -> Best | None:
+def best_of(
+    problem: Problem, ledger: Ledger | None = None, engine: Engine | None = None, stand: Callback | None = None
+) -> Best | None:
     """Return the best of a problem's only objective, None where nothing is feasible.
 
-    ledger, engine: of the search that wants to know it.
+    ledger, engine: of the search that wants to know it. stand: called with how far this one is.
     """
     own = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
-    front = search_by_default(problem, own, Run(problem, 1, ledger=ledger or Ledger()))
+    front = search_by_default(problem, own, Run(problem, 1, stand, ledger or Ledger(), stages=stand))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from .evaluation import Evaluator
-from .hypervolume import choose, nondominated
+from .hypervolume import Stand, choose, nondominated, unheard
 from .pile import Pile
 from .problem import Problem
 from .sampling import around, first_samples, generator, stacked
@@ -24,15 +22,14 @@ _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 
 
 def challengers(
-    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, attempt: int
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, attempt: int, stand: Stand = unheard
 ) -> list[tuple[int, Array]]:
     """Return points by sheet that the polish should take up, none if the front is as good and as full as asked.
 
     First those that dominate a polished design. Then, where designs are wanting, those that no polished design
-    dominates, and points half-way between neighbours.
+    dominates, and points half-way between neighbours. stand: called many times a second.
     """
-    poll = evaluators[0].ledger.poll
-    best = pile.best(poll)
+    best = pile.best(stand)
     front = pile.values[best] / pile.span
     _sample(problem, evaluators, archive, pile, best, attempt)
     screened = archive.values / pile.span
@@ -40,10 +37,10 @@ def challengers(
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(beating & archive.met)[:_POOL]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
-    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), poll))
+    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), stand))
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~beating)
-        rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting, poll)
+        rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting, stand)
         starts += by_sheet(evaluators, archive.sheet, archive.u, rows)
         starts += _half_way(evaluators, pile, best, wanting)
     return starts
@@ -88,16 +85,14 @@ def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[
     return beating, kept[len(front) :]
 
 
-def _few(
-    screened: Array, rows: NDArray[np.int64], front: Array, count: int, poll: Callable[[], None]
-) -> NDArray[np.int64]:
+def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int, stand: Stand) -> NDArray[np.int64]:
     """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
     if len(rows) <= count:
         return rows
     if front.shape[1] == 1:
         return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
     union = np.concatenate([front, screened[rows]])
-    picked = choose(union, len(front) + count, always=tuple(range(len(front))), poll=poll)
+    picked = choose(union, len(front) + count, always=tuple(range(len(front))), stand=stand)
     return rows[picked[picked >= len(front)] - len(front)]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .assemble import assemble, span_of
+from .assemble import SELECTING, assemble, span_of
 from .challenge import by_sheet, challengers
 from .enumeration import searched
 from .evaluation import Evaluator
@@ -34,7 +34,7 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     several = len(problem.objectives) > 1
     starts = []
     for rows in archive.groups():
-        some = _choice(problem, archive, rows, evaluators[0]) if several else _spread(archive, rows, 0, _STARTS)
+        some = _choice(problem, archive, rows, evaluators[0], run) if several else _spread(archive, rows, 0, _STARTS)
         starts += by_sheet(evaluators, archive.sheet, archive.u, some)
         if several:
             starts += _extremes(evaluators, archive, rows, pile.span)
@@ -46,7 +46,7 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
                 run.tell("polishing", free, archive)
         if attempt == ROUNDS - 1 or not len(pile) or not free:
             break
-        starts = challengers(problem, free, archive, pile, attempt)
+        starts = challengers(problem, free, archive, pile, attempt, run.stage(SELECTING))
         if not starts:
             break
     if not len(pile):
@@ -62,7 +62,7 @@ def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, ru
     pile = _begun(problem, archive, run)
     several = len(problem.objectives) > 1
     for rows in archive.groups():
-        some = _choice(problem, archive, rows, evaluators[0]) if several else rows[:_STARTS]
+        some = _choice(problem, archive, rows, evaluators[0], run) if several else rows[:_STARTS]
         for index, u in by_sheet(evaluators, archive.sheet, archive.u, some):
             valid = u[evaluators[index].valid(u)]
             pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
@@ -90,16 +90,18 @@ def planned(problem: Problem) -> int:
     return -(-_candidates(problem) // BATCH)
 
 
-def _choice(problem: Problem, archive: Archive, rows: NDArray[np.int64], evaluator: Evaluator) -> NDArray[np.int64]:
+def _choice(
+    problem: Problem, archive: Archive, rows: NDArray[np.int64], evaluator: Evaluator, run: Run
+) -> NDArray[np.int64]:
     """Return those of some rows whose polish is to become the front; a step of the evaluator's ledger."""
     best = rows[np.argmin(archive.values[rows], axis=0)]
     if len(rows) > _POOL:
         rows = np.unique(np.concatenate([rows[np.linspace(0, len(rows) - 1, _POOL).astype(int)], best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
-    values, ledger = archive.values[rows], evaluator.ledger
+    values, ledger, stand = archive.values[rows], evaluator.ledger, run.stage(SELECTING)
 
     def compute() -> tuple[NDArray[np.int64]]:
-        return (choose(values, _candidates(problem), always=always, poll=ledger.poll),)
+        return (choose(values, _candidates(problem), always=always, stand=stand),)
 
     return rows[integers(ledger.step("choice", (values,), compute, evaluator)[0])]
 

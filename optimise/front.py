@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from ..objectives.kinds import System, shown_in
 from .constant import spread
 from .hypervolume import scaling
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
@@ -23,14 +24,18 @@ Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
 _LEAST = 1e-4  # of a range: a step that is worth telling
 Status = Literal["done", "cancelled", "infeasible"]
+REPEATING = "repeating rounds"
+"""Stage of a search that goes on: its rounds are those of the earlier run, without evaluating anything."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a search stands after one of its rounds.
+    """Where a search stands after one of its rounds, or in a long stage between two.
 
     round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
-    hypervolume: of the front so far, in the unit box of the final scaling; not comparable between runs.
+    hypervolume: what those dominate; it never falls. While the search goes on it is told in boxes that the first
+    feasible designs span, and may exceed 1; in the history of a front, as a share of the box of that front. Not
+    comparable between runs. step, steps: how far the stage is, 0 of 0 at the end of a round.
     """
 
     stage: str
@@ -40,6 +45,13 @@ class Progress:
     feasible: int
     hypervolume: float
     seconds: float
+    step: int = 0
+    steps: int = 0
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the search only repeats what an earlier run of it did."""
+        return self.stage == REPEATING
 
 
 @dataclass(frozen=True)
@@ -55,7 +67,7 @@ class ParetoFront:
     design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
     free unknowns scaled to the unit box.
     hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
-    history: rounds. versions: of this software and what computed the numbers.
+    history: rounds, with hypervolumes in the same box. versions: of this software and what computed the numbers.
     """
 
     problem: Problem
@@ -196,11 +208,12 @@ class ParetoFront:
                 rates[b, b] = np.nan
         return rates
 
-    def trade_offs(self, row: int) -> list[str]:
+    def trade_offs(self, row: int, system: System = "metric") -> list[str]:
         """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
 
         Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. Of an objective
-        that has nothing left to gain this is said; one that is the same in all designs is left out.
+        that has nothing left to gain this is said; one that is the same in all designs is left out. system: of the
+        units that they are told in.
         """
         rates, reach = self.rates(row), spread(self.values, size=self._sizes)
         units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
@@ -217,9 +230,10 @@ class ParetoFront:
             elif payers:
                 most = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
                 if most > _LEAST * span:
-                    step = 10.0 ** np.floor(np.log10(most))  # a readable one
-                    costs = [self._change(self.objectives[a], step * rates[a, b], gain=False) for a in payers]
-                    sentences.append(f"{self._change(gain, step, gain=True)} costs {' and '.join(costs)}")
+                    one = self._unit(gain, system)[1]
+                    step = 10.0 ** np.floor(np.log10(most * one)) / one  # a readable one where it is shown
+                    costs = [self._change(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers]
+                    sentences.append(f"{self._change(gain, step, system, gain=True)} costs {' and '.join(costs)}")
         return sentences
 
     def _best(self, objective: Objective) -> str:
@@ -229,10 +243,15 @@ class ParetoFront:
             return f"no design of the front is nearer to the target of {title}"
         return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
-    def _change(self, objective: Objective, amount: float, *, gain: bool) -> str:
-        """Return a change of an objective in words."""
+    def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
+        """Return the unit that a system shows for an objective, and what its metric one is in that."""
+        return shown_in(self.problem.quantity(objective.quantity).unit.symbol, system)
+
+    def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
+        """Return a change of an objective, given in its metric unit, in words."""
         shown = self.problem.quantity(objective.quantity)
-        size = f"{amount:.3g} {shown.unit.symbol}".strip()
+        unit, factor = self._unit(objective, system)
+        size = f"{amount * factor:.3g} {unit}".strip()
         if objective.sense == "target":
             return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
         more = (objective.sense == "maximise") == gain

@@ -15,6 +15,13 @@ from .stationarity import Array
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""
 
+Stand = Callable[[int, int], None]
+"""Called many times a second by long work: how much of it is done, and of how much."""
+
+
+def unheard(done: int, of: int) -> None:
+    """Take no note of where work stands."""
+
 
 def scaling(values: Array) -> tuple[Array, Array]:
     """Return ideal and range of objective values (n, m); of an objective that is constant, its size for a range."""
@@ -31,11 +38,14 @@ def nondominated(values: Array) -> NDArray[np.int64]:
     return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
 
 
-def hypervolume(values: Array, ideal: Array, span: Array) -> float:
-    """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate."""
+def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True) -> float:
+    """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate.
+
+    within: what they dominate on the far side of the ideal does not count; else the share may exceed 1.
+    """
     if not len(values):
         return 0.0
-    scaled = np.clip((values - ideal) / span, 0.0, None)
+    scaled = np.clip((values - ideal) / span, 0.0 if within else None, None)
     scaled = scaled[(scaled < REFERENCE).all(axis=1)]
     if not len(scaled):
         return 0.0
@@ -45,13 +55,12 @@ def hypervolume(values: Array, ideal: Array, span: Array) -> float:
     return float(volume / REFERENCE ** scaled.shape[1])
 
 
-def choose(
-    values: Array, count: int, *, always: tuple[int, ...] = (), poll: Callable[[], None] = lambda: None
-) -> NDArray[np.int64]:
+def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: Stand = unheard) -> NDArray[np.int64]:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
-    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978). poll: called for every gain.
+    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978). stand: called for every gain,
+    with the designs chosen.
     """
     n = len(values)
     if n <= count:
@@ -69,7 +78,7 @@ def choose(
     heap = [(-float(np.prod(REFERENCE - row)), index, -1) for index, row in enumerate(scaled) if index not in picked]
     heapq.heapify(heap)
     while len(picked) < count and heap:
-        poll()
+        stand(len(picked), count)
         _, index, age = heapq.heappop(heap)
         if age == len(picked):
             picked.append(index)

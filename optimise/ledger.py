@@ -66,6 +66,8 @@ class Counts(Protocol):
 class Ledger:
     """The steps of one search: first those of an earlier run, then those that are computed now, which it keeps.
 
+    told: rounds told so far. before: those that the earlier run told.
+
     In `Record.words` a step is two words of digest, the evaluations that it took, and the number of its arrays; then
     of each array its kind (0 for floats, 1 for integers), its dimensions' number and sizes, and its numbers.
     """
@@ -89,10 +91,10 @@ class Ledger:
         _require_own(past, self._identity)
         self._past = _steps(past)
         self._next = next(self._past, None)
-        self._before = past[-1].told if past else 0
+        self.before = past[-1].told if past else 0
         self._number = len(past)
         self._pending: list[Words] = []
-        self._told = 0
+        self.told = 0
         now = time.perf_counter()
         self._start = now - (past[-1].seconds if past else 0.0)
         self._when = now
@@ -147,15 +149,15 @@ class Ledger:
 
     def turn(self) -> bool:
         """Keep the steps of a round that has ended; return whether it is new, not one that the earlier run told."""
-        self._told += 1
+        self.told += 1
         self._flush()
-        return self._told > self._before
+        return self.told > self.before
 
     def _flush(self) -> None:
         if self._keep is not None and self._pending and self._identity is not None:
             words, self._pending = np.concatenate(self._pending), []
             self._number += 1
-            self._keep(Record(self._identity, self._number - 1, self._told, self.seconds, words))
+            self._keep(Record(self._identity, self._number - 1, self.told, self.seconds, words))
         self._when = time.perf_counter()
 
 

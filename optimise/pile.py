@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model.in_line import without_rounding
 from .evaluation import FEASIBLE, Evaluator
-from .hypervolume import nondominated
+from .hypervolume import Stand, nondominated, unheard
 from .polish import Polished
 from .sampling import stacked
 from .stationarity import Array
@@ -81,8 +79,8 @@ class Pile:
         part.span = span
         return part
 
-    def best(self, poll: Callable[[], None] = lambda: None) -> NDArray[np.int64]:
-        """Return the rows that none dominates, fewer where they hardly differ; ascending. poll: called for each.
+    def best(self, stand: Stand = unheard) -> NDArray[np.int64]:
+        """Return the rows that none dominates, fewer where they hardly differ; ascending. stand: called for each.
 
         None of them is as good as another one to `EQUAL` everywhere and better somewhere.
         """
@@ -95,7 +93,7 @@ class Pile:
         doubtful = self.residual > STATIONARY
         worth = ~doubtful
         for row in np.flatnonzero(doubtful).tolist():
-            poll()
+            stand(0, len(values))
             worth[row] = not _as_good(values[~doubtful], values[row], covered).any()
         rows = np.flatnonzero(worth)
         rows = rows[nondominated(values[rows])]
@@ -103,8 +101,8 @@ class Pile:
         # What is proven first, then what is best in an objective.
         scaled = values[rows] / self.span
         order = np.lexsort([scaled.sum(axis=1), np.where(_leads(scaled), 0, 1), doubtful[rows]])
-        for row in rows[order].tolist():
-            poll()
+        for done, row in enumerate(rows[order].tolist()):
+            stand(done, len(rows))
             if not _as_good(values[kept], values[row], same if self.free[row] else equal).any():
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -10,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evaluation import FEASIBLE, Evaluator
-from .front import Progress
-from .hypervolume import hypervolume, nondominated, scaling
+from .front import REPEATING, Progress
+from .growth import Growth
+from .hypervolume import Stand, nondominated
 from .ledger import Ledger
 from .problem import Problem
 from .sampling import around, first_samples, generator, stacked
@@ -35,7 +37,9 @@ LEAST = 1024
 """Designs of a round on each of many sheets."""
 _CROWD = 2000  # parents of a round
 _BEST = 1000  # designs kept of a single objective
-_SHOWN = 400  # designs of which the hypervolume is told
+_SHOWN = 400  # designs of a front so far, and of that of a round in the history
+TELL = 0.5
+"""s between two words of a long stage: somebody watches."""
 
 Callback = Callable[[Progress], None]
 
@@ -111,7 +115,8 @@ class Run:
 
     ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
     archive: what the search has found on the others. pile: the designs of the settled ones, and what the polish has
-    made of the archive.
+    made of the archive. fronts: of each round, feasible designs that its hypervolume is told of.
+    progress: called after every round. stages: called in long stages between two.
     """
 
     problem: Problem
@@ -123,42 +128,80 @@ class Run:
     archive: Archive | None = None
     pile: Pile | None = None
     settled: list[Evaluator] = field(default_factory=list)
+    stages: Callback | None = None
+
+    def __post_init__(self) -> None:
+        self._growth = Growth(self._targets)
+        self._latest: Array = np.zeros((0, len(self.problem.objectives)))
+        self._heard = time.monotonic()
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
         """Record the end of a round; evaluators: those that the archive's designs are from.
 
-        Of the last archive with designs the front is made if the search is told to end.
+        Of the last archive with designs the front is made if the search is told to end. A round that an earlier run has
+        told is not told again, only that it is repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        values = np.concatenate([archive.values, *([] if self.pile is None else [self.pile.values])])
+        polished = [] if self.pile is None else [self.pile.values]
+        values = np.concatenate([archive.values, *polished])
         values = values[nondominated(values)]
-        self.fronts.append(values[:: 1 + len(values) // _SHOWN])
+        self._latest = values[:: 1 + len(values) // _SHOWN]
         entry = Progress(
             stage,
             len(self.told) + 1,
             max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
             archive.feasible + (0 if self.pile is None else self.pile.settled),
-            hypervolume(self.fronts[-1], *scaling(values)) if len(values) else 0.0,
+            self._growth.take(np.concatenate([archive.values[archive.met], *polished])),
             self.ledger.seconds,
         )
         self.told.append(entry)
-        if self.ledger.turn() and self.progress is not None:
-            self.progress(entry)
+        self.fronts.append(self._growth.front[:: 1 + len(self._growth.front) // _SHOWN])
+        if self.ledger.turn():
+            self._say(entry, self.progress)
+        else:
+            self.stand(stage, 0, 1)
 
-    def history(self, ideal: Array, span: Array, most: int = _SHOWN) -> tuple[Progress, ...]:
-        """Return the rounds with hypervolumes of one scaling, so that they compare.
+    def stage(self, name: str) -> Stand:
+        """Return what is to be called many times a second in a long stage: it ends a cancelled search, and tells."""
+
+        def stand(done: int, of: int) -> None:
+            self.ledger.poll()
+            self.stand(name, done, of)
+
+        return stand
+
+    def stand(self, stage: str, done: int, of: int) -> None:
+        """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told."""
+        if self.stages is None or time.monotonic() - self._heard < TELL:
+            return
+        if self.ledger.told < self.ledger.before or self.ledger.replaying:
+            stage, done, of = REPEATING, self.ledger.told, self.ledger.before
+        last = self.told[-1] if self.told else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
+        self._say(replace(last, stage=stage, seconds=self.ledger.seconds, step=done, steps=max(done, of)), self.stages)
+
+    def _say(self, entry: Progress, hearing: Callback | None) -> None:
+        if hearing is not None:
+            hearing(entry)
+        self._heard = time.monotonic()
+
+    @property
+    def _targets(self) -> Array:
+        return np.array([objective.target or 0.0 for objective in self.problem.objectives])
+
+    def history(self, ideal: Array, span: Array, most: int | None = None) -> tuple[Progress, ...]:
+        """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.
 
         most: designs of each round that count; the others would add little.
         """
+        growth = Growth(self._targets, box=(ideal, span), most=most)
         return tuple(
-            replace(entry, hypervolume=hypervolume(front[:: -(-len(front) // most) or 1], ideal, span))
-            for entry, front in zip(self.told, self.fronts, strict=True)
+            replace(entry, hypervolume=growth.take(front)) for entry, front in zip(self.told, self.fronts, strict=True)
         )
 
     def front_so_far(self) -> Array:
         """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
-        return self.fronts[-1] if self.fronts else np.zeros((0, len(self.problem.objectives)))
+        return self._latest
 
 
 def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:

@@ -91,7 +91,7 @@ def _soon(problem: Problem, evaluators: list[Evaluator], pile: Pile, rows: NDArr
     some = rows[:: -(-len(rows) // _TRIED)]
     variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[some]], dtype=np.int64)
     begin = time.perf_counter()
-    table_of(problem, variants, pile.dimensions[some], lambda: None)
+    table_of(problem, variants, pile.dimensions[some])
     each = (time.perf_counter() - begin) / len(some)
     return rows[_spread(pile.values[rows], max(1, int(_ANALYSING / each)))]
 

@@ -35,6 +35,7 @@ def solve(
     problem: Problem,
     *,
     progress: Callback | None = None,
+    stages: Callback | None = None,
     fronts: Callable[[Array], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     resume: Sequence[Record] = (),
@@ -43,8 +44,9 @@ def solve(
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
-    progress: called after every round. fronts: called just before that with the objectives of the front so far, see
-    `Run.front_so_far`. cancelled: asked many times a second; when it says so, what was found so far is
+    progress: called after every round. stages: called about twice a second in a long stage between two rounds, or after
+    the last. fronts: called just before `progress` with the objectives of the front so far, see `Run.front_so_far`.
+    cancelled: asked many times a second; when it says so, what was found so far is
     returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
@@ -59,7 +61,7 @@ def solve(
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
-    run = Run(problem, 1, progress, ledger)
+    run = Run(problem, 1, progress, ledger, stages=stages)
     if fronts is not None:
 
         def told(entry: Progress) -> None:
@@ -97,11 +99,12 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
         if front is not None:
             return front
     message = diagnosis.message or _THIN
-    if diagnosis.message and prove_infeasible(problem, poll=run.ledger.poll):
+    if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage("proving"), 0, 1)):
         message += "; proven: no design of the ranges meets them all"
     return empty(problem, evaluators, run, "infeasible", message)
 
 
+_DIAGNOSING = "diagnosing"
 _THIN = (
     "designs that meet all requirements to rounding exist, but none that meets the equalities exactly; "
     "widen the ranges a little"
@@ -120,8 +123,12 @@ _MISSED = (
 
 def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
     """Return the best of a problem's only objective for the search that wants to know it."""
-    found = best_of(problem, run.ledger, evaluators[0].engine)
-    run.tell("diagnosing", searched(evaluators), Archive.empty(len(run.problem.objectives)))
+
+    def stand(at: Progress) -> None:
+        run.stand(_DIAGNOSING, at.round, at.rounds)
+
+    found = best_of(problem, run.ledger, evaluators[0].engine, stand)
+    run.tell(_DIAGNOSING, searched(evaluators), Archive.empty(len(run.problem.objectives)))
     return found
 
 

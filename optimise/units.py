@@ -16,54 +16,15 @@ import math
 import re
 import reprlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from datetime import date, time
 from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
+from ..objectives.kinds import ANGLE, KINDS, LENGTH, TIME, Kind
 
 Sign = Literal["any", "positive", "zero or more"]
 
-
-@dataclass(frozen=True, kw_only=True)
-class Kind:
-    """A kind of physical value.
-
-    name: with its article, "a length". unit: the SI unit, "" if none. example: as a job file has it.
-    limit: the greatest magnitude in SI that is believed. It lies orders beyond any machine: what exceeds it is a
-    mistaken unit (80 Mm for 80 mm), and products of several values stay far from the ends of a double.
-    """
-
-    name: str
-    unit: str
-    example: str
-    limit: float
-
-
-LENGTH = Kind(name="a length", unit="m", example="80 mm", limit=1e4)
-AREA = Kind(name="an area", unit="m^2", example="0.25 m^2", limit=1e8)
-ANGLE = Kind(name="an angle", unit="rad", example="0.1 deg", limit=1e4)
-ANGULAR_SPEED = Kind(name="an angular speed", unit="rad/s", example="300 rpm", limit=1e6)
-ANGULAR_ACCELERATION = Kind(name="an angular acceleration", unit="rad/s^2", example="20 rad/s^2", limit=1e9)
-MASS = Kind(name="a mass", unit="kg", example="0.8 kg", limit=1e8)
-INERTIA = Kind(name="a moment of inertia", unit="kg m^2", example="0.015 kg m^2", limit=1e12)
-DENSITY = Kind(name="a density", unit="kg/m^3", example="7800 kg/m^3", limit=1e6)
-SPEED = Kind(name="a speed", unit="m/s", example="2.5 m/s", limit=1e6)
-ACCELERATION = Kind(name="an acceleration", unit="m/s^2", example="9.81 m/s^2", limit=1e9)
-FORCE = Kind(name="a force", unit="N", example="200 N", limit=1e12)
-TORQUE = Kind(name="a torque", unit="N m", example="25 N m", limit=1e15)
-POWER = Kind(name="a power", unit="W", example="250 W", limit=1e15)
-STIFFNESS = Kind(name="a stiffness", unit="N/m", example="20 N/mm", limit=1e15)
-DAMPING = Kind(name="a viscous coefficient", unit="N s/m", example="50 N s/m", limit=1e15)
-PRESSURE = Kind(name="a pressure", unit="Pa", example="207 GPa", limit=1e15)
-RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9)
-
-KINDS = (
-    *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO),
-)
-TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9)
 _OTHERS = (
     TIME,
     Kind(name="a frequency, not saying of turns or of radians", unit="s^-1", example="", limit=0.0),
@@ -285,8 +246,8 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 def _unit(text: str) -> tuple[Fraction, frozenset[tuple[str, int]]]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
-    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a product after
-    it ("N/m s") reads either way and is refused.
+    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a product
+    after it ("N/m s") reads either way and is refused.
     """
     rest, factor, dimension = text.rstrip(), Fraction(1), dict[str, int]()
     divided, first = False, True

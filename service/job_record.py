@@ -18,5 +18,5 @@ def job_record(job: Job) -> dict[str, Any]:
         "memory_bytes": job.limits.memory,
     }
     if job.progress is not None:
-        record["progress"] = {**job.progress, "front": job.progress.get("front")}
+        record["progress"] = {"step": 0, "steps": 0, **job.progress, "front": job.progress.get("front")}
     return record

@@ -8,11 +8,11 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from ...model.errors import InputError
-from .. import units
+from ...objectives import kinds
 from ..convex.costs import Cost, Costs
 from .values import AngleTolerance, Fraction, Part, Physical, PositiveLength, PositiveRatio, Radius
 
-PositiveAngle = Annotated[float, Physical(units.ANGLE, "positive")]
+PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
 
 class _CostPart(Part):

@@ -10,11 +10,12 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field
 
 from ...model.errors import InputError, JobError
+from ...objectives.kinds import TIME, Kind
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, installed, own_quantities
 from ...objectives.quantity import Unit
 from ...objectives.registry import QUANTITIES
-from ..units import TIME, Kind, kind_for, per_si, shown
+from ..units import kind_for, per_si, shown
 from .quantities import SLOW_STROKE
 from .values import Part, Physical
 

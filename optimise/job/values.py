@@ -14,8 +14,10 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.mechanism import Tolerance
+from ...objectives import kinds
+from ...objectives.kinds import Kind
 from .. import units
-from ..units import Kind, Sign, shown, to_si
+from ..units import Sign, shown, to_si
 
 SHORTEST = 1e-9
 """m; a shorter link is a mistaken unit."""
@@ -105,7 +107,7 @@ class RangeOf:
         return lower, upper
 
     def _length(self, value: object) -> float:
-        length = to_si(value, units.LENGTH, sign=self.sign)
+        length = to_si(value, kinds.LENGTH, sign=self.sign)
         if self.sign == "positive" and length < SHORTEST:
             raise InputError(f"must be at least {SHORTEST:g} m; got {shown(value)}; check the unit")
         return length
@@ -127,7 +129,7 @@ class RangeOf:
         return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        one = described(units.LENGTH, self.sign)["anyOf"]
+        one = described(kinds.LENGTH, self.sign)["anyOf"]
         pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
         choices = {
             "type": "object",
@@ -147,7 +149,7 @@ class ToleranceOf:
         if not (isinstance(value, str) and value.rstrip().endswith("%")):
             return None
         try:
-            percent = to_si(value.rstrip()[:-1], units.RATIO)
+            percent = to_si(value.rstrip()[:-1], kinds.RATIO)
         except InputError:
             percent = -1.0
         if not 0.0 <= percent < 100.0:
@@ -161,7 +163,7 @@ class ToleranceOf:
         """Return the tolerance in m, or the percentage as it stands; raises InputError."""
         if cls.share(value) is not None:
             return str(value)
-        return to_si(value, units.LENGTH, sign="zero or more")
+        return to_si(value, kinds.LENGTH, sign="zero or more")
 
     @classmethod
     def build(cls, value: float | str) -> Tolerance:
@@ -180,32 +182,32 @@ class ToleranceOf:
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         share = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$"}
-        either = [*described(units.LENGTH, "zero or more")["anyOf"], share]
+        either = [*described(kinds.LENGTH, "zero or more")["anyOf"], share]
         return {"anyOf": either, "examples": ["0.05 mm", "0.1 %"]}
 
 
-Length = Annotated[float, Physical(units.LENGTH)]
-PositiveLength = Annotated[float, Physical(units.LENGTH, "positive")]
-Radius = Annotated[float, Physical(units.LENGTH, "zero or more")]
-Clearance = Annotated[float, Physical(units.LENGTH, "zero or more")]
-Angle = Annotated[float, Physical(units.ANGLE)]
-AngleTolerance = Annotated[float, Physical(units.ANGLE, "zero or more")]
-AngularSpeed = Annotated[float, Physical(units.ANGULAR_SPEED)]
-PositiveAngularSpeed = Annotated[float, Physical(units.ANGULAR_SPEED, "positive")]
-AngularAcceleration = Annotated[float, Physical(units.ANGULAR_ACCELERATION)]
-Mass = Annotated[float, Physical(units.MASS, "zero or more")]
-Inertia = Annotated[float, Physical(units.INERTIA, "zero or more")]
-Density = Annotated[float, Physical(units.DENSITY, "positive")]
-Gravity = Annotated[float, Physical(units.ACCELERATION, "zero or more")]
-Force = Annotated[float, Physical(units.FORCE)]
-Resistance = Annotated[float, Physical(units.FORCE, "positive")]
-Stiffness = Annotated[float, Physical(units.STIFFNESS, "positive")]
-Damping = Annotated[float, Physical(units.DAMPING, "positive")]
-Torque = Annotated[float, Physical(units.TORQUE)]
-PositiveTorque = Annotated[float, Physical(units.TORQUE, "positive")]
-Pressure = Annotated[float, Physical(units.PRESSURE, "positive")]
-Fraction = Annotated[float, Physical(units.RATIO, "zero or more")]
-PositiveRatio = Annotated[float, Physical(units.RATIO, "positive")]
+Length = Annotated[float, Physical(kinds.LENGTH)]
+PositiveLength = Annotated[float, Physical(kinds.LENGTH, "positive")]
+Radius = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
+Clearance = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
+Angle = Annotated[float, Physical(kinds.ANGLE)]
+AngleTolerance = Annotated[float, Physical(kinds.ANGLE, "zero or more")]
+AngularSpeed = Annotated[float, Physical(kinds.ANGULAR_SPEED)]
+PositiveAngularSpeed = Annotated[float, Physical(kinds.ANGULAR_SPEED, "positive")]
+AngularAcceleration = Annotated[float, Physical(kinds.ANGULAR_ACCELERATION)]
+Mass = Annotated[float, Physical(kinds.MASS, "zero or more")]
+Inertia = Annotated[float, Physical(kinds.INERTIA, "zero or more")]
+Density = Annotated[float, Physical(kinds.DENSITY, "positive")]
+Gravity = Annotated[float, Physical(kinds.ACCELERATION, "zero or more")]
+Force = Annotated[float, Physical(kinds.FORCE)]
+Resistance = Annotated[float, Physical(kinds.FORCE, "positive")]
+Stiffness = Annotated[float, Physical(kinds.STIFFNESS, "positive")]
+Damping = Annotated[float, Physical(kinds.DAMPING, "positive")]
+Torque = Annotated[float, Physical(kinds.TORQUE)]
+PositiveTorque = Annotated[float, Physical(kinds.TORQUE, "positive")]
+Pressure = Annotated[float, Physical(kinds.PRESSURE, "positive")]
+Fraction = Annotated[float, Physical(kinds.RATIO, "zero or more")]
+PositiveRatio = Annotated[float, Physical(kinds.RATIO, "positive")]
 PositiveRange = Annotated[tuple[float, float] | Choices, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -113,7 +113,7 @@ class Feed:
     @contextlib.contextmanager
     def _following(self, number: int, last: int) -> Iterator[Channel]:
         channel = self._channels.get(number)
-        if channel is None:
+        if channel is None or channel.over:  # a job that had ended may have been resumed since
             channel = self._channels[number] = Channel(last)
         channel.followers += 1
         if self._closed:
@@ -124,7 +124,7 @@ class Feed:
             yield channel
         finally:
             channel.followers -= 1
-            if not channel.followers:
+            if not channel.followers and self._channels.get(number) is channel:
                 del self._channels[number]
 
     async def _look(self) -> None:

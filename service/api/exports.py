@@ -7,8 +7,10 @@ from importlib.util import find_spec
 
 from fastapi import APIRouter, HTTPException, Response
 
+from ..designs.shown_units import result_in, rows_in
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
+from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
@@ -30,12 +32,12 @@ def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}}},
 )
-def export_csv(found: FrontDep) -> Response:
+def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give every design with all its quantities at full precision.
 
     A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
     """
-    content = csv_text(found.result.designs, spreadsheet=True)
+    content = csv_text(rows_in(found.result.designs, units), spreadsheet=True)
     return _file(found, "csv", "text/csv; charset=utf-8", content)
 
 
@@ -44,11 +46,12 @@ def export_csv(found: FrontDep) -> Response:
     response_class=Response,
     responses={200: {"content": {"application/json": {}}}},
 )
-def export_json(found: FrontDep) -> Response:
+def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give the whole front, as `slidercrank export --json` does but in one line."""
     from pydantic_core import to_json  # a tenth of the time of json's
 
-    return _file(found, "json", "application/json", to_json(found.result.record(), inf_nan_mode="null"))
+    result = result_in(found.result, units, None if units == "metric" else found.problem)
+    return _file(found, "json", "application/json", to_json(result.record(), inf_nan_mode="null"))
 
 
 @router.get(
@@ -56,7 +59,7 @@ def export_json(found: FrontDep) -> Response:
     response_class=Response,
     responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **problem_responses(501)},
 )
-def export_parquet(found: FrontDep) -> Response:
+def export_parquet(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
     if "parquet" not in formats():
         raise HTTPException(
@@ -65,5 +68,5 @@ def export_parquet(found: FrontDep) -> Response:
     import pandas as pd
 
     out = io.BytesIO()
-    pd.DataFrame(found.result.designs).to_parquet(out, engine="pyarrow", index=False)
+    pd.DataFrame(rows_in(found.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
     return _file(found, "parquet", "application/vnd.apache.parquet", out.getvalue())

@@ -10,7 +10,9 @@ from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError, NotFound
+from ...objectives.kinds import System
 from ..runs.run_folder import slug
+from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
 from .state import SettingsDep
@@ -73,9 +75,9 @@ def list_figures(found: FrontDep) -> FiguresModel:
     response_class=Response,
     responses={200: {"content": {"image/png": {}}}},
 )
-def draw_png(found: FrontDep, name: Name, lengths: LengthsDep) -> Response:
+def draw_png(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
-    content, headers = _image(found, name, "png", lengths)
+    content, headers = _image(found, name, "png", lengths, units)
     return Response(content, media_type="image/png", headers=headers)
 
 
@@ -84,16 +86,16 @@ def draw_png(found: FrontDep, name: Name, lengths: LengthsDep) -> Response:
     response_class=Response,
     responses={200: {"content": {"image/svg+xml": {}}}},
 )
-def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep) -> Response:
+def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
-    content, headers = _image(found, name, "svg", lengths)
+    content, headers = _image(found, name, "svg", lengths, units)
     # Opened by itself it is a document: it runs nothing and fetches nothing.
     policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}
     return Response(content, media_type="image/svg+xml", headers={**headers, **policy})
 
 
 def _image(
-    found: StoredFront, name: str, kind: Literal["png", "svg"], lengths: Lengths | None
+    found: StoredFront, name: str, kind: Literal["png", "svg"], lengths: Lengths | None, units: System
 ) -> tuple[bytes, dict[str, str]]:
     """Return a figure and the headers that name its file; what was drawn before is kept with the front."""
     from ..figures.of_front import FrontFigure
@@ -103,46 +105,49 @@ def _image(
         if lengths is not None:
             rule = "other lengths are those of a single design"
             raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-        return _made(found, name, kind, lambda: _of_front(found, name)), {}
+        return _made(found, name, kind, units, lambda: _of_front(found, name, units)), {}
     shown = shown_design(found, int(single[1]), lengths)
     file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
-    drawn = _made(found, shown.key, kind, lambda: FrontFigure((shown.key,), "", lambda: _sheet(shown)))
+    drawn = _made(found, shown.key, kind, units, lambda: FrontFigure((shown.key,), "", lambda: _sheet(shown, units)))
     return drawn, {"Content-Disposition": f'inline; filename="{file}"'}
 
 
-def _made(found: StoredFront, key: str, kind: Literal["png", "svg"], figure: Callable[[], FrontFigure]) -> bytes:
+def _made(
+    found: StoredFront, key: str, kind: Literal["png", "svg"], units: System, figure: Callable[[], FrontFigure]
+) -> bytes:
     from ..figures.style import image
 
-    drawn = found.image(key, kind)
+    kept = f"{kind} {units}"
+    drawn = found.image(key, kept)
     if drawn is not None:
         return drawn
     with DRAWING.turn():
-        drawn = found.image(key, kind)  # by whoever was first
+        drawn = found.image(key, kept)  # by whoever was first
         if drawn is None:
             named = figure()
             drawn = image(named.draw(), kind)
-            found.keep_image(named.names, kind, drawn)
+            found.keep_image(named.names, kept, drawn)
         return drawn
 
 
-def _of_front(found: StoredFront, name: str) -> FrontFigure:
+def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
     """Return a figure of a whole front. Raises `NotFound` with those that there are."""
     from ..figures.of_front import front_figures
 
-    listed = front_figures(found.front) if found.result.designs else []
+    listed = front_figures(found.front, units) if found.result.designs else []
     named = next((item for item in listed if name in item.names), None)
     if named is None:
         raise _unknown(name, [name for item in listed for name in item.names])
     return named
 
 
-def _sheet(shown: ShownDesign) -> Figure:
+def _sheet(shown: ShownDesign, units: System) -> Figure:
     from ..figures.of_front import sheet_of, sheet_of_changed
 
     variation, front = shown.variation(), shown.found.front
     if variation is None:
-        return sheet_of(front, shown.number - 1, shown.words)
-    return sheet_of_changed(front, shown.design, variation.row, shown.words)
+        return sheet_of(front, shown.number - 1, shown.words, units)
+    return sheet_of_changed(front, shown.design, variation.row, shown.words, units)
 
 
 def _unknown(name: str, names: list[str]) -> NotFound:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any
 
-from fastapi import Path
+from fastapi import Path, Query
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticKnownError
 
+from ...objectives.kinds import System
 from ..store import State
 
 LARGEST = 2**53 - 1
@@ -26,6 +27,10 @@ Whole = Annotated[int, BeforeValidator(_plain)]
 JobNumber = Annotated[Whole, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
+UnitsAsked = Annotated[
+    System, Query(description="of what is given; in the inch system keys such as crank_mm become crank_in")
+]
+"""A query parameter."""
 
 
 class Shown(BaseModel):
@@ -59,8 +64,13 @@ class JobProgress(Shown):
     rounds: int = Field(description="how many are planned")
     evaluations: int
     feasible: int = Field(description="designs that meet every constraint")
-    hypervolume: float | None = Field(description="of the front so far; not comparable between jobs")
+    hypervolume: float | None = Field(
+        description="what the feasible designs so far dominate, in boxes that the first of them span; it never falls; "
+        "not comparable between jobs"
+    )
     seconds: float | None
+    step: int = Field(default=0, description="how far the stage is, in a long one between two rounds")
+    steps: int = Field(default=0, description="how far it goes; 0 at the end of a round")
     front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
 
 

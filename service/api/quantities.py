@@ -1,4 +1,4 @@
-"""What the quantities mean."""
+"""What the quantities mean, and the units that they are shown in."""
 
 from __future__ import annotations
 
@@ -31,6 +31,28 @@ class QuantityList(BaseModel):
     """All quantities: dimensions, those of designs, those of wanted motions."""
 
     quantities: list[QuantityModel]
+
+
+class ShownUnit(BaseModel):
+    """A unit that the API speaks in another system. factor: what one of the API's unit is in it."""
+
+    unit: str = Field(examples=["in"])
+    factor: float = Field(examples=[1 / 25.4])
+
+
+class UnitTable(BaseModel):
+    """By the unit that the API speaks, the unit of US customary units; the others are the same there."""
+
+    inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
+
+
+@router.get("/units")
+def list_units() -> UnitTable:
+    """Give what values of the API are in inches, pounds and what is made of them."""
+    from ...objectives.kinds import SHOWN, shown_in
+
+    told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.metric and kind.inch]
+    return UnitTable(inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told})
 
 
 @router.get("/quantities")

@@ -17,6 +17,7 @@ from ..designs.variation import variation_of, with_lengths
 from ..runs.result import finite
 from .analysis import CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, column_model
+from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import LONGEST, Length
 from .stored_fronts import DesignNumber, FrontDep
@@ -124,12 +125,12 @@ def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsMode
 
 
 @router.get("/jobs/{number}/designs/{design}/trade-offs")
-def show_trade_offs(found: FrontDep, design: DesignNumber) -> TradeOffsModel:
+def show_trade_offs(found: FrontDep, design: DesignNumber, units: UnitsAsked = "metric") -> TradeOffsModel:
     """Give what one objective costs in the others at a design, to first order, its active constraints held."""
     stored = found.design(design)
     try:
         with SIMULATING.turn():
-            sentences, note = trade_offs_of(found.front, design - 1, stored), ""
+            sentences, note = trade_offs_of(found.front, design - 1, stored, units), ""
     except InputError as error:
         sentences, note = [], str(error)
     return TradeOffsModel(job=found.job.id, number=design, trade_offs=sentences, note=note)

@@ -44,9 +44,9 @@ def allocate(
     tolerance, and takes its part of the limit; so do the clearances.
     """
     from ...model.linkage import Linkage
+    from ...objectives.kinds import LENGTH
     from ...optimise.convex import tolerance_allocation as convex
     from ...optimise.job import load_job
-    from ...optimise.units import LENGTH
 
     problem = load_job(job)
     if problem.costs is None:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import System
 from ..designs.design_analysis import analysis_of, numbers_of
 from ..designs.judged_rules import judged
+from ..designs.shown_units import record_in, row_in
 from ..designs.topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk
 from .interruption import Interruption
-from .options import length_option, speed_option, value_option
+from .options import Units, length_option, speed_option, value_option
 from .screen import console, give, say, waiting
 from .tables import show_design, show_rules
 
@@ -66,6 +68,7 @@ def analyse(
     figures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there, and each topic.")
     ] = None,
+    units: Units = "metric",
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
     """Analyse one design.
@@ -104,20 +107,23 @@ def analyse(
     design = [topic for topic in found.topics if topic.name in found.found]
     rules = [] if problem is None else judged(problem, row)
     if json:
-        give(json_text(found.record() | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
+        record = record_in(found.record(), units)
+        give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
         screen = console()
-        show_design(screen, row, only=[key for key in row if key not in TOLD_THERE])
+        show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units))
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
+        if design and units != "metric":
+            screen.print("\nTopics are told in metric units; --json has them in those asked for.", style="dim")
         for topic in design:
             screen.print()
             topic.show(screen, found.found[topic.name])
     for note in found.notes:
         say(note)
     if figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, design, figures)
+        _draw(problem, mechanism, linkage, row, design, figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
 
@@ -126,7 +132,7 @@ def _topic_options(
     at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
-    from ...optimise.units import ANGLE, LENGTH
+    from ...objectives.kinds import ANGLE, LENGTH
 
     options: dict[str, dict[str, Any]] = {}
     for option, topic, given in (
@@ -146,13 +152,19 @@ def _topic_options(
 
 
 def _draw(
-    problem: Problem | None, mechanism: Mechanism, linkage: Linkage, row: Row, topics: list[Topic], folder: Path
+    problem: Problem | None,
+    mechanism: Mechanism,
+    linkage: Linkage,
+    row: Row,
+    topics: list[Topic],
+    folder: Path,
+    units: System,
 ) -> None:
     from ..figures import draw_design
 
     title = "Design" if problem is None else problem.name
     with disk(folder), waiting("drawing the figures"):
-        files = [draw_design(mechanism, linkage, row, folder, title=title, torque=problem is not None)]
+        files = [draw_design(mechanism, linkage, row, folder, title=title, torque=problem is not None, system=units)]
         files += [topic.draw(folder) for topic in topics]
     for file in files:
         say(f"figure: {file}")

@@ -55,9 +55,9 @@ def balance(
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
     from ...model.linkage import Linkage
+    from ...objectives.kinds import LENGTH, MASS
     from ...optimise.convex import balancing
     from ...optimise.job import load_job
-    from ...optimise.units import LENGTH, MASS
 
     problem = load_job(job)
     lengths = [

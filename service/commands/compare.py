@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,11 +12,13 @@ import typer
 
 from ...model.errors import InputError, SlidercrankError
 from ..designs.picking_options import minimised_values
+from ..designs.shown_units import result_in
 from ..runs.finding_runs import find_run
 from ..runs.result import Result, json_text, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import read_run
 from .optimise import Json, Runs
+from .options import Units
 from .screen import console, give, say
 from .tables import print_table
 
@@ -42,6 +44,7 @@ def compare(
     ] = 1e-6,
     figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Also draw the fronts, into this folder.")] = None,
     runs: Runs = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Compare the fronts of several runs: hypervolume, coverage, epsilon, who dominates whom, effort.
@@ -52,6 +55,7 @@ def compare(
 
     compared = _read(run, runs_place(runs))
     found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)
+    compared = [replace(item, result=result_in(item.result, units)) for item in compared]
     pictures = [] if figures is None else [_draw(compared, figures)]
     if json:
         give(json_text(_record(compared, found)))
@@ -82,8 +86,6 @@ def _read(names: Sequence[str], place: Path) -> list[_Compared]:
 
 def _aligned(result: Result, name: str, first: _Compared) -> Result:
     """Return a result with its objectives in the order of the first one. Raises `InputError` where they differ."""
-    from dataclasses import replace
-
     own = {(item.quantity, item.sense, item.target): item for item in result.objectives}
     asked = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
     if set(own) != set(asked):

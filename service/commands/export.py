@@ -15,8 +15,8 @@ from ..runs.run_folder import runs_place, write_bytes, write_file
 from ..runs.stored_runs import problem_of, read_run
 from .design_choice import Design, Knee, Lexicographic, Topsis, chosen_design
 from .optimise import Runs
-from .options import value_option
-from .runs import Run
+from .options import Units, value_option
+from .runs import Run, shown_result
 from .screen import give, say, waiting
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def export(
         str | None, typer.Option(metavar="ANGLE", help='Crank angle of the drawing.  [default: "60 deg"]')
     ] = None,
     runs: Runs = None,
+    units: Units = "metric",
 ) -> None:
     """Write the designs of a run to a file, or one design as a drawing for CAD, or in motion.
 
@@ -73,7 +74,8 @@ def export(
         number = chosen_design(result, run, design=design, knee=knee, topsis=topsis, lexicographic=lexicographic)
         with waiting("drawing"):
             made = _made(result, folder, number, files, angle)
-    for target, text in ((csv, csv_text(result.designs)), (json, json_text(result.record()))):
+    shown = shown_result(result, units, None if json is None else folder)
+    for target, text in ((csv, csv_text(shown.designs)), (json, json_text(shown.record()))):
         if target == "-":
             give(text)
         elif target is not None:
@@ -98,7 +100,7 @@ def _angle(at: str | None) -> float:
 
     if at is None:
         return CRANK_ANGLE
-    from ...optimise.units import ANGLE
+    from ...objectives.kinds import ANGLE
 
     return value_option("--at", at, ANGLE)
 

@@ -12,11 +12,13 @@ from ...model.errors import InputError
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.conditions import Condition, parse_condition
 from ..designs.picking_options import minimised_values
+from ..designs.shown_units import record_in, result_in, row_in
 from ..runs.finding_runs import find_run
 from ..runs.result import Result, Row, json_text, rows_of
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
 from .optimise import NOTHING_FEASIBLE, Json, Runs
+from .options import Units
 from .runs import Run
 from .screen import console, give, say, waiting
 from .tables import print_table
@@ -41,6 +43,7 @@ def like(
         ),
     ],
     runs: Runs = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Find the design most like one of a run that also meets further conditions.
@@ -70,9 +73,9 @@ def like(
     apart = float(distance(found.values, given, span)[0])
     after = rows_of(found.designs.to_dict("list"))[0]
     if json:
-        give(json_text(_record(str(folder), number, found, apart, row, after)))
+        give(json_text(record_in(_record(str(folder), number, found, apart, row, after), units)))
     else:
-        _show(result, number, where, found, apart, row, after)
+        _show(result_in(result, units), number, where, found, apart, row_in(row, units), row_in(after, units))
 
 
 def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, StoreError
+from ...objectives.kinds import System
 from ..runs.result import Result, json_text, result_of
 from ..runs.run_folder import RunFolder, disk, runs_place
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
 from .interruption import Interruption
+from .options import Units
 from .screen import console, give, progress_bar, say, waiting
 from .stores import FILE, Address, open_store
 from .tables import show_design, show_front
@@ -52,6 +54,7 @@ def optimise(
     tls_ca: TlsAuthority = None,
     tls_cert: TlsCertificate = None,
     tls_key: TlsKey = None,
+    units: Units = "metric",
     json: Json = False,
     figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
 ) -> None:
@@ -94,16 +97,27 @@ def optimise(
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
         if figures and result.status == "done":
-            _draw(front, run, interruption)
+            _draw(front, run, interruption, units)
+    shown = shown_front(front, result, units)
     if json:
-        give(json_text(result.record()))
+        give(json_text(shown.record()))
         if result.status != "done":
             say(f"slidercrank: {result.message}")
     else:
-        show_result(result)
+        show_result(shown)
     if result.status == "cancelled" and listed:
         say(f"go on with: slidercrank optimise --resume {run.path.name}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
+
+
+def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
+    """Return what a run found in the units that are asked for. front: where its trade-offs come from."""
+    if units == "metric":
+        return result
+    from ..designs.shown_units import result_in
+
+    told = front.trade_offs(front.knee(), units) if result.trade_offs else []
+    return replace(result_in(result, units), trade_offs=told)
 
 
 @contextlib.contextmanager
@@ -220,9 +234,14 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
             )
             show(at)
 
+        def between(at: Progress) -> None:
+            claim.tell(at)
+            show(at)
+
         return solve(
             problem,
             progress=tell,
+            stages=between,
             cancelled=lambda: interruption.asked() or claim.cancel_asked,
             resume=tuple(claim.records()),
             keep=claim.keep,
@@ -230,11 +249,11 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
         )
 
 
-def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption) -> None:
+def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
     from ..figures import draw_front
 
     with waiting("drawing the figures"), disk(run.figures):
-        for file in draw_front(front, run.figures):
+        for file in draw_front(front, run.figures, units):
             run.log(f"figures/{file.name}")
             if interruption.asked():
                 run.log("interrupted; the other figures are left out")

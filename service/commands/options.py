@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import System
 
 if TYPE_CHECKING:
     from ...optimise.problem import Problem
 
 
+Units = Annotated[
+    System,
+    typer.Option(
+        "--units",
+        envvar="SLIDERCRANK_UNITS",
+        show_envvar=False,
+        help="Units of what is shown and written: metric, or inch for in, lbf, lbf in, lb, hp and psi. Values that are "
+        "given name their own unit.  [env: SLIDERCRANK_UNITS]",
+    ),
+]
+
+
 def length_option(name: str, text: str | None, problem: Problem | None) -> float:
     """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
-    from ...optimise.units import LENGTH
+    from ...objectives.kinds import LENGTH
 
     if text is not None:
         return value_option(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
@@ -26,7 +41,7 @@ def length_option(name: str, text: str | None, problem: Problem | None) -> float
 
 def speed_option(text: str) -> float:
     """Return the crank speed, rad/s."""
-    from ...optimise.units import ANGULAR_SPEED
+    from ...objectives.kinds import ANGULAR_SPEED
 
     return value_option("--speed", text, ANGULAR_SPEED)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
+from ..standing import standing
 from .job_names import Name, find_job, store_that_is_there
 from .optimise import Json
 from .screen import console, give, say
@@ -118,8 +119,7 @@ def _standing(job: Job) -> str:
             best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
         return f"{job.summary['designs']} designs; best {', '.join(best)}"
     if job.state == "running" and job.progress is not None:
-        at = job.progress
-        return f"{at['stage']} {at['round']}/{at['rounds']}, {at['feasible']:,} feasible"
+        return f"{standing(job.progress)}, {job.progress['feasible']:,} feasible"
     if job.state == "running":
         return f"with {job.worker}"
     return job.reason

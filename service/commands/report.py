@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, RunError
+from ...objectives.kinds import System
 from ..runs.finding_runs import find_run
 from ..runs.run_folder import runs_place, slug, write_bytes
 from ..runs.stored_runs import problem_of, read_run
 from .design_choice import Design, Knee, Lexicographic, Topsis, Where, chosen_design
 from .optimise import Runs
+from .options import Units
 from .runs import Run
 from .screen import say, waiting
 
@@ -39,6 +41,7 @@ def report(
     ] = None,
     pdf: Annotated[bool, typer.Option("--pdf", help="Write PDF instead of HTML.")] = False,
     runs: Runs = None,
+    units: Units = "metric",
 ) -> None:
     """Write a report of one design for a review: job, front, design with all its numbers, tolerances, versions.
 
@@ -55,13 +58,13 @@ def report(
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with waiting("writing the report"):
-        made = _report(folder, result, number)
+        made = _report(folder, result, number, units)
         content = _content(made, pdf=pdf)
     write_bytes(file, content)
     say(f"report: {file}")
 
 
-def _report(folder: Path, result: Result, number: int) -> Report:
+def _report(folder: Path, result: Result, number: int, units: System) -> Report:
     from ..report.design_report import design_report
     from ..report.subject import subject_of
 
@@ -72,6 +75,7 @@ def _report(folder: Path, result: Result, number: int) -> Report:
         run=folder.name,
         versions=_kept(folder / "versions.json") or {},
         certificate=_kept(folder / "certificate.json"),
+        system=units,
     )
     return design_report(subject)
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ...model.errors import SlidercrankError
+from ...objectives.kinds import System
 from ..runs.finding_runs import find_run
 from ..runs.result import Result, json_text
 from ..runs.run_folder import runs_place
-from ..runs.stored_runs import read_run
+from ..runs.stored_runs import problem_of, read_run
 from .optimise import NOTHING_FEASIBLE, Json, Runs, show_result
+from .options import Units
 from .screen import console, give, say
 from .tables import ROWS, show_design, show_front
 
@@ -65,6 +70,7 @@ def front(
         ),
     ] = None,
     runs: Runs = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Show the front of a run again, a part of it, or one design chosen from it.
@@ -72,21 +78,27 @@ def front(
     --knee, --topsis and --lexicographic choose among the designs that meet --where.
     """
     from ..designs.choosing import chosen_rows, none_meets, part_of
-    from ..designs.columns import find_columns
+    from ..designs.columns import find_columns, key_in
     from ..designs.picking_options import picked_row
 
-    result = read_run(find_run(run, runs_place(runs)))
+    folder = find_run(run, runs_place(runs))
+    result = read_run(folder)
     if not result.designs:
         if json:
             give(json_text(result.record()))
         say(f"slidercrank: {result.message}")
         raise typer.Exit(NOTHING_FEASIBLE)
     keys = list(result.designs[0])
-    shown = find_columns(columns, keys) if columns else None
+    wanted = find_columns(columns, keys) if columns else None
     chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
     one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if one is not None:
         chosen = [one]
+    told = not where and (json or not (sort or reverse or columns or one is not None or rows != ROWS))
+    result = shown_result(result, units, folder if told else None)
+    shown = None
+    if wanted is not None:
+        shown = find_columns(",".join(key_in(column.key, units)[0] for column in wanted), list(result.designs[0]))
     if json:
         picked = part_of(result, chosen)
         record = picked.record()
@@ -107,6 +119,22 @@ def front(
     if not chosen:
         say(f"slidercrank: {none_meets(result, where or [])}")
         raise typer.Exit(NOTHING_FEASIBLE)
+
+
+def shown_result(result: Result, units: System, folder: Path | None) -> Result:
+    """Return what a run found in the units that are asked for.
+
+    folder: of the run, where its trade-offs are told; None where they are not.
+    """
+    if units == "metric":
+        return result
+    from ..designs.shown_units import result_in
+
+    problem = None
+    if folder is not None and result.trade_offs:
+        with contextlib.suppress(SlidercrankError):  # its job is of another version
+            problem = problem_of(folder, result)
+    return result_in(result, units, problem)
 
 
 def _count(chosen: list[int], result: Result) -> str:

@@ -8,6 +8,8 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TextIO
 
+from ..standing import standing
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -72,9 +74,9 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
         def tell(at: Progress) -> None:
             bar.update(
                 task,
-                description=f"{at.stage} {at.round}/{at.rounds}",
-                completed=at.round,
-                total=at.rounds,
+                description=standing(vars(at)),
+                completed=at.step if at.steps else at.round,
+                total=at.steps or at.rounds,
                 found=f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}",
             )
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import StoreError
+from ..standing import standing
 from ..workers.sizes import size_of
 from .job_names import Name, find_job, store_that_is_there
 from .optimise import EXIT_CODES, Json
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 FAILED = 2
 _LOOK = 0.25  # s between two looks for new events
 _AWAY = 1.0  # s between two tries while the database is away
+_SELDOM = 5.0  # s between two lines of a long stage
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
@@ -152,13 +154,15 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
         return
     from ...optimise.front import Progress
 
-    live = error_console().is_terminal
+    live, last = error_console().is_terminal, 0.0
     with progress_bar() as bar:
 
         def show(event: Event) -> None:
+            nonlocal last
             if live and event.kind == "progress":
                 bar(Progress(**event.data))
-            else:
+            elif not event.data.get("steps") or event.at - last >= _SELDOM:
+                last = event.at if event.data.get("steps") else 0.0
                 give(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
 
         yield show
@@ -176,7 +180,7 @@ def in_words(event: Event) -> str:
     data: dict[str, Any] = event.data
     if event.kind == "progress":
         return (
-            f"{data['stage']} {data['round']}/{data['rounds']}: {data['evaluations']:,} evaluated, "
+            f"{standing(data)}: {data['evaluations']:,} evaluated, "
             f"{data['feasible']:,} feasible, hypervolume {data['hypervolume'] or 0.0:.4f}"
         )
     text = data.get("text") or ": ".join(part for part in (data.get("state"), data.get("reason")) if part)

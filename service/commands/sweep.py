@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import System, shown_in
+from ..designs.columns import key_in
+from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from .options import length_option, value_option
+from .options import Units, length_option, value_option
 from .screen import console, give, say
 
 if TYPE_CHECKING:
@@ -40,6 +43,7 @@ def sweep(
     rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod, likewise.")] = None,
     offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset, likewise.")] = None,
     figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the sweep into sweep.png there.")] = None,
+    units: Units = "metric",
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
     """Sweep quantities over one or two of crank, rod, offset and speed.
@@ -64,14 +68,15 @@ def sweep(
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
     table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
     if json:
-        give(json_text(rows_of(table.to_dict("list"))))
+        give(json_text(rows_in(rows_of(table.to_dict("list")), units)))
     else:
-        _show(table, axes, [problem.quantity(name) for name in names])
+        _show(table, axes, [problem.quantity(name) for name in names], units)
     if figures is not None:
         from ..figures.sweep import draw_sweep
 
         with disk(figures):
-            file = draw_sweep(table, axes, [problem.quantity(name) for name in names], figures, title=problem.name)
+            of_names = [problem.quantity(name) for name in names]
+            file = draw_sweep(table, axes, of_names, figures, title=problem.name, system=units)
         say(f"figure: {file}")
 
 
@@ -79,8 +84,9 @@ def parse_axis(text: str) -> Axis:
     """Return what is swept from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
     import numpy as np
 
+    from ...objectives.kinds import ANGULAR_SPEED, LENGTH
     from ...objectives.sweep import Axis, Parameter
-    from ...optimise.units import ANGULAR_SPEED, LENGTH, closest
+    from ...optimise.units import closest
 
     known, asked = get_args(Parameter), text.partition("=")[0].strip()
     if "=" in text and asked and asked not in known:
@@ -112,7 +118,7 @@ def parse_axis(text: str) -> Axis:
     return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]
 
 
-def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity]) -> None:
+def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
     from rich.table import Table
 
     from .tables import print_table
@@ -120,13 +126,15 @@ def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quanti
     screen = console()
     shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for axis in axes:
-        shown.add_column(f"{axis.parameter}, {'rpm' if axis.parameter == 'speed' else 'mm'}", justify="right")
+        unit, _ = shown_in("rpm" if axis.parameter == "speed" else "mm", units)
+        shown.add_column(f"{axis.parameter}, {unit}", justify="right")
     for item in quantities:
-        shown.add_column(f"{item.title}, {item.unit.symbol}".rstrip(", "), justify="right")
+        shown.add_column(f"{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", "), justify="right")
     stuck = 0
-    for row in rows_of(table.to_dict("list")):
-        at = [row["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"] for axis in axes]
-        values = [row[item.field] for item in quantities]
+    keys = ["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm" for axis in axes]
+    for row in rows_in(rows_of(table.to_dict("list")), units):
+        at = [row[key_in(key, units)[0]] for key in keys]
+        values = [row[key_in(item.field, units)[0]] for item in quantities]
         stuck += bool(row["reason"])
         shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
     print_table(screen, shown)

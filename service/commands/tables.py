@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..designs.columns import DIMENSIONS, Column, find_column
+from ..designs.columns import DIMENSIONS, Column, find_column, metric_key
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -84,7 +84,8 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
     from ...optimise.constant import is_constant
 
-    keys = [f"{name}_mm" for name in DIMENSIONS] + _chosen(list(result.designs[0])) + ["stroke_mm"]
+    names = list(result.designs[0])
+    keys = [find_column(name, names).key for name in DIMENSIONS] + _chosen(names) + [find_column("stroke", names).key]
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []
@@ -103,9 +104,10 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 
 def _chosen(keys: list[str]) -> list[str]:
     """Return the columns of what was chosen beside the dimensions: those between the offset and the stroke."""
-    if not {"offset_mm", "stroke_mm"} <= set(keys):
+    metric = [metric_key(key) for key in keys]
+    if not {"offset_mm", "stroke_mm"} <= set(metric):
         return []
-    return keys[keys.index("offset_mm") + 1 : keys.index("stroke_mm")]
+    return keys[metric.index("offset_mm") + 1 : metric.index("stroke_mm")]
 
 
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:

@@ -8,27 +8,19 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ...model.errors import InputError
+from ...objectives.kinds import SHOWN, Face, System
 
-# How a column's name ends, and its unit. The factors are what one SI unit is in it.
-_SUFFIXES = (
-    ("_m_s3", "m/s^3", 1.0),
-    ("_m_s2", "m/s^2", 1.0),
-    ("_m_s", "m/s", 1.0),
-    ("_kg_m2", "kg m^2", 1.0),
-    ("_kg_m3", "kg/m^3", 1.0),
-    ("_kg", "kg", 1.0),
-    ("_rad_s2", "rad/s^2", 1.0),
-    ("_rpm", "rpm", 9.549296585513721),
-    ("_Ns_per_m", "N s/m", 1.0),
-    ("_N_per_m", "N/m", 1.0),
-    ("_m2", "m^2", 1.0),
-    ("_Nm", "N m", 1.0),
-    ("_mm", "mm", 1e3),
-    ("_deg", "deg", 57.29577951308232),
-    ("_N", "N", 1.0),
-    ("_W", "W", 1.0),
-    ("_MPa", "MPa", 1e-6),
+# How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
+_FACES = sorted(
+    {face for kind in SHOWN for face in (kind.metric, kind.inch) if face is not None},
+    key=lambda face: -len(face.suffix),
 )
+_TO_INCH = {
+    kind.metric.suffix: (kind.inch.suffix, kind.inch.factor / kind.metric.factor)
+    for kind in SHOWN
+    if kind.metric is not None and kind.inch is not None
+}
+_TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 DIMENSIONS = ("crank", "rod", "offset")
 
 
@@ -56,7 +48,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     plain, unit, factor = split_unit(key)
     slack = key.startswith("slack_")
     title = _titles().get(
-        key.removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
+        metric_key(key).removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
     )
     return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
 
@@ -73,8 +65,9 @@ def _meant(name: str, keys: Collection[str]) -> str:
     """Return the key that a name without unit means. Raises `InputError` with the nearest names."""
     from ...objectives.registry import QUANTITIES
 
-    aliases = {dimension: f"{dimension}_mm" for dimension in DIMENSIONS}
-    aliases |= {quantity.name: quantity.field for quantity in QUANTITIES.values()}
+    system: System = "metric" if "crank_mm" in keys or "crank_in" not in keys else "inch"
+    aliases = {dimension: key_in(f"{dimension}_mm", system)[0] for dimension in DIMENSIONS}
+    aliases |= {quantity.name: key_in(quantity.field, system)[0] for quantity in QUANTITIES.values()}
     for plain, key in ((split_unit(key)[0], key) for key in keys if "_robust" in key):
         for quantity in QUANTITIES.values():
             stem = split_unit(quantity.field)[0]  # a robust quantity's key and name end alike
@@ -98,10 +91,28 @@ def _meant(name: str, keys: Collection[str]) -> str:
 
 def split_unit(key: str) -> tuple[str, str, float]:
     """Return the name, the unit and the factor from SI of a key such as "peak_torque_Nm"."""
-    for suffix, unit, factor in _SUFFIXES:
-        if key.endswith(suffix):
-            return key.removesuffix(suffix), unit, factor
-    return key, "", 1.0
+    face = _face(key)
+    return (key, "", 1.0) if face is None else (key.removesuffix(face.suffix), face.symbol, face.factor)
+
+
+def key_in(key: str, system: System) -> tuple[str, float]:
+    """Return the key of a metric column in a system of units, and what its values are to be multiplied by."""
+    face = _face(key)
+    if system == "metric" or face is None or face.suffix not in _TO_INCH:
+        return key, 1.0
+    suffix, factor = _TO_INCH[face.suffix]
+    return key.removesuffix(face.suffix) + suffix, factor
+
+
+def metric_key(key: str) -> str:
+    """Return the metric key of a column of any system."""
+    face = _face(key)
+    suffix = None if face is None else _TO_METRIC.get(face.suffix)
+    return key if face is None or suffix is None else key.removesuffix(face.suffix) + suffix
+
+
+def _face(key: str) -> Face | None:
+    return next((face for face in _FACES if key.endswith(face.suffix)), None)
 
 
 def find_columns(text: str, keys: Collection[str]) -> list[Column]:

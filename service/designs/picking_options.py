@@ -89,7 +89,8 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
-    from ...optimise.units import RATIO, kind_for, per_si, to_si
+    from ...objectives.kinds import RATIO
+    from ...optimise.units import kind_for, per_si, to_si
 
     try:
         if value.endswith("%"):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
+    from ...objectives.kinds import System
     from ...optimise.elimination import Sheet
     from ...optimise.front import ParetoFront
     from ...optimise.stationarity import Array
@@ -16,10 +17,12 @@ if TYPE_CHECKING:
 _NEAR = 1e-9  # relative: how well a point of the unit box must give the design back
 
 
-def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign) -> list[str]:
+def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
     """Return what one objective costs in the others at a design, in words, the active constraints held.
 
-    front: of `front_of`. row: of the design in it. Raises `InputError` where there are no such rates: a single
+    front: of `front_of`. row: of the design in it. system: of the units that they are told in.
+
+    Raises `InputError` where there are no such rates: a single
     objective, an objective without gradient, a design that does not meet its constraints.
     """
     import numpy as np
@@ -49,7 +52,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign) -> list[st
         nothing = (np.zeros(0), np.zeros((0, 0)))
         goals, active = [nothing] * len(front), [nothing[1]] * len(front)
         goals[row], active[row] = (owner, slopes * span[owner.astype(int)][:, None]), found.active[0]
-        return replace(front, goals=tuple(goals), active=tuple(active)).trade_offs(row)
+        return replace(front, goals=tuple(goals), active=tuple(active)).trade_offs(row, system)
     raise InputError(
         "trade-off rates are those of a design that meets the rules of its job; this one does not; run the job again"
     )

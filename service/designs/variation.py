@@ -63,7 +63,7 @@ def _row(design: StoredDesign) -> Row:
 
     from ...optimise.assemble import table_of
 
-    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]), lambda: None)
+    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     return rows_of(table.to_dict("list"))[0]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
+from ...objectives.kinds import System
 from ...optimise.front import ParetoFront
 from ...optimise.robust import robust_quantities
 from .of_front import front_figures
@@ -19,14 +20,14 @@ from .style import save
 __all__ = ["draw_design", "draw_front"]
 
 
-def draw_front(front: ParetoFront, folder: Path) -> Iterator[Path]:
+def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
     """Write the figures of a front that has designs; yield each file as soon as it is written.
 
     Those of `front_figures`; what coincides is copied. robust.png for a robust problem of two objectives or more, for
-    which the nominal one is solved.
+    which the nominal one is solved. system: of the units that they are in.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for item in front_figures(front):
+    for item in front_figures(front, system):
         first, *others = (folder / f"{name}.png" for name in item.names)
         save(item.draw(), first)
         yield first
@@ -48,9 +49,10 @@ def draw_design(
     *,
     title: str,
     torque: bool,
+    system: System = "metric",
 ) -> Path:
-    """Write the sheet of one design as design.png; return the file."""
+    """Write the sheet of one design as design.png; return the file. system: of the units that it is in."""
     folder.mkdir(parents=True, exist_ok=True)
-    figure = design_sheet(mechanism, linkage, numbers, title=title, torque=torque)
+    figure = design_sheet(mechanism, linkage, numbers, title=title, torque=torque, system=system)
     save(figure, folder / "design.png")
     return folder / "design.png"

@@ -16,8 +16,9 @@ from ...model.mechanism import Mechanism
 from ...model.peaks import find_peaks
 from ...model.segments import crowding, uncrowded
 from ...model.signals import Signal
+from ...objectives.kinds import System, shown_in
 from .drawing import least_transmission_crank_angle
-from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits, shown
+from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits, shown, with_unit
 
 Array = NDArray[np.float64]
 SAMPLES = 720
@@ -47,8 +48,10 @@ class Curves:
     slow: str
 
 
-def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True) -> Curves:
+def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True, system: System = "metric") -> Curves:
     """Return the curves of one fully turning linkage; all angles that are marked are among the sampled ones.
+
+    system: of the units that they are in.
 
     Without a crank speed, velocity and acceleration are given for one radian per second: per unit of crank speed.
     """
@@ -70,26 +73,30 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     motion = cycle(moving, linkage, angles)
     degrees = np.degrees(angles)
 
-    def curve(title: str, values: Array, word: str, angle: float, digits: int = 4) -> Curve:
+    def curve(title: str, unit: str, values: Array, word: str, angle: float, digits: int = 4) -> Curve:
+        symbol, factor = shown_in(unit, system)
+        title, values = with_unit(title, symbol), values * factor
         where = int(np.searchsorted(angles, angle))
         value = float(values[where])
         note = f"{word} {shown(value, digits)} at {shown(degrees[where])}°"
         return Curve(title, values, note, (float(degrees[where]), value))
 
-    per, speed_unit, acceleration_unit, factor = "", "m/s", "m/s²", 1.0
+    per, speed_unit, acceleration_unit, factor = "", "m/s", "m/s^2", 1.0
     if not mechanism.speed:
-        per, speed_unit, acceleration_unit, factor = " per crank speed", "mm/rad", "mm/rad²", 1e3
+        per, speed_unit, acceleration_unit, factor = " per crank speed", "mm/rad", "mm/rad^2", 1e3
+    length, one = shown_in("mm", system)
     curves = [
-        curve("transmission angle, deg", np.degrees(motion.transmission_angle), "least", marked[0]),
+        curve("transmission angle", "deg", np.degrees(motion.transmission_angle), "least", marked[0]),
         Curve(
-            "slider position, mm",
-            1e3 * motion.slider_position,
-            "dead centres at " + " and ".join(shown(1e3 * x) for x in sorted(map(float, linkage.dead_centres))),
+            with_unit("slider position", length),
+            1e3 * one * motion.slider_position,
+            "dead centres at " + " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres))),
             None,
         ),
-        curve(f"slider velocity{per}, {speed_unit}", factor * motion.slider_velocity, "peak", marked[3]),
+        curve(f"slider velocity{per}", speed_unit, factor * motion.slider_velocity, "peak", marked[3]),
         curve(
-            f"slider acceleration{per}, {acceleration_unit}",
+            f"slider acceleration{per}",
+            acceleration_unit,
             factor * motion.slider_acceleration,
             "peak",
             marked[4],
@@ -97,7 +104,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     ]
     if torque:
         values = motion.torque if mechanism.speed else cycle(mechanism, linkage, angles).torque
-        curves.insert(0, curve("drive torque, N m", values, "peak", marked[5]))
+        curves.insert(0, curve("drive torque", "N m", values, "peak", marked[5]))
     slow = str(linkage.slow_stroke(direction=mechanism.speed or 1.0))
     return Curves(degrees, tuple(curves), float(np.degrees(inner)), float(np.degrees(outer)), slow)
 

@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 from ...model.linkage import Linkage
 from ...model.links import Bar, Link
 from ...model.mechanism import Mechanism
+from ...objectives.kinds import System, shown_in
 from .style import BLUE, FRAME, GHOST, INK, LINK, MUTED, SMALL, VERMILION, shown
 
 _MM = 1e3
 Array = NDArray[np.float64]
 
 
-def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage) -> None:
-    """Draw one fully turning linkage, in mm, where its transmission angle is least.
+def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: System = "metric") -> None:
+    """Draw one fully turning linkage, in mm, where its transmission angle is least; its lengths are told in a system.
 
     The dead centres are outlined in grey. Links described by their section have their true width.
     """
@@ -54,9 +55,9 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage) -> None:
         axes.add_patch(Circle(point, 0.011 * size, facecolor="white", zorder=7, **solid))
     _rotation(axes, r * linkage.sign, mechanism.speed * linkage.sign)
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
-    _stroke(axes, inner, outer, e, block, size)
-    _offset(axes, left, e, size)
-    _scale(axes, left, low - 0.13 * size, size)
+    _stroke(axes, inner, outer, e, block, size, system)
+    _offset(axes, left, e, size, system)
+    _scale(axes, left, low - 0.13 * size, size, system)
     _frame(axes, left - 0.1 * size, right + 0.03 * size, low - 0.17 * size, high + 0.14 * size)
 
 
@@ -192,7 +193,7 @@ def _transmission_angle(axes: Axes, pin: tuple[float, float], slider: tuple[floa
     )
 
 
-def _stroke(axes: Axes, inner: float, outer: float, e: float, block: float, size: float) -> None:
+def _stroke(axes: Axes, inner: float, outer: float, e: float, block: float, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide that is away from the crank pivot."""
     side = 1.0 if e >= 0.0 else -1.0
     y = e + side * (0.9 * block + 0.035 * size)
@@ -200,7 +201,7 @@ def _stroke(axes: Axes, inner: float, outer: float, e: float, block: float, size
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _arrow(axes, (inner, y), (outer, y))
     axes.annotate(
-        f"stroke {shown(abs(outer - inner))} mm",
+        f"stroke {_length(abs(outer - inner), system)}",
         xy=(0.5 * (inner + outer), y),
         xytext=(0, 3.0 * side),
         textcoords="offset points",
@@ -211,14 +212,14 @@ def _stroke(axes: Axes, inner: float, outer: float, e: float, block: float, size
     )
 
 
-def _offset(axes: Axes, left: float, e: float, size: float) -> None:
+def _offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
     """Dimension the offset, unless it is too small to draw arrows in."""
     if abs(e) < 0.06 * size:
         return
     x = left - 0.045 * size
     _arrow(axes, (x, 0.0), (x, e))
     axes.annotate(
-        f"offset {shown(e)} mm",
+        f"offset {_length(e, system)}",
         xy=(x, 0.5 * e),
         xytext=(-3.0, 0.0),
         textcoords="offset points",
@@ -230,18 +231,26 @@ def _offset(axes: Axes, left: float, e: float, size: float) -> None:
     )
 
 
+def _length(millimetres: float, system: System) -> str:
+    unit, factor = shown_in("mm", system)
+    return f"{shown(millimetres * factor)} {unit}"
+
+
 def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
     style = {"arrowstyle": "<|-|>,head_length=0.35,head_width=0.13", "color": BLUE, "linewidth": 0.8}
     axes.annotate("", xy=end, xytext=start, arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=6)
 
 
-def _scale(axes: Axes, x: float, y: float, size: float) -> None:
+def _scale(axes: Axes, x: float, y: float, size: float, system: System) -> None:
     """Draw a scale bar of a round length, about a sixth of the picture."""
-    power = 10.0 ** math.floor(math.log10(size / 6.0))
-    length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= size / 6.0)
+    unit, factor = shown_in("mm", system)
+    most = size / 6.0 * factor
+    power = 10.0 ** math.floor(math.log10(most))
+    told = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)
+    length = told / factor
     axes.plot([x, x + length], [y, y], color=INK, linewidth=2.0, solid_capstyle="butt")
     axes.annotate(
-        f"{length:g} mm",
+        f"{told:g} {unit}",
         xy=(x + length, y),
         xytext=(5, 0),
         textcoords="offset points",

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
 from ...objectives.varying_column import varying_column
 from ...optimise.constant import is_constant
@@ -82,26 +83,32 @@ def marks(front: ParetoFront) -> list[Mark]:
     return found
 
 
-def objective_axis(front: ParetoFront, objective: Objective) -> Axis:
-    """Return the axis of an objective."""
+def objective_axis(front: ParetoFront, objective: Objective, system: System = "metric") -> Axis:
+    """Return the axis of an objective, in the units of a system."""
     of = front.problem.quantity(objective.quantity)
     better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
-    values = front.designs[of.field].to_numpy(dtype=np.float64)
-    title = with_unit(short_title(of), of.unit.symbol)
+    symbol, factor = shown_in(of.unit.symbol, system)
+    values = front.designs[of.field].to_numpy(dtype=np.float64) * factor
+    title = with_unit(short_title(of), symbol)
     if objective.target is not None:
-        unit = f" {unit_text(of.unit.symbol)}" if of.unit.symbol else ""
-        title += f" (target {objective.target * of.unit.factor:g}{unit})"
-    return Axis(title, of.unit.symbol, values, better)
+        unit = f" {unit_text(symbol)}" if symbol else ""
+        title += f" (target {objective.target * of.unit.factor * factor:g}{unit})"
+    return Axis(title, symbol, values, better)
 
 
-def dimension_axes(front: ParetoFront) -> list[Axis]:
-    """Return the axes of crank, rod and offset, and of what varies beside them."""
+def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
+    """Return the axes of crank, rod and offset, and of what varies beside them, in the units of a system."""
     columns = ("crank", "rod", "offset")
-    axes = [Axis(f"{name}, mm", "mm", 1e3 * front.dimensions[:, index], 0) for index, name in enumerate(columns)]
+    length, one = shown_in("mm", system)
+    axes = [
+        Axis(with_unit(name, length), length, 1e3 * one * front.dimensions[:, index], 0)
+        for index, name in enumerate(columns)
+    ]
     for index, item in enumerate(front.problem.mechanism.varying, start=3):
         unit = varying_column(item)[1]
-        title = with_unit(item.name.removeprefix("mechanism."), unit.symbol)
-        axes.append(Axis(title, unit.symbol, unit.factor * front.dimensions[:, index], 0))
+        symbol, one = shown_in(unit.symbol, system)
+        title = with_unit(item.name.removeprefix("mechanism."), symbol)
+        axes.append(Axis(title, symbol, unit.factor * one * front.dimensions[:, index], 0))
     return axes
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.figure import Figure
 
 from ...model.linkage import Linkage
+from ...objectives.kinds import System
 from ...optimise.front import ParetoFront
 from .marks import marks, short_title
 from .parallel import parallel_coordinates
@@ -30,8 +31,8 @@ class FrontFigure:
     draw: Callable[[], Figure]
 
 
-def front_figures(front: ParetoFront) -> list[FrontFigure]:
-    """Return the figures of a front that has designs.
+def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFigure]:
+    """Return the figures of a front that has designs, in the units of a system.
 
     scatter_matrix (two objectives and two designs or more), parallel_coordinates (two designs or more), and one sheet
     for each extreme, best_<quantity>, and for the knee.
@@ -39,17 +40,20 @@ def front_figures(front: ParetoFront) -> list[FrontFigure]:
     found = []
     if len(front) > 1:
         if len(front.objectives) > 1:
-            found.append(FrontFigure(("scatter_matrix",), "every pair of objectives", partial(scatter_matrix, front)))
+            found.append(
+                FrontFigure(("scatter_matrix",), "every pair of objectives", partial(scatter_matrix, front, system))
+            )
         title = "dimensions and objectives of every design"
-        found.append(FrontFigure(("parallel_coordinates",), title, partial(parallel_coordinates, front)))
+        found.append(FrontFigure(("parallel_coordinates",), title, partial(parallel_coordinates, front, system)))
     sheets = (
-        FrontFigure(mark.names, mark.label, partial(sheet_of, front, mark.row, mark.label)) for mark in marks(front)
+        FrontFigure(mark.names, mark.label, partial(sheet_of, front, mark.row, mark.label, system))
+        for mark in marks(front)
     )
     return [*found, *sheets]
 
 
-def sheet_of(front: ParetoFront, row: int, label: str) -> Figure:
-    """Return the sheet of a design of a front. label: what it is among the others."""
+def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric") -> Figure:
+    """Return the sheet of a design of a front. label: what it is among the others. system: of units."""
     mechanism = front.mechanism(row)
     crank, rod, offset = front.dimensions[row, :3]
     return _sheet(
@@ -59,12 +63,22 @@ def sheet_of(front: ParetoFront, row: int, label: str) -> Figure:
         {str(key): value for key, value in front.designs.iloc[row].items()},
         label,
         f"design {row + 1} of {len(front)}",
+        system,
     )
 
 
-def sheet_of_changed(front: ParetoFront, design: StoredDesign, numbers: Mapping[str, Any], label: str) -> Figure:
-    """Return the sheet of a design with other lengths than any of the front. numbers: its row of a table of designs."""
-    return _sheet(front, design.mechanism, design.linkage, numbers, label, "other lengths than those found")
+def sheet_of_changed(
+    front: ParetoFront,
+    design: StoredDesign,
+    numbers: Mapping[str, Any],
+    label: str,
+    system: System = "metric",
+) -> Figure:
+    """Return the sheet of a design with other lengths than any of the front.
+
+    numbers: its row of a table of designs, metric. system: of the units that the sheet shows.
+    """
+    return _sheet(front, design.mechanism, design.linkage, numbers, label, "other lengths than those found", system)
 
 
 def _sheet(
@@ -74,6 +88,7 @@ def _sheet(
     numbers: Mapping[str, Any],
     label: str,
     subtitle: str,
+    system: System,
 ) -> Figure:
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     return design_sheet(
@@ -83,4 +98,5 @@ def _sheet(
         title=f"{front.problem.name}: {label}",
         subtitle=subtitle,
         bold={of.field: short_title(of) for of in wanted},
+        system=system,
     )

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from ...objectives.kinds import System
 from ...optimise.front import ParetoFront
 from .marks import Axis, dimension_axes, marks, objective_axis
 from .style import (
@@ -33,10 +34,10 @@ _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8,
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them
 
 
-def parallel_coordinates(front: ParetoFront) -> Figure:
-    """Return the parallel coordinates of a front of at least one design."""
-    dimensions = dimension_axes(front)
-    objectives = [objective_axis(front, objective) for objective in front.objectives]
+def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figure:
+    """Return the parallel coordinates of a front of at least one design, in the units of a system."""
+    dimensions = dimension_axes(front, system)
+    objectives = [objective_axis(front, objective, system) for objective in front.objectives]
     axes = dimensions + objectives
     marked = marks(front)
     columns = max(2, min(4, len(axes) - 2))

@@ -8,6 +8,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ...objectives.kinds import System
 from ...optimise.front import ParetoFront
 from .marks import Axis, Mark, dimension_axes, marks, objective_axis
 from .style import (
@@ -33,13 +34,13 @@ _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP = 0.95, 0.75, 0.7, 0.3, 0.18  # inches
 _ARROWS = {1: "→ better", -1: "← better", 0: ""}
 
 
-def scatter_matrix(front: ParetoFront) -> Figure:
-    """Return the scatter matrix of a front of at least two objectives and one design."""
-    axes = [objective_axis(front, objective) for objective in front.objectives[:MOST]]
+def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
+    """Return the scatter matrix of a front of at least two objectives and one design, in the units of a system."""
+    axes = [objective_axis(front, objective, system) for objective in front.objectives[:MOST]]
     marked = marks(front)
     count = len(axes) - 1
     if count == 1:
-        colour = max(dimension_axes(front), key=lambda axis: _spread(axis.values))
+        colour = max(dimension_axes(front, system), key=lambda axis: _spread(axis.values))
         return _single(front, axes, colour, marked)
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT

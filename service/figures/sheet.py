@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ...model.linkage import Linkage
 from ...model.mechanism import Mechanism
+from ...objectives.kinds import System, shown_in
 from ..designs.columns import split_unit
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
@@ -56,11 +57,13 @@ def design_sheet(
     subtitle: str = "",
     bold: Mapping[str, str] | None = None,
     torque: bool = True,
+    system: System = "metric",
 ) -> Figure:
     """Return the sheet of one fully turning linkage.
 
-    numbers: its row of the table of quantities; those that are missing, None or NaN are left out. bold: columns that
-    are always there, in bold, with their titles: the objectives. torque: whether the drive torque is known.
+    numbers: its row of the table of quantities, metric; those that are missing, None or NaN are left out. bold:
+    columns that are always there, in bold, with their titles: the objectives. torque: whether the drive torque is
+    known. system: of the units that all is shown in.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
     title = textwrap.shorten(title, 120, placeholder=" ...")
@@ -68,16 +71,16 @@ def design_sheet(
     write(figure, _LEFT, _HEIGHT - 0.53, subtitle, color=MUTED)
 
     picture = place(figure, _LEFT, _TABLE + 0.35, _SPLIT - _LEFT - 0.6, _HEIGHT - _TABLE - 1.05)
-    draw_mechanism(picture, mechanism, linkage)
+    draw_mechanism(picture, mechanism, linkage, system)
     caption = "Drawn where the transmission angle is least; dead centres in grey outline."
     write(figure, _LEFT, _TABLE + 0.18, caption, fontsize=SMALL, color=MUTED)
     rows = _rows(numbers, bold or {})
     tall = max(_ROWS, math.ceil(len(rows) / 2))
     for column in range(2):
         own = rows[tall * column : tall * (column + 1)]
-        _column(figure, _LEFT + 2.95 * column, 0.2 * _ROWS / tall, own, numbers, bold or {})
+        _column(figure, _LEFT + 2.95 * column, 0.2 * _ROWS / tall, own, numbers, bold or {}, system)
 
-    curves = cycle_curves(mechanism, linkage, torque=torque)
+    curves = cycle_curves(mechanism, linkage, torque=torque, system=system)
     count = len(curves.curves)
     height = (_HEIGHT - _TOP - _BOTTOM + _GAP) / count - _GAP
     width = _WIDTH - _SPLIT - _RIGHT
@@ -108,14 +111,15 @@ def _column(
     rows: Sequence[tuple[str, str]],
     numbers: Mapping[str, Any],
     bold: Collection[str],
+    system: System,
 ) -> None:
     y = _TABLE - 0.12
     for column, title in rows:
-        unit = split_unit(column)[1]
+        unit, factor = shown_in(split_unit(column)[1], system)
         style = {"weight": "bold" if column in bold else "normal", "color": INK}
         title = textwrap.shorten(title, 2 * _LETTERS, placeholder=" ...")
         write(figure, x, y, title, fontsize=TEXT * min(1.0, _LETTERS / len(title)), **style)
-        write(figure, x + 2.38, y, shown(float(numbers[column]), 5, zeros=True), ha="right", **style)
+        write(figure, x + 2.38, y, shown(float(numbers[column]) * factor, 5, zeros=True), ha="right", **style)
         if unit:
             write(figure, x + 2.44, y, unit_text(unit), **style)
         y -= step

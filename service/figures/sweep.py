@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
 from ...objectives.sweep import Axis
 from ...optimise.constant import is_constant
@@ -61,10 +62,12 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
     return grids, values
 
 
-def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], *, title: str) -> Figure:
+def sweep_figure(
+    table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], *, title: str, system: System = "metric"
+) -> Figure:
     """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
 
-    An axis of a single value is named in the heading and not drawn.
+    An axis of a single value is named in the heading and not drawn. system: of the units that all is shown in.
     """
     items = list(of)[:MOST]
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
@@ -75,7 +78,7 @@ def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantit
     write(figure, 0.3, height - 0.3, textwrap.shorten(title, 60, placeholder=" ..."), fontsize=TITLE, weight="bold")
     names = " and ".join(axes[n].parameter for n in drawn)
     held = [
-        f"{with_unit(*_title(axis))} = {table[column_of(axis)].iloc[0]:.6g}"
+        f"{with_unit(*_title(axis, system))} = {table[column_of(axis)].iloc[0] * _factor(axis, system):.6g}"
         for n, axis in enumerate(axes)
         if n not in drawn
     ]
@@ -83,33 +86,44 @@ def sweep_figure(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantit
     for n, item in enumerate(items):
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
-        values = values.reshape([len(grids[k]) for k in drawn])
+        grids = [grid * _factor(axis, system) for grid, axis in zip(grids, axes, strict=True)]
+        symbol, factor = shown_in(item.unit.symbol, system)
+        head = with_unit(item.title, symbol)
+        values = factor * values.reshape([len(grids[k]) for k in drawn])
         panel = place(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
         dress(panel)
-        panel.set_xlabel(with_unit(*_title(axes[drawn[0]])), fontsize=TEXT)
+        panel.set_xlabel(with_unit(*_title(axes[drawn[0]], system)), fontsize=TEXT)
         if np.isnan(values).all():
             nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
             panel.text(0.5, 0.5, "no value anywhere", **nowhere)
-            panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
+            panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
         elif len(drawn) == 1:
-            _line(panel, grids[drawn[0]], values, item)
+            _line(panel, grids[drawn[0]], values, head)
         else:
             scale = place(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
-            _contour(panel, scale, grids, values, item)
-            panel.set_ylabel(with_unit(*_title(axes[1])), fontsize=TEXT)
+            _contour(panel, scale, grids, values, head)
+            panel.set_ylabel(with_unit(*_title(axes[1], system)), fontsize=TEXT)
     return figure
 
 
-def _title(axis: Axis) -> tuple[str, str]:
-    return axis.parameter, "rpm" if axis.parameter == "speed" else "mm"
+def _title(axis: Axis, system: System) -> tuple[str, str]:
+    return axis.parameter, shown_in(_metric(axis), system)[0]
 
 
-def _line(panel: Axes, x: Array, values: Array, item: Quantity) -> None:
+def _factor(axis: Axis, system: System) -> float:
+    return shown_in(_metric(axis), system)[1]
+
+
+def _metric(axis: Axis) -> str:
+    return "rpm" if axis.parameter == "speed" else "mm"
+
+
+def _line(panel: Axes, x: Array, values: Array, head: str) -> None:
     few = {"marker": "o", "markersize": 3.5} if len(x) <= 40 else {}
     panel.plot(x, values, color=BLUE, linewidth=1.5, **few)  # type: ignore[arg-type]
     panel.set_xlim(limits(x.min(), x.max(), 0.02))
     panel.set_ylim(limits(np.nanmin(values), np.nanmax(values)))
-    panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
+    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
     missing = [int(n) for n in np.flatnonzero(np.isnan(values))]
     for start in missing:
         low = 0.5 * (x[start] + x[max(start - 1, 0)])
@@ -119,7 +133,7 @@ def _line(panel: Axes, x: Array, values: Array, item: Quantity) -> None:
         panel.set_title("shaded: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
-def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: Quantity) -> None:
+def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, head: str) -> None:
     panel.set_facecolor(SHADE)
     panel.grid(False)
     shown: Any = np.ma.masked_invalid(values.T)
@@ -137,13 +151,21 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, item: 
     scale.xaxis.set_visible(False)
     scale.yaxis.tick_right()
     scale.spines[:].set_visible(False)
-    panel.set_title(with_unit(item.title, item.unit.symbol), fontsize=SMALL, loc="left", color=INK)
+    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
     if np.isnan(values).any():
         panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
-def draw_sweep(table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], folder: Path, *, title: str) -> Path:
-    """Write the figure of a sweep as sweep.png; return the file."""
+def draw_sweep(
+    table: pd.DataFrame,
+    axes: Sequence[Axis],
+    of: Sequence[Quantity],
+    folder: Path,
+    *,
+    title: str,
+    system: System = "metric",
+) -> Path:
+    """Write the figure of a sweep as sweep.png, in the units of a system; return the file."""
     folder.mkdir(parents=True, exist_ok=True)
-    save(sweep_figure(table, axes, of, title=title), folder / "sweep.png")
+    save(sweep_figure(table, axes, of, title=title, system=system), folder / "sweep.png")
     return folder / "sweep.png"

@@ -77,7 +77,8 @@ def is_closed(name: str) -> bool:
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
     from ...model.mechanism import Mechanism
-    from ...optimise.units import ANGULAR_SPEED, to_si
+    from ...objectives.kinds import ANGULAR_SPEED
+    from ...optimise.units import to_si
 
     given = part if isinstance(part, Mapping) else {}
     try:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
-from ..designs.columns import DIMENSIONS
+from ..designs.columns import DIMENSIONS, find_column
 from ..designs.variation import Variation
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
@@ -43,8 +43,8 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    lengths = [f"{name} {with_unit(row[f'{name}_mm'], 'mm')}" for name in DIMENSIONS]
-    lengths.append(f"stroke {with_unit(row['stroke_mm'], 'mm')}")
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, "stroke")]
+    lengths = [f"{column.title} {with_unit(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(
         f"{wanted.title} {with_unit(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives
@@ -69,9 +69,9 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
     """Return what was changed of a design of the front, and where that leaves it."""
     before = subject.result.designs[subject.number - 1]
     other = [
-        f"{name} {with_unit(changed.row[key], 'mm')} instead of {with_unit(before[key], 'mm')}"
-        for name, key in ((name, f"{name}_mm") for name in DIMENSIONS)
-        if rounded(changed.row[key]) != rounded(before[key])
+        f"{name} {with_unit(subject.row[of.key], of.unit)} instead of {with_unit(before[of.key], of.unit)}"
+        for name, of in ((name, find_column(name, list(before))) for name in DIMENSIONS)
+        if rounded(subject.row[of.key]) != rounded(before[of.key])
     ]
     found = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(other)}"]
     if changed.outside:

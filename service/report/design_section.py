@@ -50,11 +50,11 @@ def numbers_section(subject: Subject) -> Section:
         "Every number of the design",
         (
             Paragraph(
-                "Objectives in bold. The fourth column is the number as it is stored, the fifth its name.", "note"
+                "Objectives in bold. The fourth column is the number with every digit, the fifth its name.", "note"
             ),
             Table(
                 "",
-                ("quantity", "value", "unit", "as stored", "column"),
+                ("quantity", "value", "unit", "every digit", "column"),
                 rows,
                 (0.28, 0.13, 0.07, 0.22, 0.30),
                 frozenset({1, 3}),
@@ -120,7 +120,7 @@ def _optimality(subject: Subject) -> list[Block]:
     if len(subject.result.objectives) < 2 or subject.changed is not None:
         return blocks
     try:
-        sentences = trade_offs_of(subject.front, subject.number - 1, subject.design)
+        sentences = trade_offs_of(subject.front, subject.number - 1, subject.design, subject.system)
     except InputError as error:
         return [*blocks, Paragraph(f"Trade-off rates: {error}.", "note")]
     if sentences:
@@ -142,5 +142,5 @@ def _sheet(subject: Subject) -> Figure:
     from ..figures.of_front import sheet_of, sheet_of_changed
 
     if subject.changed is None:
-        return sheet_of(subject.front, subject.number - 1, "the chosen design")
-    return sheet_of_changed(subject.front, subject.design, subject.row, subject.label)
+        return sheet_of(subject.front, subject.number - 1, "the chosen design", subject.system)
+    return sheet_of_changed(subject.front, subject.design, subject.changed.row, subject.label, subject.system)

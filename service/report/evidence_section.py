@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from ...objectives.kinds import System, shown_in
 from ..analyses.tolerances import numbers
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
-from .wording import rounded
+from .wording import rounded, with_unit
 
 
 def sensitivity_section(subject: Subject) -> Section:
@@ -31,8 +32,8 @@ def tolerance_section(subject: Subject) -> Section | None:
         return None
     found = numbers(mechanism, linkage)
     blocks: tuple[Block, ...] = (
-        Facts(_facts(found)),
-        _sources(found),
+        Facts(_facts(found, subject.system)),
+        _sources(found, subject.system),
         Picture("Position error over a turn", lambda: tolerances_figure(error_bands(mechanism, linkage))),
         Paragraph(
             f"Random machines: {found['monte_carlo']['samples']}, seed {found['monte_carlo']['seed']}; normal errors, "
@@ -43,17 +44,17 @@ def tolerance_section(subject: Subject) -> Section | None:
     return Section("Tolerances", blocks)
 
 
-def _facts(found: dict[str, Any]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str, ...]], ...]:
     def at(name: str) -> str:
         size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
         if size is None:
             return "not defined: a linkage within the tolerances does not turn fully"
-        return f"{rounded(size)} mm at {rounded(angle)} deg"
+        return f"{_length(size, system)} at {rounded(angle)} deg"
 
     spread = found["monte_carlo"]["percentiles_greatest_mm"]
-    percents = tuple(f"{percent} % within {rounded(value)} mm" for percent, value in spread.items())
+    percents = tuple(f"{percent} % within {_length(value, system)}" for percent, value in spread.items())
     yields = tuple(
-        f"{rounded(item['yield_percent'])} % within {rounded(item['limit_mm'])} mm ({item['limit']})"
+        f"{rounded(item['yield_percent'])} % within {_length(item['limit_mm'], system)} ({item['limit']})"
         for item in found["yields"]
     )
     return (
@@ -65,12 +66,18 @@ def _facts(found: dict[str, Any]) -> tuple[tuple[str, tuple[str, ...]], ...]:
     )
 
 
-def _sources(found: dict[str, Any]) -> Table:
+def _length(millimetres: float, system: System) -> str:
+    unit, factor = shown_in("mm", system)
+    return with_unit(millimetres * factor, unit)
+
+
+def _sources(found: dict[str, Any], system: System) -> Table:
+    unit, factor = shown_in("mm", system)
     rows = tuple(
         (
             str(row["source"]),
-            f"{rounded(row['limit_deg'])} deg" if row["limit_mm"] is None else f"{rounded(row['limit_mm'])} mm",
-            rounded(row["contribution_mm"]),
+            f"{rounded(row['limit_deg'])} deg" if row["limit_mm"] is None else _length(row["limit_mm"], system),
+            rounded(row["contribution_mm"] * factor),
             f"{row['share_of_worst_case_percent']:.1f}",
             f"{row['share_of_variance_percent']:.1f}",
         )
@@ -78,7 +85,7 @@ def _sources(found: dict[str, Any]) -> Table:
     )
     return Table(
         "Where the position error comes from, at the worst crank angle",
-        ("source", "limit", "adds, mm", "of worst case, %", "of variance, %"),
+        ("source", "limit", f"adds, {unit}", "of worst case, %", "of variance, %"),
         rows,
         (0.32, 0.17, 0.15, 0.18, 0.18),
         frozenset({1, 2, 3, 4}),

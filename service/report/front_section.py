@@ -25,9 +25,9 @@ def front_section(subject: Subject) -> Section:
     if len(result.designs) > 1:
         if len(result.objectives) > 1:
             title = "Every pair of objectives"
-            blocks.append(Picture(title, partial(scatter_matrix, subject.front), raster))
+            blocks.append(Picture(title, partial(scatter_matrix, subject.front, subject.system), raster))
         title = "Dimensions and objectives of every design"
-        blocks.append(Picture(title, partial(parallel_coordinates, subject.front), raster))
+        blocks.append(Picture(title, partial(parallel_coordinates, subject.front, subject.system), raster))
     else:
         blocks.append(Paragraph("The front is this one design.", "note"))
     return Section("The front", tuple(blocks))
@@ -74,7 +74,8 @@ def _marked(subject: Subject) -> Table:
         labels.setdefault(place, []).append(f"best {titles[name]}")
     if result.knee is not None and len(result.objectives) > 1:
         labels.setdefault(result.knee, []).append("knee")
-    keys = [f"{name}_mm" for name in DIMENSIONS] + [wanted.column for wanted in result.objectives]
+    names = list(subject.row)
+    keys = [find_column(name, names).key for name in DIMENSIONS] + [wanted.column for wanted in result.objectives]
     keys += ["slow_stroke"] if result.strokes_differ else []
     columns = [find_column(key, list(subject.row)) for key in dict.fromkeys(keys)]
     rows = tuple(

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...objectives.kinds import System
+from ..designs.shown_units import result_in, row_in
 from ..designs.stored_designs import StoredDesign, design_of, front_of
 from ..designs.variation import Variation, with_lengths
 from ..runs.result import Result, Row
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 class Subject:
     """One design of a run. number: of the design, from 1. run: what the run is called.
 
+    result: in the units of the system.
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
     changed: the design with other lengths than it has in the front; None for the design as it is.
     """
@@ -32,11 +35,12 @@ class Subject:
     versions: Mapping[str, str]
     certificate: Mapping[str, Any] | None = None
     changed: Variation | None = None
+    system: System = "metric"
 
     @property
     def row(self) -> Row:
         """All numbers of the design."""
-        return self.result.designs[self.number - 1] if self.changed is None else self.changed.row
+        return self.result.designs[self.number - 1] if self.changed is None else row_in(self.changed.row, self.system)
 
     @property
     def label(self) -> str:
@@ -59,10 +63,13 @@ def subject_of(
     certificate: Mapping[str, Any] | None = None,
     front: ParetoFront | None = None,
     changed: Variation | None = None,
+    system: System = "metric",
 ) -> Subject:
     """Return the subject of a report.
 
-    front: of the result, where there is one already. changed: the design with other lengths, if it has others.
+    front: of the result, where there is one already. changed: the design with other lengths, if it has others. system:
+    of the units of the report.
+
     Raises `RunError` for a design that does not belong to the problem.
     """
     design = design_of(problem, result.designs[number - 1])
@@ -71,7 +78,7 @@ def subject_of(
         lengths = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         design = with_lengths(design, lengths)
     return Subject(
-        result=result,
+        result=result_in(result, system),
         number=number,
         run=run,
         problem=problem,
@@ -80,4 +87,5 @@ def subject_of(
         versions=versions,
         certificate=certificate,
         changed=changed,
+        system=system,
     )

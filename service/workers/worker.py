@@ -11,6 +11,7 @@ import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
@@ -226,7 +227,8 @@ def _solve(
         return _ends(claim, pulse, stop) or budget.spent()
 
     def search(past: Sequence[Record]) -> ParetoFront:
-        return solve(problem, progress=tell, fronts=show, cancelled=over, resume=past, keep=claim.keep, engine=engine)
+        heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
+        return heard(cancelled=over, resume=past, keep=claim.keep, engine=engine)
 
     try:
         front = search(claim.records())

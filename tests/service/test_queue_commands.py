@@ -6,6 +6,7 @@ import json
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -204,6 +205,49 @@ def test_watching_ends_with_the_exit_code_of_the_job(
         "evolving 2/9: 1,600 evaluated, 12 feasible, hypervolume 0.2500",
         f"{status}: 0 designs",
     ]
+
+
+def test_long_stages_are_watched_now_and_then_and_listed(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    claim = store.claim("first")
+    assert claim is not None
+    for step in (0, 700, 1400):
+        claim.tell(Progress("selecting designs", 9, 9, 1600, 12, 0.25, 1.0, step, 3000))
+    assert "selecting designs 1,400/3,000, 12 feasible" in command("jobs").stdout
+    claim.finish(result("done", rows=[]))
+    assert command("watch", "latest").stdout.count("selecting designs") == 1
+    assert command("watch", "latest", "--json").stdout.count("selecting designs") == 3
+
+
+def test_progress_of_an_early_store_without_steps_is_read(
+    store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command("submit", job)
+    claim = store.claim("first")
+    assert claim is not None
+    early = asdict(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
+    del early["step"], early["steps"]
+    monkeypatch.setattr("slidercrank.service.store.claim.asdict", lambda _: early)
+    claim.tell(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
+    assert "evolving 2/9, 12 feasible" in command("jobs").stdout
+    listed = json.loads(command("jobs", "--json").stdout)[0]["progress"]
+    assert (listed["step"], listed["steps"], listed["round"]) == (0, 0, 2)
+    claim.finish(result("done", rows=[]))
+    assert "evolving 2/9: 1,600 evaluated" in command("watch", "latest").stdout
+    (told,) = (event for event in store.events(1) if event.kind == "progress")
+    assert Progress(**told.data).steps == 0
+
+
+def test_watching_a_resumed_job_ends_with_its_last_end(store: Store, job: Path, command: Command) -> None:
+    command("submit", job)
+    command("cancel", 1)
+    command("resume", 1)
+    claim = store.claim("first")
+    assert claim is not None
+    watched = events_until_end(store, 1)
+    assert [next(watched).data.get("state") for _ in range(4)] == ["queued", "cancelled", "queued", "running"]
+    claim.finish(result("done", rows=[]))
+    assert [event.data["state"] for event in watched] == ["done"]
 
 
 def test_watching_a_failed_job_ends_with_2(store: Store, job: Path, command: Command) -> None:

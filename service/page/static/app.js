@@ -2,7 +2,8 @@
 
 import { read } from "./lib/address.js";
 import { fill, h } from "./lib/dom.js";
-import { chooseSystem, system } from "./lib/numbers.js";
+import { sayProblem } from "./lib/notices.js";
+import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
@@ -62,7 +63,7 @@ function showPreferences() {
       options.map(([key, title]) => h("option", { value: key, selected: key === value }, title))));
   fill(
     document.getElementById("preferences"),
-    choice("Units", [["si", "mm, N"], ["inch", "inch, lbf"]], system(), chooseSystem),
+    choice("Units", [["si", "mm, N"], ["inch", "inch, lbf"]], system(), (name) => chooseSystem(name).catch(sayProblem)),
     choice("Colours", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], scheme, (name) => {
       localStorage.setItem("scheme", name);
       document.documentElement.dataset.scheme = name;
@@ -77,4 +78,6 @@ document.querySelector(".skip").addEventListener("click", (event) => {
 });
 window.addEventListener("hashchange", showView);
 showPreferences();
-showView();
+const units = readySystem().catch(() => {}); // what is wrong with the service, the view says
+if (system() === "inch") units.then(showView);
+else showView();

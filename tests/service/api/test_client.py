@@ -252,6 +252,16 @@ def rounds(store: Store, count: int) -> int:
     return store.job(claim.job.id).events
 
 
+def test_events_of_a_resumed_job_end_with_its_last_end(client: Client, store: Store) -> None:
+    number = client.submit(TABLES)["id"]
+    client.cancel(number)
+    client.resume(number)
+    thread, seen = follow(client, number)
+    last = rounds(store, 3)
+    thread.join(30.0)
+    assert seen == list(range(1, last + 1))
+
+
 def test_events_end_with_the_job(client: Client, store: Store) -> None:
     number = client.submit(TABLES)["id"]
     thread, seen = follow(client, number)

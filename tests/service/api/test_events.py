@@ -106,6 +106,22 @@ def test_an_ended_job_is_told_at_once_and_need_not_be_asked_again(client: httpx.
         assert response.status_code == 204, "a browser would ask for ever otherwise"
 
 
+def test_a_stream_of_a_resumed_job_goes_on_past_its_earlier_ends(client: httpx.Client, store: Store) -> None:
+    job = add(store)
+    store.cancel(job.id)
+    store.resume(job.id)
+    taken(store).fail("no memory", again=False)
+    store.resume(job.id)
+    claim = taken(store)
+    with streaming(client, job.id) as whole, streaming(client, job.id, 2) as rest:
+        assert [next(whole)["number"] for _ in range(7)] == list(range(1, 8))
+        claim.tell(progress(1))
+        assert next(whole)["kind"] == "progress"
+        claim.finish(result())
+        assert numbers(whole) == [9]
+        assert numbers(rest) == list(range(3, 10))
+
+
 def test_more_events_than_are_kept_are_told_too(
     client: httpx.Client, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -222,6 +238,29 @@ def test_a_hundred_streams_ask_the_store_no_more_often_than_one(serve: Serve, st
     assert told == [list(range(1, 14))] * 100
     assert len(asked) <= (time.monotonic() - start) / event_feed.POLL + 2
     assert max(asked) <= 10
+
+
+def test_a_follower_that_is_slow_at_the_end_does_not_end_the_streams_of_the_resumed_job(store: Store) -> None:
+    job = add(store)
+
+    async def follow() -> list[int]:
+        feed = event_feed.Feed(store)
+        slow = feed.follow(job.id, 0, last=1, heartbeat=30.0)
+        await anext(slow)
+        store.cancel(job.id)
+        while (await anext(slow)) is None:
+            pass  # it has the event of the end, and does not come back
+        store.resume(job.id)
+        found = []
+        async for event in feed.follow(job.id, 1, last=3, heartbeat=30.0):
+            assert event is not None
+            found.append(event.number)
+            if event.number == 3:
+                store.cancel(job.id)
+        await slow.aclose()  # type: ignore[attr-defined]
+        return found
+
+    assert asyncio.run(asyncio.wait_for(follow(), 10.0)) == [2, 3, 4]
 
 
 def test_the_feed_ends_all_streams_when_the_service_stops(store: Store) -> None:

@@ -118,6 +118,31 @@ def test_limits_are_in_the_units_of_the_reader_and_stay_those_of_the_service(ope
     expect(page).to_have_url(re.compile(r"max\.rod_mm=508"))
 
 
+def test_sentences_exports_and_figures_follow_the_units_of_the_reader(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved))
+    costs = page.locator(".trade-offs")
+    metric = re.compile(r"\d (mm|N m|N)\b")
+    expect(costs).to_contain_text("costs")
+    before = costs.inner_text()
+    page.get_by_label("Units").select_option("inch")
+    if metric.search(before):
+        expect(costs).not_to_have_text(before)
+    expect(costs).to_contain_text("costs")
+    assert not metric.search(costs.inner_text())
+    page.get_by_text("Download", exact=True).click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Designs as CSV").click()
+    assert download.value.path().read_text().startswith("crank_in,rod_in,offset_in")
+    figure = page.get_by_role("link", name=re.compile("as SVG")).first
+    expect(figure).to_have_attribute("href", re.compile("units=inch"))
+    page.reload()
+    expect(page.get_by_label("Units")).to_have_value("inch")
+    expect(costs).to_contain_text("costs")
+    assert not metric.search(costs.inner_text())
+    page.get_by_label("Units").select_option("si")
+    expect(costs).to_have_text(re.compile(re.escape(before.split("costs")[0].strip())))
+
+
 def test_what_is_no_number_is_marked_and_changes_nothing(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved))
     field(page, "At least time ratio").fill("much")

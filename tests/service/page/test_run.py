@@ -52,6 +52,59 @@ def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store
     assert page.evaluate("window.notReloaded")
 
 
+def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    page = open_page(store)
+    page.clock.install()
+    page.goto(f"{page.url}#/jobs/1")
+    claim.tell(progress(2))
+    expect(page.get_by_text("about 0.7 s")).to_be_visible()
+    page.clock.run_for(6_000)
+    expect(page.get_by_text("2 of 9")).to_be_visible()
+    expect(page.get_by_text("about 0.7 s")).to_be_hidden()
+
+
+def test_long_stages_between_rounds_are_shown_with_how_far_they_are(open_page: Open, store: Store) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    page = open_page(store, "#/jobs/1")
+    claim.tell(progress(9), FRONT)
+    expect(page.get_by_text("9 of 9")).to_be_visible()
+    for stage, step in (("repeating rounds", 4), ("selecting designs", 1200), ("finishing designs", 2900)):
+        claim.tell(replace(progress(9), stage=stage, step=step, steps=3000), FRONT)
+        expect(page.get_by_text(stage)).to_be_visible()
+        expect(page.get_by_text(f"{step:,} of 3,000")).to_be_visible()
+        expect(page.get_by_role("progressbar", name="Rounds")).to_have_js_property("value", step)
+    expect(page.get_by_role("img", name=re.compile("Hypervolume: .* after round 9"))).to_be_visible()
+    page.goto(page.url.replace("#/jobs/1", "#/"))
+    expect(page.get_by_text("finishing designs, 2,900 of 3,000")).to_be_visible()
+
+
+def test_a_run_that_was_stopped_twice_is_watched_to_its_end(open_page: Open, store: Store, solved: Solved) -> None:
+    submit(store, TABLES)
+    claim = taken(store)
+    claim.tell(progress(2), FRONT)
+    store.cancel(1)
+    claim.finish(replace(solved.result, status="cancelled"))
+    store.resume(1)
+    taken(store).fail("no memory", again=False)
+    page = open_page(store, "#/jobs/1")
+    page.get_by_role("button", name="Resume run 1").click()
+    expect(page.get_by_role("heading", name="Front so far")).to_be_visible()
+    claim = taken(store)
+    claim.tell(progress(3), FRONT)
+    expect(page.get_by_text("3 of 9")).to_be_visible()
+    page.reload()
+    expect(page.get_by_text("failed: no memory")).to_be_visible()
+    expect(page.get_by_text("3 of 9")).to_be_visible()
+    claim.tell(progress(4), FRONT)
+    expect(page.get_by_text("4 of 9")).to_be_visible()
+    expect(page.get_by_text("The connection to the service was lost.")).to_be_hidden()
+    claim.finish(solved.result)
+    expect(page.get_by_role("heading", name="All designs")).to_be_visible()
+
+
 def test_a_search_that_says_nothing_at_first_is_explained(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     claim = taken(store)

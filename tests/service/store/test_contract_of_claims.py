@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import pytest
 
 from slidercrank.model.errors import InputError, LeaseLost, RunError
+from slidercrank.optimise.front import REPEATING
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.store import Artefact, Claim, Store
 from tests.service.store.contents import (
@@ -42,6 +44,17 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     again.keep(search_record(3))
     again.tell(progress(3))
     assert same(again.records()[2], search_record(3))
+
+
+def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store) -> None:
+    add(store)
+    claim = taken(store)
+    claim.tell(replace(progress(0), stage=REPEATING, step=4, steps=12))
+    assert not claim.begun, "so that a job that is cancelled meanwhile ends at once"
+    event = store.events(claim.job.id)[-1]
+    assert (event.data["stage"], event.data["step"], event.data["steps"]) == (REPEATING, 4, 12)
+    claim.tell(progress(1))
+    assert claim.begun
 
 
 WRITES: dict[str, Callable[[Claim], None]] = {

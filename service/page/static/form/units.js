@@ -16,17 +16,17 @@ const KINDS = {
   acceleration: { "m/s^2": 1, "mm/s^2": 1e-3, "in/s^2": 0.0254 },
   force: { N: 1, kN: 1000, lbf: 4.4482216152605 },
   torque: { "N m": 1, "kN m": 1000, "N mm": 1e-3, "lbf in": 4.4482216152605 * 0.0254, "lbf ft": 4.4482216152605 * 0.3048 },
-  power: { W: 1, kW: 1000 },
+  power: { W: 1, kW: 1000, hp: 550 * 0.3048 * 4.4482216152605 },
   stiffness: { "N/m": 1, "N/mm": 1000, "lbf/in": 4.4482216152605 / 0.0254 },
   damping: { "N s/m": 1, "N s/mm": 1000, "lbf s/in": 4.4482216152605 / 0.0254 },
-  pressure: { Pa: 1, MPa: 1e6, GPa: 1e9 },
+  pressure: { Pa: 1, MPa: 1e6, GPa: 1e9, psi: 4.4482216152605 / 0.0254 ** 2 },
   time: { s: 1, min: 60 },
 };
 const USUAL = {
   si: { length: "mm", angle: "deg", "angular speed": "rpm", stiffness: "N/mm", pressure: "MPa" },
   inch: {
     length: "in", area: "in^2", angle: "deg", "angular speed": "rpm", mass: "lb", inertia: "lb in^2", density: "lb/in^3", speed: "in/s",
-    acceleration: "in/s^2", force: "lbf", torque: "lbf in", stiffness: "lbf/in", damping: "lbf s/in", pressure: "MPa",
+    acceleration: "in/s^2", force: "lbf", torque: "lbf in", stiffness: "lbf/in", damping: "lbf s/in", power: "hp", pressure: "psi",
   },
 };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;

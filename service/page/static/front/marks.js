@@ -3,7 +3,7 @@
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { withUnit } from "../lib/numbers.js";
+import { apiSystem, withUnit } from "../lib/numbers.js";
 
 const PAUSE = 150; // ms after a slider moved
 
@@ -12,6 +12,7 @@ export function marksPanel(explorer) {
   const { data, front, chosen } = explorer;
   const list = h("ul", { class: "marks" });
   const picked = h("p", { role: "status" });
+  const costs = h("ul", { class: "trade-offs" });
   const sliders = data.objectives.map((objective, index) => slider(objective, index));
   const off = h("button", { type: "button", onclick: () => weigh(null) }, "Without weights");
   const several = data.objectives.length > 1;
@@ -19,7 +20,7 @@ export function marksPanel(explorer) {
     h("h2", { id: "marks-title" }, "Worth a look"),
     front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)),
     list,
-    front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), h("ul", { class: "trade-offs" }, front.trade_offs.map((sentence) => h("li", {}, sentence)))],
+    front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), costs],
     several && [h("h3", {}, "Weigh the objectives"),
       h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
       h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
@@ -81,6 +82,15 @@ export function marksPanel(explorer) {
       h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.point(row), onblur: () => explorer.point(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of));
   }
 
+  /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
+  async function drawCosts() {
+    if (!front.trade_offs.length) return;
+    const units = apiSystem();
+    const asked = units && get(`jobs/${explorer.job.id}/designs/${front.knee + 1}/trade-offs`, { units }, explorer.signal);
+    const sentences = asked ? (await asked).trade_offs : front.trade_offs;
+    if (units === apiSystem()) fill(costs, sentences.map((sentence) => h("li", {}, sentence)));
+  }
+
   async function draw(what) {
     sliders.forEach(({ input, value }, index) => {
       input.value = chosen.weights?.[index] ?? 1;
@@ -89,6 +99,7 @@ export function marksPanel(explorer) {
     off.hidden = !chosen.weights;
     ask();
     if (what !== "all") return;
+    drawCosts().catch((problem) => problem.name !== "AbortError" && sayProblem(problem));
     await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
     fill(list, [...explorer.names()].map(([row, names]) => item(row, names.join(", "))));
   }

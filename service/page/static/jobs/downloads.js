@@ -2,12 +2,21 @@
 
 import { address, get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { apiSystem } from "../lib/numbers.js";
 
 const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs as Parquet" };
 
 /** Return a list of files behind a button; those that have to be asked for are asked for when it opens. */
 export function downloads(job, { designs, signal }) {
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
+  // In the units that the reader prefers at the moment.
+  const shown = (path, attributes, name) => {
+    const link = h("a", { ...attributes }, name);
+    const renew = () => (link.href = address(`jobs/${job.id}/${path}`, { units: apiSystem() }));
+    renew();
+    window.addEventListener("units", renew, { signal });
+    return link;
+  };
   const files = h("ul");
   const exported = h("ul");
   const figures = h("ul");
@@ -25,7 +34,7 @@ export function downloads(job, { designs, signal }) {
   async function listFiles() {
     try {
       const found = await get(`jobs/${job.id}/files`, {}, signal);
-      fill(exported, found.exports.map((ending) => file(`export.${ending}`, FRONT[ending])));
+      fill(exported, found.exports.map((ending) => h("li", {}, shown(`export.${ending}`, { download: "" }, FRONT[ending]))));
       fill(files, found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)));
     } catch (problem) {
       fill(files, h("li", {}, problem.message));
@@ -36,7 +45,7 @@ export function downloads(job, { designs, signal }) {
     fill(figures, h("li", { class: "quiet" }, "Looking …"));
     try {
       const found = await get(`jobs/${job.id}/figures`, {}, signal);
-      const as = (name, kind) => h("a", { href: address(`jobs/${job.id}/figures/${name}.${kind}`), download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
+      const as = (name, kind) => shown(`figures/${name}.${kind}`, { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
       fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
     } catch (problem) {
       fill(figures, h("li", {}, problem.message));

@@ -12,9 +12,11 @@ import { clock, duration } from "./times.js";
 
 const OFTEN = 700; // ms between two looks at the job for its front
 const AGAIN = 2000; // ms until the next try where the service does not answer
-const PAST = 400; // events before now that are shown
+const PAST = 1000; // events before now that are shown
 const LOG = 200; // lines
 const LONG = 10_000; // ms without a word in the first rounds, after which it is said why
+const STALE = 3; // rounds of the usual length without a word, after which nothing is known of the time that is left
+const AT_LEAST = 5000; // ms that this takes at least
 
 /**
  * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
@@ -36,6 +38,8 @@ export function watch(place, job, { signal, changed }) {
   let over = false;
   let asking = false;
   let silent = setTimeout(explain, LONG);
+  let stale = null;
+  let drawing = null;
 
   function explain() {
     why.hidden = over || job.state !== "running" || rounds.length > 2;
@@ -51,7 +55,7 @@ export function watch(place, job, { signal, changed }) {
 
   function told(event) {
     if (event.kind === "progress") {
-      rounds.push(event.data);
+      if (!event.data.steps) grow(event.data);
       why.hidden = true;
       clearTimeout(silent);
       silent = setTimeout(explain, LONG);
@@ -68,21 +72,39 @@ export function watch(place, job, { signal, changed }) {
     while (log.children.length > LOG) log.lastChild.remove();
   }
 
-  function stand(data) {
-    bar.max = data.rounds;
-    bar.value = data.round;
-    const left = data.round > 1 && data.round < data.rounds ? (data.seconds / data.round) * (data.rounds - data.round) : null;
-    const shown = [
-      ["stage", data.stage],
-      ["round", `${data.round} of ${data.rounds}`],
-      ["evaluated", grouped(data.evaluations)],
-      ["feasible", grouped(data.feasible)],
-      ["hypervolume", data.hypervolume === null ? "–" : data.hypervolume.toFixed(4)],
-      ["so far", duration(data.seconds ?? 0)],
-      ["left", left === null ? "–" : `about ${duration(left)}`],
-    ];
-    fill(figures, shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
-    fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", data.rounds));
+  /** Take in the end of a round; a search that began anew takes the place of the one before. */
+  function grow(data) {
+    while (rounds.length && rounds.at(-1).round >= data.round) rounds.pop();
+    rounds.push(data);
+    // Once for all events that are told again together.
+    drawing ??= requestAnimationFrame(() => {
+      drawing = null;
+      fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", rounds.at(-1).rounds));
+    });
+  }
+
+  function stand(data, running = true) {
+    const steps = data.steps ?? 0; // a long stage between two rounds, of which nobody knows how long it takes
+    bar.max = steps || data.rounds;
+    bar.value = steps ? data.step : data.round;
+    const each = data.seconds / data.round;
+    const left = running && !steps && data.round > 1 && data.round < data.rounds ? each * (data.rounds - data.round) : null;
+    clearTimeout(stale);
+    show(left);
+    if (left !== null) stale = setTimeout(show, Math.max(AT_LEAST, 1000 * STALE * each), null);
+
+    function show(left) {
+      const shown = [
+        ["stage", data.stage],
+        steps ? ["done", `${grouped(data.step)} of ${grouped(steps)}`] : ["round", `${data.round} of ${data.rounds}`],
+        ["evaluated", grouped(data.evaluations)],
+        ["feasible", grouped(data.feasible)],
+        ["hypervolume", data.hypervolume === null ? "–" : data.hypervolume.toFixed(4)],
+        ["so far", duration(data.seconds ?? 0)],
+        ["left of the rounds", left === null ? "–" : `about ${duration(left)}`],
+      ];
+      fill(figures, shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
+    }
   }
 
   /** Look at the job soon: its front so far, and its state. */
@@ -94,7 +116,8 @@ export function watch(place, job, { signal, changed }) {
 
   async function look() {
     timer = null;
-    if (asking || over || signal.aborted) return;
+    if (over || signal.aborted) return;
+    if (asking) return soon(); // what is on its way may be older than what made one ask
     asking = true;
     try {
       const now = await get(`jobs/${job.id}`, {}, signal);
@@ -139,20 +162,18 @@ export function watch(place, job, { signal, changed }) {
     changed(now);
   }
 
-  const connected = (yes) => {
-    lost.hidden = yes;
-    soon(yes ? OFTEN : 0); // whether the service is away, or only the job
-  };
+  // The events stop when the service is away, and when the job has ended: the look at the job tells which.
+  const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
-  signal.addEventListener("abort", () => [timer, silent].forEach(clearTimeout));
+  signal.addEventListener("abort", () => [timer, silent, stale].forEach(clearTimeout));
   fill(front, h("p", { class: "quiet" }, job.state === "queued" ? "Waits for a worker." : "Nothing yet."));
   if (job.progress) {
-    stand(job.progress);
+    stand(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
   return () => {
     over = true;
-    [timer, silent].forEach(clearTimeout);
+    [timer, silent, stale].forEach(clearTimeout);
     stop();
   };
 }

@@ -36,10 +36,11 @@ function standing(job) {
     ];
   }
   if (job.state === "running" && job.progress) {
-    const { stage, round, rounds, feasible } = job.progress;
+    const { stage, steps, feasible } = job.progress;
+    const [part, done, of] = steps ? ["", job.progress.step, steps] : ["round ", job.progress.round, job.progress.rounds];
     return [
-      h("progress", { max: rounds, value: round, "aria-label": `run ${job.id}: round ${round} of ${rounds}` }),
-      h("div", { class: "quiet" }, `${stage}, round ${round} of ${rounds} · ${grouped(feasible)} feasible designs`),
+      h("progress", { max: of, value: done, "aria-label": `run ${job.id}: ${part}${done} of ${of}` }),
+      h("div", { class: "quiet" }, `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${grouped(feasible)} feasible designs`),
     ];
   }
   return h("div", { class: "quiet" }, job.reason || (job.state === "queued" ? "waits for a worker" : ""));

@@ -5,7 +5,8 @@ import { address } from "./api.js";
 const AGAIN = 2000; // ms until the next try after the connection was refused
 
 /**
- * Follow a job from its event `after` until it has ended or `signal` is aborted.
+ * Follow a job from its event `after` until it is stopped or `signal` is aborted. Whether the job has ended only the job itself
+ * says: a job that was cancelled goes on when it is resumed, and its events tell of all that.
  * told(event) is called with {number, at, kind, data}, once for each, in order; connected(yes) as the connection comes and goes.
  */
 export function follow(job, { after = 0, signal, told, connected = () => {} }) {
@@ -24,7 +25,6 @@ export function follow(job, { after = 0, signal, told, connected = () => {} }) {
       if (event.number <= last) return;
       last = event.number;
       told(event);
-      if (event.kind === "state" && ["done", "cancelled", "failed"].includes(event.data.state)) stop();
     };
     for (const kind of ["state", "progress", "message"]) source.addEventListener(kind, take);
     source.onerror = () => {

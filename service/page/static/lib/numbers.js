@@ -1,45 +1,46 @@
 /** Numbers for people. The API speaks mm, deg, N, N m, rpm; what a reader prefers is converted here, for show only. */
 
-const INCH = 25.4;
-const POUND = 4.4482216152605; // N in a pound-force
-const SYSTEMS = {
-  si: {},
-  inch: {
-    mm: ["in", 1 / INCH],
-    "m/s": ["in/s", 1000 / INCH],
-    "m/s^2": ["in/s²", 1000 / INCH],
-    "mm/rad": ["in/rad", 1 / INCH],
-    N: ["lbf", 1 / POUND],
-    "N m": ["lbf in", 1000 / INCH / POUND],
-    kg: ["lb", 1 / 0.45359237],
-  },
-};
-const PRETTY = { deg: "°", "m/s^2": "m/s²", "m^2": "m²", "kg m^2": "kg m²", "N m": "N m" };
+import { get } from "./api.js";
+
+const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the service, when it is first needed
+const PRETTY = { deg: "°" };
 
 /** The system of units that the reader chose: "si" or "inch". */
 export function system() {
   return localStorage.getItem("units") === "inch" ? "inch" : "si";
 }
 
+/** The system as the API calls it; null for that of its own. */
+export function apiSystem() {
+  return system() === "inch" ? "inch" : null;
+}
+
+/** Make ready to show numbers in any system. Without an answer of the service they are metric. */
+export async function readySystem() {
+  SYSTEMS.inch ??= (await get("units")).inch;
+}
+
 /** Choose a system; everything that shows numbers is drawn again (event "units" of the window). */
-export function chooseSystem(name) {
+export async function chooseSystem(name) {
+  await readySystem();
   localStorage.setItem("units", name);
   window.dispatchEvent(new Event("units"));
 }
 
 /** Return the unit that is shown for one of the API, such as "in" for "mm". */
 export function unitOf(unit) {
-  return SYSTEMS[system()][unit]?.[0] ?? PRETTY[unit] ?? unit;
+  const name = SYSTEMS[system()]?.[unit]?.unit ?? unit;
+  return PRETTY[name] ?? name?.replace("^2", "²").replace("^3", "³");
 }
 
 /** Return a value of the API in the unit that is shown for it. */
 export function inShown(value, unit) {
-  return value * (SYSTEMS[system()][unit]?.[1] ?? 1);
+  return value * (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
 /** Return a shown value in the unit of the API. */
 export function fromShown(value, unit) {
-  return value / (SYSTEMS[system()][unit]?.[1] ?? 1);
+  return value / (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
 /** Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash. */

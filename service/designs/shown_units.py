@@ -1,0 +1,89 @@
+"""What was found, in the units of a system: keys, values and sentences together.
+
+All that is stored is metric. What is shown in inches is made from it here, at the edge, and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import SlidercrankError
+from ...objectives.kinds import System, shown_in
+from ..runs.result import Result, Row, Wanted
+from .columns import key_in
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Problem
+
+
+def row_in(row: Mapping[str, Any], system: System) -> Row:
+    """Return a design with keys and values of a system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
+    return {name: _scaled(value, factor) for name, factor, value in _items(row, system)}
+
+
+def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
+    """Return designs of the same keys, as `row_in` does."""
+    if system == "metric" or not rows:
+        return list(rows)
+    names = {key: key_in(key, system) for key in rows[0]}
+    return [{names[key][0]: _scaled(value, names[key][1]) for key, value in row.items()} for row in rows]
+
+
+def record_in(record: Any, system: System) -> Any:
+    """Return what JSON has with keys and values of a system, at any depth.
+
+    Numbers and lists of numbers take the unit that their key ends with, and the key that of the system.
+    """
+    if system == "metric":
+        return record
+    if isinstance(record, Mapping):
+        return {name: _scaled(record_in(value, system), factor) for name, factor, value in _items(record, system)}
+    return [record_in(item, system) for item in record] if isinstance(record, list | tuple) else record
+
+
+def result_in(result: Result, system: System, problem: Problem | None = None) -> Result:
+    """Return what a run found in the units of a system. The order of the designs and all choices among them stay.
+
+    problem: of the run; what the knee costs is stored in metric units and computed anew with it, left out without it.
+    """
+    if system == "metric":
+        return result
+    return replace(
+        result,
+        objectives=tuple(wanted_in(wanted, system) for wanted in result.objectives),
+        designs=rows_in(result.designs, system),
+        trade_offs=[] if problem is None or not result.trade_offs else _trade_offs(problem, result, system),
+    )
+
+
+def wanted_in(wanted: Wanted, system: System) -> Wanted:
+    """Return an objective in the units of a system."""
+    column, factor = key_in(wanted.column, system)
+    target = None if wanted.target is None else wanted.target * factor
+    return replace(wanted, column=column, unit=shown_in(wanted.unit, system)[0], target=target)
+
+
+def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
+    from .stored_designs import design_of, front_of
+    from .trade_offs import trade_offs_of
+
+    if result.knee is None:
+        return []
+    try:
+        design = design_of(problem, result.designs[result.knee])
+        return trade_offs_of(front_of(problem, result), result.knee, design, system)
+    except SlidercrankError:  # nothing is to be said of them
+        return []
+
+
+def _items(record: Mapping[str, Any], system: System) -> list[tuple[str, float, Any]]:
+    return [(*key_in(key, system), value) for key, value in record.items()]
+
+
+def _scaled(value: Any, factor: float) -> Any:
+    if isinstance(value, list):
+        return [_scaled(item, factor) for item in value]
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return value * factor if number and factor != 1.0 else value

@@ -1,0 +1,104 @@
+"""Long stages between the rounds of a search: they are told, and nothing hangs on that."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slidercrank.optimise import ledger, search
+from slidercrank.optimise.front import REPEATING, ParetoFront, Progress
+from slidercrank.optimise.hypervolume import choose
+from slidercrank.optimise.ledger import Record
+from slidercrank.optimise.solve import solve
+
+from .problems import Bounds, degrees, problem
+
+HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
+GIVEN = problem(
+    {"peak_torque": "minimise", "time_ratio": "maximise", "footprint": "minimise"}, HELD, designs=8, samples=64
+)
+
+
+@pytest.fixture(autouse=True)
+def always(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tell at every occasion, and keep every step at once."""
+    monkeypatch.setattr(search, "TELL", 0.0)
+    monkeypatch.setattr(ledger, "PAUSE", 0.0)
+
+
+def searched(**more: object) -> tuple[ParetoFront, list[Progress], list[Record]]:
+    """Return a front, what was told of stages and rounds, and what was kept."""
+    told: list[Progress] = []
+    kept: list[Record] = []
+    front = solve(GIVEN, progress=told.append, stages=told.append, keep=kept.append, **more)  # type: ignore[arg-type]
+    return front, told, kept
+
+
+def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_are() -> None:
+    front, told, _ = searched()
+    last = max(index for index, entry in enumerate(told) if not entry.steps)
+    after = told[last + 1 :]
+    assert [stage for stage, _ in itertools.groupby(entry.stage for entry in after)] == [
+        "selecting designs",
+        "finishing designs",
+    ]
+    assert all(entry.round == told[last].round and entry.step <= entry.steps for entry in after)
+    assert {entry.steps for entry in after if entry.stage == "finishing designs"} == {len(front)}
+
+
+def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
+    _, _, kept = searched()
+    rounds = kept[len(kept) // 2].told
+    assert rounds > 2
+    _, told, _ = searched(resume=kept[: len(kept) // 2 + 1])
+    repeated = [entry for entry in told if entry.stage == REPEATING]
+    assert told[: len(repeated)] == repeated
+    assert {entry.steps for entry in repeated} == {rounds}
+    assert sorted({entry.step for entry in repeated})[-2:] in ([rounds - 2, rounds - 1], [rounds - 1, rounds])
+    assert next(entry for entry in told if not entry.steps).round == rounds + 1
+
+
+def test_what_is_told_changes_nothing() -> None:
+    silent: list[Record] = []
+    alone = solve(GIVEN, keep=silent.append)
+    front, _, kept = searched()
+    assert front.designs.equals(alone.designs)
+    assert (
+        np.concatenate([record.words for record in kept]).tobytes()
+        == np.concatenate([record.words for record in silent]).tobytes()
+    )
+    assert [replace(entry, seconds=0.0) for entry in front.history] == [
+        replace(entry, seconds=0.0) for entry in alone.history
+    ]
+
+
+def test_a_search_is_cancelled_in_any_stage() -> None:
+    for stage in ("selecting designs", "finishing designs"):
+        heard: list[str] = []
+        front = solve(GIVEN, stages=lambda at: heard.append(at.stage), cancelled=saying(heard, stage))  # noqa: B023
+        assert front.status == "cancelled"
+        assert stage in heard
+
+
+def saying(heard: list[str], stage: str) -> Callable[[], bool]:
+    """Return what says that a search is to end once a stage was heard of."""
+    return lambda: stage in heard
+
+
+def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
+    values = np.random.default_rng(1).random((200, 3))
+    heard: list[tuple[int, int]] = []
+    chosen = choose(values, 30, stand=lambda done, of: heard.append((done, of)))
+    assert np.array_equal(chosen, choose(values, 30))
+    assert len(heard) >= 30
+    assert heard == sorted(heard)
+    assert heard[-1] == (29, 30)
+
+
+def test_a_short_stage_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "TELL", 3600.0)
+    assert not [entry for entry in searched()[1] if entry.steps]
