@@ -60,7 +60,7 @@ def choose_folder() -> Chosen:
     for file in sorted(_SOURCES.rglob("*.py")):
         digest.update(f"{file.relative_to(_SOURCES)}\0".encode() + file.read_bytes() + b"\0")
     installation = hashlib.sha256(os.fsencode(_SOURCES)).hexdigest()[:12]
-    refused = []
+    refused: list[str] = []
     for place in _places():
         folder = place / f"{installation}-{digest.hexdigest()[:16]}"
         new = not folder.is_dir()

@@ -246,8 +246,8 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 def _unit(text: str) -> tuple[Fraction, frozenset[tuple[str, int]]]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
-    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a product
-    after it ("N/m s") reads either way and is refused.
+    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a
+    product after it ("N/m s") reads either way and is refused.
     """
     rest, factor, dimension = text.rstrip(), Fraction(1), dict[str, int]()
     divided, first = False, True

@@ -148,7 +148,7 @@ class OwnQuantity:
         return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
 
     def require_function(self) -> None:
-        """Raise `InputError` where the module of "module:function" is not found, or does not name it; nothing is run."""
+        """Raise `InputError` where the module of "module:function" is not found or lacks it; nothing is run."""
         if not isinstance(self.function, str):
             return
         module, _, function = self.function.partition(":")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..units import ANGLE, ANGULAR_SPEED, LENGTH, Kind, per_si
+from ...objectives.kinds import ANGLE, ANGULAR_SPEED, LENGTH, Kind
+from ..units import per_si
 from .model import job_with
 from .own import declared
 

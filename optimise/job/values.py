@@ -122,7 +122,7 @@ class RangeOf:
 
     def _noted(self, value: object, info: core_schema.ValidationInfo) -> tuple[float, float] | Choices:
         found = self.read(value)
-        _note(info, value, units.LENGTH)
+        _note(info, value, kinds.LENGTH)
         return found
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
@@ -174,7 +174,7 @@ class ToleranceOf:
 
     def _noted(self, value: object, info: core_schema.ValidationInfo) -> float | str:
         found = self.read(value)
-        _note(info, value, units.LENGTH)
+        _note(info, value, kinds.LENGTH)
         return found
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:

@@ -97,7 +97,7 @@ def test_a_value_is_read_in_si_and_rounded_once(value: object, kind: Kind, expec
 
 @pytest.mark.parametrize("value", [value for value, kind, _ in GOOD if isinstance(value, str) and kind.unit])
 def test_what_is_read_matches_the_pattern_of_the_schema(value: str) -> None:
-    assert re.match(kinds.PATTERN, value)
+    assert re.match(units.PATTERN, value)
 
 
 BAD = [
