@@ -10,9 +10,10 @@ BIN := $(VENV)/bin
 run: $(VENV)/.installed
 	$(BIN)/slidercrank optimise runs/feeder.toml
 
-# At most 8 workers: each one loads its own numba.
+# One more than processors, since many tests wait for processes and pages; at most 8: each one loads its own numba.
+WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -n auto --maxprocesses 8
+	$(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8
 
 # The numbers with another rounding: neither fused multiply-add nor this processor's wide vectors. A part that takes a
 # minute and a half; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import time
 import uuid
 from pathlib import Path
 from typing import Any
 
 from numba.core import config as _config
 from numba.core.caching import FunctionCache
+
+_PATIENCE = 120.0  # s; a process that takes longer to compile a kernel is stopped, or gone wrong
+_TICK = 0.05  # s
 
 
 class KernelCache(FunctionCache):
@@ -22,11 +27,32 @@ class KernelCache(FunctionCache):
             super().__init__(function)  # type: ignore[no-untyped-call]
         finally:
             config.CACHE_DIR = before
+        self._path = Path(self._cache_file._cache_path) / f"{self._impl.filename_base}.lock"
+        self._lock: int | None = None
         # Two processes that keep a kernel at the same time would give two signatures the same file.
         self._cache_file._data_name_pattern = f"{self._impl.filename_base}.{{number:d}}.{uuid.uuid4().hex[:12]}.nbc"
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the kernel of a signature, None where there is none that can be read."""
+        """Return the kernel of a signature, None where there is none that can be read.
+
+        One that another process compiles just now is waited for: to compile it too would take both of them longer.
+        """
+        found = self._load(sig, target_context)
+        if found is None and self._begin():
+            found = self._load(sig, target_context)
+            if found is not None:
+                self._end()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the kernel of a signature, if there is room."""
+        try:
+            with contextlib.suppress(OSError):
+                super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+        finally:
+            self._end()
+
+    def _load(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception:  # noqa: BLE001 - a damaged file may raise anything; the kernel is compiled and kept anew
@@ -34,7 +60,26 @@ class KernelCache(FunctionCache):
                 self.flush()  # type: ignore[no-untyped-call]
             return None
 
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the kernel of a signature, if there is room."""
-        with contextlib.suppress(OSError):
-            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+    def _begin(self) -> bool:
+        """Take the lock of this function's kernels, and say whether it had to be waited for."""
+        self._end()
+        with contextlib.suppress(ImportError, OSError):  # elsewhere, or without room, every process compiles
+            import fcntl
+
+            self._lock = os.open(self._path, os.O_CREAT | os.O_RDWR, 0o600)
+            end = time.monotonic() + _PATIENCE
+            waited = False
+            while time.monotonic() < end:
+                try:
+                    fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    return waited
+                except BlockingIOError:
+                    waited = True
+                    time.sleep(_TICK)
+            return waited
+        return False
+
+    def _end(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None

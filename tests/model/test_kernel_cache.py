@@ -1,0 +1,41 @@
+"""Kernels that several processes need at the same moment."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+SOURCE = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+from slidercrank.model.kernel_cache import KernelCache
+
+def slow(x):
+    return 2.0 * x
+
+@overload(slow)
+def compiled_slow(x):
+    time.sleep(0.5)  # as long as a real kernel takes to compile
+    return lambda x: 2.0 * x
+
+def twice(x):
+    return slow(x)
+
+kernel = njit(twice)
+kernel._cache = KernelCache(twice, Path(sys.argv[1]))
+print(sum(kernel(float(x)) for x in range(3)), sum(kernel.stats.cache_misses.values()))
+"""
+
+
+def test_a_kernel_that_several_processes_need_is_compiled_once(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(SOURCE)
+    command = [sys.executable, str(tmp_path / "program.py"), str(tmp_path)]
+    running = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
+    said = [process.communicate()[0].split() for process in running]
+    assert [process.returncode for process in running] == [0] * 4
+    assert {value for value, _ in said} == {"6.0"}
+    assert sum(int(missed) for _, missed in said) == 1
