@@ -38,7 +38,8 @@ class KernelCache(FunctionCache):
         One that another process compiles just now is waited for: to compile it too would take both of them longer.
         """
         found = self._load(sig, target_context)
-        if found is None and self._begin():
+        if found is None:
+            self._begin()
             found = self._load(sig, target_context)
             if found is not None:
                 self._end()
@@ -60,24 +61,20 @@ class KernelCache(FunctionCache):
                 self.flush()  # type: ignore[no-untyped-call]
             return None
 
-    def _begin(self) -> bool:
-        """Take the lock of this function's kernels, and say whether it had to be waited for."""
+    def _begin(self) -> None:
+        """Take the lock of this function's kernels."""
         self._end()
         with contextlib.suppress(ImportError, OSError):  # elsewhere, or without room, every process compiles
             import fcntl
 
             self._lock = os.open(self._path, os.O_CREAT | os.O_RDWR, 0o600)
             end = time.monotonic() + _PATIENCE
-            waited = False
             while time.monotonic() < end:
                 try:
                     fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    return waited
+                    return
                 except BlockingIOError:
-                    waited = True
                     time.sleep(_TICK)
-            return waited
-        return False
 
     def _end(self) -> None:
         if self._lock is not None:
