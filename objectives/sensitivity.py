@@ -22,6 +22,7 @@ from .registry import QUANTITIES
 DIMENSIONS = ("crank", "rod", "offset")
 _TIE = 1e-9  # of a quantity: pieces that differ by less are equal
 _ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
+_TIP = 1e-6  # of the rod, a small offset at which a quantity that vanishes without offset is far above rounding
 _BESIDE_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than rounding
 
 
@@ -94,22 +95,45 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
     A greatest-of grows with the steepest of its equal pieces on either side: their greatest slope above, their least
     below; a least-of the other way round.
     """
+    value = float(quantity.evaluate(mechanism, design[None]).values[0])
+    if design[2] == 0.0 and _is_tip(quantity, mechanism, design, value):
+        return value, _beside_tip(quantity, mechanism, design, -1.0), _beside_tip(quantity, mechanism, design, 1.0)
     sides = []
     for side in (-1.0, 1.0):
         at = design.copy()
         if at[2] == 0.0:
             at[2] = side * _BESIDE_ZERO
-        found = quantity.pieces(mechanism, at[None])
-        values, slopes = found.values[0], found.gradients[0]
-        best = values.min() if found.least else values.max()
-        with np.errstate(invalid="ignore"):
-            equal = np.abs(values - best) <= _TIE * abs(best)
-        equal |= values == best
-        steepest = slopes[equal].max(axis=0) if (side > 0.0) != found.least else slopes[equal].min(axis=0)
-        with np.errstate(invalid="ignore"):
-            sides.append(np.where(np.abs(steepest) * design[1] <= _ROUNDING * abs(best), 0.0, steepest))
-    value = float(quantity.evaluate(mechanism, design[None]).values[0])
+        sides.append(_steepest(quantity, mechanism, at, side))
     return value, sides[0], sides[1]
+
+
+def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
+    """Return the derivatives (3,) of a design towards one side, of the steepest of its equal pieces."""
+    found = quantity.pieces(mechanism, at[None])
+    values, slopes = found.values[0], found.gradients[0]
+    best = values.min() if found.least else values.max()
+    with np.errstate(invalid="ignore"):
+        equal = np.abs(values - best) <= _TIE * abs(best)
+    equal |= values == best
+    steepest = slopes[equal].max(axis=0) if (side > 0.0) != found.least else slopes[equal].min(axis=0)
+    with np.errstate(invalid="ignore"):
+        return np.where(np.abs(steepest) * at[1] <= _ROUNDING * abs(best), 0.0, steepest)
+
+
+def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
+    """Whether a quantity vanishes at an offset of zero: it is rounding there, and so are its peaks' places."""
+    beside = design + np.array([0.0, 0.0, _TIP * design[1]])
+    return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, beside[None]).values[0]))
+
+
+def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
+    """Return the derivatives (3,) on one side of an offset of zero, from those at two small offsets."""
+    near, far = (
+        _steepest(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)
+        for share in (1.0, 2.0)
+    )
+    slopes = 2.0 * near - far  # what grows with the offset falls out
+    return np.where(np.abs(slopes) <= _TIE * np.abs(slopes).max(), 0.0, slopes)
 
 
 def _row(

@@ -56,7 +56,9 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
     wanted, inertia = numbers["wanted_fluctuation"], numbers["flywheel_kgm2"]
     bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
-    without = "the crank does not come through a turn" if bare is None else f"it is {bare:.4g}"
+    # A constant torque keeps any mean speed if the crank may go slowly enough somewhere; a motor may be too weak.
+    stuck = "comes close to stopping" if numbers["motor"] == "constant torque" else "does not come through a turn"
+    without = f"the crank {stuck}" if bare is None else f"it is {bare:.4g}"
     console.print(
         f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
         f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}."

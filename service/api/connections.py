@@ -23,6 +23,8 @@ MOST_CONNECTIONS = 2000
 """Connections at a time; fewer where the system allows fewer open files, see `room_for_connections`."""
 MOST_HEAD = 65_536
 """Bytes of an address with the headers."""
+MOST_SENT = 8_388_608
+"""Bytes of a body as they are sent, with what chunks add; how large a body itself may be `StrictInput` says."""
 HEAD_SECONDS = 10.0
 """From connecting, or from the first byte of a request, until its headers are there."""
 BODY_SECONDS = 60.0
@@ -124,7 +126,8 @@ class Connection(HttpToolsProtocol):
         self._gate = gate
         self._part: Literal["rest", "head", "body"] = "rest"  # what is coming
         self._answering = 0  # requests that wait for their answers
-        self._size, self._fresh = 0, False  # bytes of the head in earlier pieces; whether it began in this one
+        self._size, self._trailing = 0, 0  # bytes that came in earlier pieces; of headers after the body
+        self._fresh = False  # whether this request began in this piece
         self._deadline: asyncio.TimerHandle | None = None
         self._fault: tuple[HTTPStatus, str] | None = None
 
@@ -151,16 +154,30 @@ class Connection(HttpToolsProtocol):
         """Take in what came; refuse a head that is too large before it ends."""
         self._fresh = False
         super().data_received(data)
-        if self._part == "head" and not self._fresh:
-            self._size += len(data)
-            if self._size > MOST_HEAD and not self.transport.is_closing():
-                self._refuse(*self._too_large())
+        if self._part == "rest" or self._fresh or self.transport.is_closing():
+            return
+        self._size += len(data)
+        if self._part == "head" and self._size > MOST_HEAD:
+            self._refuse(*self._too_large())
+        elif self._size > MOST_SENT:
+            text = f"a body takes at most {MOST_SENT} bytes on its way; got more; send less, or in larger chunks"
+            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, text)
 
     def on_message_begin(self) -> None:
         """Begin a request."""
         super().on_message_begin()
-        self._part, self._size, self._fresh = "head", 0, True
+        self._part, self._size, self._trailing, self._fresh = "head", 0, 0, True
         self._wait(HEAD_SECONDS)
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """Take in a header; of those that come after a body, none."""
+        if self._part == "head":
+            super().on_header(name, value)
+            return
+        self._trailing += len(name) + len(value) + 4
+        if self._trailing > MOST_HEAD:
+            self._fault = self._too_large()
+            raise ValueError(self._fault[1])
 
     def on_headers_complete(self) -> None:
         """Hand the request on, unless its head is too large."""
@@ -168,7 +185,7 @@ class Connection(HttpToolsProtocol):
         if size > MOST_HEAD:
             self._fault = self._too_large()
             raise ValueError(self._fault[1])  # the parser ends the request with `send_400_response`
-        self._part = "body"
+        self._part, self._size = "body", 0
         self._wait(BODY_SECONDS)
         self._answering += 1
         super().on_headers_complete()

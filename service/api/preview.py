@@ -9,7 +9,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
 from .given_jobs import given_problem
-from .schema import Understood
+from .schema import Understood, understood
 from .state import SettingsDep
 
 if TYPE_CHECKING:
@@ -98,14 +98,13 @@ class PreviewModel(BaseModel):
 @router.post("/preview")
 def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
-    from ..commands.summary import summarise
     from ..preview.look import look_at
 
     look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
     return PreviewModel(
         wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
         checked=look.checked,
-        understood=None if look.problem is None else Understood(**summarise(look.problem)),
+        understood=None if look.problem is None else understood(look.problem, draft.job),
         allowed=_allowed(look),
         example=_example(look),
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
@@ -11,6 +12,9 @@ from .given_jobs import given_problem
 from .job_requests import Asked, asked_for
 from .problems import problem_responses
 from .state import SettingsDep
+
+if TYPE_CHECKING:
+    from ...optimise.problem import Problem
 
 router = APIRouter(tags=["jobs"])
 
@@ -29,6 +33,7 @@ class Understood(BaseModel):
     degrees_of_freedom: int = Field(examples=[2])
     eliminated: list[str] = Field(examples=[["rod_to_offset"]])
     warnings: list[str] = Field(description="of what may not have been meant", examples=[[]])
+    notes: list[str] = Field(description="of what is often forgotten", examples=[[]])
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 
 
@@ -43,6 +48,12 @@ def show_schema() -> dict[str, Any]:
 @router.post("/check", responses=problem_responses(415))
 def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
     """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
+    return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
+
+
+def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
+    """Return what was understood of the tables that state a problem."""
+    from ...optimise.job.notes import notes_of
     from ..commands.summary import summarise
 
-    return Understood(**summarise(given_problem(asked.tables, settings.allowed_quantities)))
+    return Understood(**summarise(problem), notes=notes_of(tables))

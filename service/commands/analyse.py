@@ -11,7 +11,7 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import System
 from ..designs.design_analysis import analysis_of, numbers_of
-from ..designs.judged_rules import judged
+from ..designs.judged_rules import judged, rule_in
 from ..designs.shown_units import record_in, row_in
 from ..designs.topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
 from ..runs.result import Row, json_text
@@ -105,7 +105,7 @@ def analyse(
             lenient=ALL in (show or ()),
         )
     design = [topic for topic in found.topics if topic.name in found.found]
-    rules = [] if problem is None else judged(problem, row)
+    rules = [] if problem is None else [rule_in(rule, units) for rule in judged(problem, row)]
     if json:
         record = record_in(found.record(), units)
         give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))

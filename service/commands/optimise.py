@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shlex
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -85,7 +86,8 @@ def optimise(
             begin = _again(resume or "", jobs, runs_place(runs))
         interruption = opened.enter_context(Interruption())
         run, problem, claim = opened.enter_context(begin)
-        opened.enter_context(told(claim, listed=listed))
+        again = _again_command(claim.job.run, runs, store) if listed else ""
+        opened.enter_context(told(claim, again=again))
         opened.enter_context(Pulse(claim))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
@@ -105,8 +107,8 @@ def optimise(
             say(f"slidercrank: {result.message}")
     else:
         show_result(shown)
-    if result.status == "cancelled" and listed:
-        say(f"go on with: slidercrank optimise --resume {run.path.name}")
+    if result.status == "cancelled" and again:
+        say(f"go on with: {again}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
 
 
@@ -120,6 +122,12 @@ def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
     return replace(result_in(result, units), trade_offs=told)
 
 
+def _again_command(run: str, runs: Path | None, store: str | None) -> str:
+    """Return the command that goes on with a run, with the places that were named."""
+    places = [*(["--runs", str(runs)] if runs else []), *(["--store", store] if store else [])]
+    return shlex.join(["slidercrank", "optimise", "--resume", run, *places])
+
+
 @contextlib.contextmanager
 def _store_or_own(option: str | None, runs: Path | None) -> Iterator[tuple[Store, bool]]:
     """Give the store, or where it cannot be used one that lasts as long as the run; and whether it is the first."""
@@ -131,10 +139,7 @@ def _store_or_own(option: str | None, runs: Path | None) -> Iterator[tuple[Store
             store.require_writable()
             listed = True
         except StoreError as error:
-            say(
-                f"slidercrank: {error}\n"
-                "the run begins without the store: jobs does not list it, and once stopped it cannot go on"
-            )
+            say(f"slidercrank: {error}\nwithout it, `jobs` does not list the run, and once stopped it cannot go on")
             own = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
             store, listed = opened.enter_context(Store(Path(own) / FILE)), False
         yield store, listed

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ...objectives.kinds import System, shown_in
 from ..runs.result import Row
 from .requirements import MET, ranges_of, requirements_of
 
@@ -43,6 +44,23 @@ def judged(problem: Problem, row: Row) -> list[JudgedRule]:
         _judged(rule.quantity, rule.title, rule.unit, rule.lower, rule.upper, row.get(rule.column))
         for rule in requirements_of(problem)
     ]
+
+
+def rule_in(rule: JudgedRule, system: System) -> JudgedRule:
+    """Return a rule in the unit that a system shows."""
+    unit, factor = shown_in(rule.unit, system)
+
+    def of(value: float | None) -> float | None:
+        return None if value is None else value * factor
+
+    return replace(
+        rule,
+        unit=unit,
+        lower=of(rule.lower),
+        upper=of(rule.upper),
+        value=of(rule.value),
+        missed_by=of(rule.missed_by),
+    )
 
 
 def _judged(

@@ -109,7 +109,8 @@ class _Layout:
             size = _SMALL + 0.4 if block.tone == "note" else _TEXT
             text = _MARKS[block.tone] + block.text
             self.y -= 0.03
-            self.lines(wrapped(text, size, _ACROSS), size, ink=_INKS[block.tone], bold=block.tone == "bad")
+            bold = block.tone == "bad"
+            self.lines(wrapped(text, size, _ACROSS, bold=bold), size, ink=_INKS[block.tone], bold=bold)
             self.y -= 0.03
         elif isinstance(block, Facts):
             self.facts(block)

@@ -89,18 +89,17 @@ def take_up(store: Store, job: Job) -> Claim:
 
 
 @contextlib.contextmanager
-def told(claim: Claim, *, listed: bool = True) -> Iterator[None]:
+def told(claim: Claim, *, again: str = "") -> Iterator[None]:
     """While entered, an error ends the job in the store too, so that it can be resumed at once.
 
-    listed: whether its store lasts longer than the run.
+    again: the command that goes on with the run; none where its store lasts no longer than the run.
     """
     try:
         yield
     except StoreError as error:
-        if not listed:
+        if not again:
             raise
-        remedy = f"then go on with: slidercrank optimise --resume {claim.job.run}"
-        raise StoreError(f"{error}; what was found until then is kept; {remedy}") from error
+        raise StoreError(f"{error}; what was found until then is kept; then go on with: {again}") from error
     except LeaseLost:
         raise
     except BaseException as error:

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
@@ -186,7 +187,8 @@ def without_secrets(text: str) -> str:
 
 def _shown(url: URL) -> str:
     hidden = {name: value if name in _OPEN else _HIDDEN for name, value in url.query.items()}
-    return url.set(query=hidden).render_as_string(hide_password=True)
+    text = url.set(query=hidden).render_as_string(hide_password=True)
+    return text.replace(quote(_HIDDEN), _HIDDEN).replace("+psycopg://", "://", 1)
 
 
 def _secrets(url: URL) -> list[str]:

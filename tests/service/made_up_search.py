@@ -23,7 +23,15 @@ def found(problem: Problem, status: str) -> ParetoFront:
         problem=problem,
         status=status,  # type: ignore[arg-type]
         message="1 design",
-        designs=pd.DataFrame({"crank_mm": [140.0], "time_ratio": [1.5], "least_transmission_angle_deg": [45.0]}),
+        designs=pd.DataFrame(
+            {
+                "crank_mm": [140.0],
+                "time_ratio": [1.5],
+                "slow_stroke": ["outward"],
+                "loaded_stroke": ["equal"],
+                "least_transmission_angle_deg": [45.0],
+            }
+        ),
         dimensions=np.array([[0.14, 0.4, 0.05]]),
         values=np.array([[-1.5, -0.8]]),
         goals=((np.array([0.0, 1.0]), np.array([[1.0], [-1.0]])),),

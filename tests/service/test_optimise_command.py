@@ -229,7 +229,7 @@ def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
     for store in (foreign, "postgresql://clerk:geheim@127.0.0.1:1/jobs"):
         done = command("optimise", job, "--no-figures", "--designs", 3, "--store", store)
         assert done.exit_code == 0, done.stderr
-        assert "the run begins without the store: jobs does not list it" in done.stderr
+        assert "without it, `jobs` does not list the run" in done.stderr
         (run,) = (path for path in runs.iterdir() if path.is_dir())
         assert (run / "front.csv").exists()
         assert "geheim" not in (run / "log.txt").read_text() + done.stderr

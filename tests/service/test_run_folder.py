@@ -126,7 +126,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_written(tmp_path: Path, mon
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(RunError, match="No space left on device"):
+    with pytest.raises(RunError, match="needs room on its disk"):
         RunFolder(tmp_path, "x")
     assert list(tmp_path.iterdir()) == []
 

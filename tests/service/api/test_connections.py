@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
+import psutil
 import pytest
 
 from slidercrank.service.api import connections
@@ -75,6 +76,36 @@ def test_endless_headers_are_refused(open_service: httpx.Client, headers: bytes)
 def test_headers_of_the_allowed_size_are_taken(open_service: httpx.Client) -> None:
     response = open_service.get("/health/live", headers={"X-Long": "a" * 60_000})
     assert response.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("rest", "expected"),
+    [
+        (b"0\r\n" + b"T: x\r\n" * 1_000_000, 431),
+        (b"1;" + b"x" * 20_000_000, 413),
+        (b"0\r\nT: " + b"x" * 20_000_000, 413),
+    ],
+    ids=["trailers", "extension", "trailer"],
+)
+def test_what_comes_with_chunks_has_its_limits_too(open_service: httpx.Client, rest: bytes, expected: int) -> None:
+    asked = b"POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n"
+    token = f"Authorization: Bearer {TOKEN}\r\n".encode()
+    for head in (asked, asked[:-2] + token + b"\r\n"):
+        before = memory()
+        with connected(open_service) as there, contextlib.suppress(ConnectionError):
+            for begin in range(0, len(rest), 1 << 20):
+                if begin == 0:
+                    there.sendall(head)
+                there.sendall(rest[begin : begin + (1 << 20)])
+        assert open_service.get("/health/live").status_code == 200
+        assert memory() - before < 300e6
+    with connected(open_service) as there:
+        assert sent(there, asked[:-2] + token + b"\r\n", rest)[0] == expected
+
+
+def memory() -> int:
+    taken: int = psutil.Process().memory_info().rss
+    return taken
 
 
 def test_what_is_not_http_gets_a_problem_document(open_service: httpx.Client) -> None:

@@ -50,6 +50,7 @@ def test_the_analysis_of_a_design_is_that_of_its_dimensions(solved: Solved, clie
     assert (found["number"], found["notes"]) == (4, [])
     lengths = [f"--{name}={row[f'{name}_mm']!r} mm" for name in ("crank", "rod", "offset")]
     expected = command("analyse", solved.job, *lengths, "--json")
+    expected.pop("rules")  # for which the API has a place of their own
     assert list(found["analysis"]) == list(expected)
     for key, value in expected.items():
         assert found["analysis"][key] == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), key
@@ -126,7 +127,9 @@ def test_curves_without_a_speed_are_per_crank_speed() -> None:
 def test_what_if_is_what_the_command_line_analyses(solved: Solved, client: httpx.Client) -> None:
     answer = client.post(f"{API}/analyse", json={"job": TABLES, **SIZES, "show": ["motor"]})
     lengths = [f"--{name}={size}" for name, size in SIZES.items()]
-    assert answer.json()["analysis"] == command("analyse", solved.job, *lengths, "--show", "motor", "--json")
+    expected = command("analyse", solved.job, *lengths, "--show", "motor", "--json")
+    assert all(rule["met"] is not None for rule in expected.pop("rules"))
+    assert answer.json()["analysis"] == expected
 
 
 def test_what_if_takes_other_numbers_of_the_job(solved: Solved, client: httpx.Client) -> None:
@@ -134,7 +137,9 @@ def test_what_if_takes_other_numbers_of_the_job(solved: Solved, client: httpx.Cl
     answer = client.post(f"{API}/analyse", json=body)
     lengths = [f"--{name}={size}" for name, size in SIZES.items()]
     more = ("--set", "mechanism.slider.mass=4 kg", "--speed", "150 rpm")
-    assert answer.json()["analysis"] == command("analyse", solved.job, *lengths, *more, "--json")
+    expected = command("analyse", solved.job, *lengths, *more, "--json")
+    expected.pop("rules")
+    assert answer.json()["analysis"] == expected
 
 
 @pytest.mark.parametrize(
@@ -206,7 +211,10 @@ def test_stored_designs_have_the_choices_and_the_varying_numbers_of_their_rows()
         assert stored.part.rod == front.part(row).rod
         assert stored.mechanism == again.mechanism(row)
         for key, value in numbers_of(stored.mechanism, stored.values[:3]).items():
-            assert value == (pytest.approx(given[key], rel=1e-9, abs=1e-12) if isinstance(value, float) else value), key
+            expected = (
+                pytest.approx(given[key], rel=1e-9, abs=1e-12, nan_ok=True) if isinstance(value, float) else value
+            )
+            assert value == expected, key
 
 
 @pytest.mark.parametrize("change", [{"crank_mm": math.nan}, {"choice_rod_section": "1 m"}, {"slider_mass_kg": "heavy"}])

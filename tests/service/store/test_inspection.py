@@ -76,8 +76,9 @@ def test_a_server_that_does_not_write_through_is_told(server: object, tmp_path: 
     from tests.service.store.postgresql import Cluster
 
     assert isinstance(server, Cluster)
-    with Store(server.new_address()) as store:
-        database = Database(store.name)
+    address = server.new_address()
+    with Store(address):
+        database = Database(address)
         assert UNSAFE in damages(database)
         database.close()
 

@@ -24,7 +24,7 @@ export function showFacts(place, { allowed, example, understood }) {
       example ? row("slow stroke", example.slow_stroke) : null,
     ),
     allowed.unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${allowed.unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
-    (understood?.warnings ?? []).map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
+    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
     allowed.said.map((sentence) => h("p", { class: "warning" }, sentence)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   );
