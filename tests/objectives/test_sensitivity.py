@@ -147,3 +147,22 @@ def test_percentages_of_a_negative_offset_are_of_its_size() -> None:
     for side in ("", "_below"):
         found = one.loc["peak_torque", f"offset_percent{side}"]
         assert other.loc["peak_torque", f"offset_percent{side}"] == pytest.approx(found, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_vanishes_without_offset_grows_on_either_side_of_it(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    crank, rod = random.uniform(0.02, 0.08), random.uniform(0.15, 0.4)
+    machine = Mechanism(speed=random.uniform(10.0, 60.0), slider_mass=random.uniform(0.5, 3.0))
+    rows = sensitivity(machine, np.array([crank, rod, 0.0])).set_index("quantity")
+    small = 1e-6
+    for name in ("peak_shaking_moment", "rms_shaking_moment"):
+        row = rows.loc[name]
+        below, above = (
+            float(QUANTITIES[name].evaluate(machine, np.array([[crank, rod, offset]])).values[0])
+            for offset in (-small, small)
+        )
+        assert row["offset_per_mm"] == pytest.approx(above / small * 1e-3, rel=1e-6)
+        assert row["offset_per_mm_below"] == pytest.approx(-below / small * 1e-3, rel=1e-6)
+        assert row["offset_per_mm"] > 0.0 > row["offset_per_mm_below"]
+        assert row["crank_per_mm"] == row["rod_per_mm"] == row["crank_per_mm_below"] == row["rod_per_mm_below"] == 0.0

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from slidercrank.service.commands.optimise import _again_command
 from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -237,3 +238,9 @@ def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
         shutil.rmtree(run)
     assert foreign.read_bytes() == b"no database" * 1000
     assert command("optimise", job, "--store", "mysql://clerk@host/x").exit_code == 2
+
+
+def test_the_command_that_goes_on_names_the_places_that_were_named() -> None:
+    assert _again_command("a-run", None, None) == "slidercrank optimise --resume a-run"
+    named = _again_command("a-run", Path("my runs"), "my store.db")
+    assert named == "slidercrank optimise --resume a-run --runs 'my runs' --store 'my store.db'"

@@ -174,3 +174,20 @@ def test_a_design_and_its_report_follow(run: Path, command: Command, tmp_path: P
     assert "peak_torque_Nm" not in text
     cells = next(csv.reader(io.StringIO(command("export", run, "--csv", "-", "--units", "inch").stdout)))
     assert not [cell for cell in cells if cell.endswith(("_mm", "_N", "_Nm", "_W", "_kg"))]
+
+
+def test_rules_of_a_design_are_told_in_the_units_asked_for(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    sizes = ("--crank", "100 mm", "--rod", "400 mm", "--offset", "50 mm")
+    metric, inch = (
+        json.loads(command("analyse", job, *sizes, "--json", "--units", units).stdout)["rules"]
+        for units in ("metric", "inch")
+    )
+    assert {rule["unit"] for rule in inch} <= {"in", "deg", ""}
+    for one, other in zip(metric, inch, strict=True):
+        factor = 25.4 if one["unit"] == "mm" else 1.0
+        for key in ("lower", "upper", "value", "missed_by"):
+            assert other[key] == (None if one[key] is None else pytest.approx(one[key] / factor, rel=1e-12))
+    assert " mm" not in "".join(
+        line for line in command("analyse", job, *sizes, "--units", "inch").stdout.splitlines() if "met" in line.lower()
+    )

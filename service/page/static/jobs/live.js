@@ -123,6 +123,7 @@ export function watch(place, job, { signal, changed }) {
       const now = await get(`jobs/${job.id}`, {}, signal);
       lost.hidden = true;
       if (now.progress?.front) drawFront(now.progress.front);
+      else if (!latest) noFront(now.state);
       if (now.state !== job.state || now.cancel_asked !== job.cancel_asked) {
         job = now;
         changed(now);
@@ -156,6 +157,10 @@ export function watch(place, job, { signal, changed }) {
     fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`));
   }
 
+  function noFront(state) {
+    fill(front, h("p", { class: "quiet" }, state === "queued" ? "Waits for a worker." : "Nothing yet."));
+  }
+
   function end(now) {
     over = true;
     stop();
@@ -166,7 +171,7 @@ export function watch(place, job, { signal, changed }) {
   const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
   signal.addEventListener("abort", () => [timer, silent, stale].forEach(clearTimeout));
-  fill(front, h("p", { class: "quiet" }, job.state === "queued" ? "Waits for a worker." : "Nothing yet."));
+  noFront(job.state);
   if (job.progress) {
     stand(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
