@@ -100,7 +100,9 @@ def toml_tables(text: str) -> dict[str, Any]:
         raise _too_deep() from None
     except ValueError as error:
         if "set_int_max_str_digits" in str(error):  # advice for programmers
-            raise JobError("a number of a job has a few digits; got one of thousands; shorten it") from None
+            raise JobError(
+                "the file is no valid TOML: a number of a job has a few digits; got one of thousands; shorten it"
+            ) from None
         raise JobError(f"the file is no valid TOML: {str(error)[:300]}; {remedy(text, str(error))}") from None
 
 

@@ -45,7 +45,7 @@ CONTENTS = [
     ("name = 'x'".encode("utf-16"), ["UTF-16", "save it as UTF-8"]),
     (b"name = 'x'\nunit = '5 \xb5m'\n", ["byte 0xb5 in line 2", "save it as UTF-8"]),
     (b"name = 'x'\n[mechanism\n", ["no valid TOML", "line 2"]),
-    (b"name = " + b"1" * 5000, ["no valid TOML"]),
+    (b"name = " + b"1" * 5000, ["no valid TOML", "got one of thousands; shorten it"]),
     (b"speed = 60 rpm", ['put 60 rpm in quotes: "60 rpm"']),
     (b"a = 1\nspeed = 60rpm # fast", ["line 2", 'put 60rpm in quotes: "60rpm"']),
     (b'crank = ["20 mm", 200 mm]', ['put 200 mm in quotes: "200 mm"']),
