@@ -46,7 +46,7 @@ def sides_of(
         return None
     m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
     turn = 1.0 if d.speed >= 0.0 else -1.0
-    slide = 1.0 if m.x_1 * turn > 0.0 else -1.0
+    slide = d.branch.real * (1.0 if outward else -1.0)
     swing = 1.0 if m.rod_1 * turn > 0.0 else -1.0
     guide = _touch(inside, d, block, j, outward, loads, piece, shift, turn, swing)
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0)

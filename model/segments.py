@@ -22,6 +22,8 @@ from .parameters import DESIGN, Design, LoadKind, Loads
 _POSITION_TABLE, _ANGLE_TABLE = int(LoadKind.POSITION_TABLE), int(LoadKind.ANGLE_TABLE)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
 _TURN = 2.0 * math.pi
+_STILL = 1e-13
+"""|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
 ROOM = 40
 """Breakpoints there is room for, beside two for each knot: 8 at most, and those that friction makes."""
 
@@ -173,10 +175,13 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 def enter(
     d: Design, block: Any, j: int, inside: float, loads: Loads, watch: Watch, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
-    """Fix the table pieces of the segment that the crank angle `inside` lies in; return (counts, outward)."""
+    """Fix the table pieces of the segment that the crank angle `inside` lies in; return (counts, outward).
+
+    Within rounding of a dead centre, where the sign of x' is luck, the stroke is the inward one.
+    """
     m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
     x = d.branch * m.x
-    outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > 0.0
+    outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > _STILL * d.r
     fraction = (x - d.inner) / (d.outer - d.inner)
     counts = watch.strokes == 0 or (watch.strokes == 1) == outward
     # Only at ends that are cuts: a dead centre in the middle lies a rounding error outside 0 to 1.

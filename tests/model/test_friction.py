@@ -190,6 +190,24 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
     assert on_breakpoints > 10
 
 
+def test_dead_centre_belongs_to_the_inward_stroke_however_its_angle_is_rounded() -> None:
+    """Loads and friction alike: never the load of one stroke with the friction of the other."""
+    ulps = np.arange(-4, 5)
+    for machine, design in zip(machines(), DESIGNS, strict=True):
+        linkage = linkage_of(design, machine.branch)
+        inner, outer = linkage.dead_centre_angles
+        ends = np.array([outer, inner])
+        angles = ends[:, None] + ulps * np.spacing(ends)[:, None]
+        step = 1e-9 * (1.0 if machine.speed >= 0.0 else -1.0)
+        inward = np.array([ends[0] + step, ends[1] - step])  # after the outer dead centre, before the inner one
+        for kind, size in SIZES.items():
+            there = size(cycle(machine, linkage, inward))
+            at = size(cycle(machine, linkage, angles.ravel())).reshape(angles.shape)
+            np.testing.assert_allclose(
+                at, np.broadcast_to(there[:, None], at.shape), rtol=1e-5, atol=1e-6, err_msg=kind
+            )
+
+
 def test_breakpoints_are_where_the_curves_jump_or_the_guide_force_changes_sides() -> None:
     found = 0
     for machine, design in zip(machines(), DESIGNS, strict=True):

@@ -82,7 +82,7 @@ def test_higher_of_the_two_strokes_is_the_cycle(name: str) -> None:
     machine = MACHINES[name]
     outward = highest(machine, Signal.TORQUE, during="outward stroke")
     inward = highest(machine, Signal.TORQUE, during="inward stroke")
-    np.testing.assert_allclose(np.maximum(outward, inward), highest(machine, Signal.TORQUE), rtol=1e-13)
+    np.testing.assert_allclose(np.maximum(outward, inward), highest(machine, Signal.TORQUE), rtol=EXACT)
     assert np.mean(outward > inward) > 0.005
     assert np.mean(outward < inward) > 0.005
 
