@@ -11,9 +11,10 @@ from ..errors import InputError
 from ..linkage import Linkage
 from ..mechanism import Mechanism
 from .drive import ConstantTorque, Drive, LinearMotor, speed_range
+from .energy_integral import coasting, cut_where_least, graded
 from .equation import TURN, Array, CrankEquation
 from .forward import drive_of
-from .turn import PeriodicTurn, Profile, Torque
+from .turn import Guess, PeriodicTurn, Profile, Torque
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,13 +57,14 @@ class Runner:
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
+        self.viscous = bool(self.turn.terms.drag.any())
         self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def under(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
         self.equation.require_inertia(drive.inertia)
         motor, guess = self._motor(drive), self.balanced_speed(drive)
-        solved = self.turn.resolved(motor, drive.inertia, guess)
+        solved = self.turn.resolved(motor, drive.inertia, lambda turn: turn.even(guess))
         if solved is None or not solved[1].memory < 1.0:
             raise InputError(
                 "steady running needs a crank that comes through every turn; got none that does near the "
@@ -83,11 +85,19 @@ class Runner:
             raise InputError("a constant torque needs the mean speed that it shall keep; got none; give the speed")
         self.equation.require_inertia(inertia)
 
-        def motor(speed: Array) -> tuple[Array, Array]:
-            return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
+        def guess(turn: PeriodicTurn) -> Guess | None:
+            found = coasting(turn, inertia, self.speed)
+            if found.guess is None or found.stops:
+                return turn.even(self.speed) if self.viscous else None
+            return found.guess
 
-        solved = self.turn.resolved(motor, inertia, self.speed, mean_speed=self.speed)
-        if solved is None:
+        turn, solved = self.turn, None
+        for finer in (cut_where_least, graded):
+            turn = finer(turn, coasting(turn, inertia, self.speed).load)
+            solved = turn.resolved(_no_motor, inertia, guess, mean_speed=self.speed)
+            if solved is not None:
+                break
+        else:
             raise InputError(
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
                 f"{inertia:.6g} kg m^2 beside the mechanism; add a flywheel or turn faster"
@@ -95,7 +105,26 @@ class Runner:
         turn, profile = solved
         if not self.works:  # what cancels leaves rounding
             profile = replace(profile, added=0.0)
-        return _result(turn, profile, motor, inertia)
+        return _result(turn, profile, _no_motor, inertia)
+
+    def speeds(self, inertia: float) -> tuple[float, float]:
+        """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
+
+        The least is 0 where the crank all but stops: below a millionth of the greatest. inertia: see `constant`.
+        Raises `InputError` where viscous loads leave no steady running that is found.
+        """
+        try:
+            running = self.constant(inertia)
+        except InputError:
+            turn = cut_where_least(self.turn, coasting(self.turn, inertia, self.speed).load)
+            found = coasting(turn, inertia, self.speed)
+            if self.viscous or found.guess is None or not found.stops:
+                raise
+            energy, start, added = found.guess
+            rate = turn.rate(energy, _no_motor, inertia)[0] + added / (turn.terms.inertia + inertia)
+            stopping = _result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
+            return 0.0, float(np.abs(stopping.speed).max())
+        return float(np.abs(running.speed).min()), float(np.abs(running.speed).max())
 
     def balanced_speed(self, drive: Drive) -> float:
         """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.
@@ -157,6 +186,10 @@ class Runner:
         return motor
 
 
+def _no_motor(speed: Array) -> tuple[Array, Array]:
+    return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
+
+
 def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
     pace = turn.way / np.sqrt(2.0 * profile.energy)
     times, _ = turn.integral(pace)
@@ -216,6 +249,6 @@ def constant_torque_running(mechanism: Mechanism, linkage: Linkage, *, inertia: 
     """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
 
     inertia: of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result. Raises
-    `InputError` if the mechanism has no speed, or the crank does not come through the turn.
+    `InputError` if the mechanism has no speed, or the crank all but stops (see `Runner.speeds`).
     """
     return Runner(mechanism, linkage).constant(inertia)

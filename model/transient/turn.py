@@ -36,6 +36,8 @@ _HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of i
 
 Torque = Callable[[Array], tuple[Array, Array]]
 """Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
+Guess = tuple[Array, Array, float]
+"""E on the nodes, (panels, nodes), and at the panels' starts, (panels,); a torque added to the motor's, N m."""
 
 
 @dataclass(frozen=True)
@@ -110,38 +112,56 @@ class PeriodicTurn:
         total = t.inertia + inertia
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * t.spin) / total
 
+    def even(self, speed: float) -> Guess:
+        """Return the first guess of a constant speed, rad/s, of its size."""
+        return np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2), 0.0
+
     def resolved(
-        self, motor: Torque, inertia: float, speed: float, *, mean_speed: float | None = None
+        self,
+        motor: Torque,
+        inertia: float,
+        guess: Callable[[PeriodicTurn], Guess | None],
+        *,
+        mean_speed: float | None = None,
     ) -> tuple[PeriodicTurn, Profile] | None:
         """Return the turn that repeats, on panels fine enough for it; None if none is found that never stops.
 
-        Arguments: see `solve`.
+        guess: where Newton's iteration starts on a turn; None ends the search. Other arguments: see `solve`.
         """
         turn = self
         for _ in range(_HALVINGS):
-            profile = turn.solve(motor, inertia, speed, mean_speed=mean_speed)
+            first = guess(turn)
+            profile = None if first is None else turn.solve(motor, inertia, first, mean_speed=mean_speed)
             if profile is None:
                 return None
             rough = turn._rough(1.0 / np.sqrt(profile.energy)) | turn._rough(profile.rate)
             if not rough.any():
                 return turn, profile
-            halves = turn.low[rough] + 0.5 * turn.width[rough]
-            turn = PeriodicTurn(self.equation, self.dimensions, (*turn.cuts, *(float(at) for at in halves)))
+            turn = turn.cut(turn.low[rough] + 0.5 * turn.width[rough])
         return None
+
+    def cut(self, angles: Array) -> PeriodicTurn:
+        """Return the same turn whose panels end at further crank angles, (n,), rad."""
+        return PeriodicTurn(self.equation, self.dimensions, (*self.cuts, *(float(angle) for angle in angles)))
+
+    @property
+    def inertia_at_starts(self) -> Array:
+        """Moving inertia, kg m^2, where the panels start, (panels,)."""
+        return self.equation.inertia(self.low)
 
     def _rough(self, values: Array) -> NDArray[np.bool_]:
         """Return the panels, (panels,), on which values on the nodes are not resolved."""
         tail = np.abs(values @ self._series[-_TAIL:].T).max(axis=1)
         return np.asarray(~(tail <= _RESOLVED * np.abs(values).max()))
 
-    def solve(self, motor: Torque, inertia: float, speed: float, *, mean_speed: float | None = None) -> Profile | None:
+    def solve(self, motor: Torque, inertia: float, guess: Guess, *, mean_speed: float | None = None) -> Profile | None:
         """Return the turn that repeats; None if none is found that never stops.
 
-        inertia: of the drive, kg m^2. speed: a first guess, rad/s, of its size. mean_speed: if given, a constant
-        torque is added that makes 2 pi / period this, rad/s.
+        inertia: of the drive, kg m^2. guess: where Newton's iteration starts. mean_speed: if given, a constant torque
+        is added that makes 2 pi / period this, rad/s.
         """
-        energy, start = np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2)
-        added, last = 0.0, math.inf
+        energy, start, added = guess
+        last = math.inf
         for _ in range(_STEPS):
             rate, by_energy = self.rate(energy, motor, inertia)
             by_torque = 1.0 / (self.terms.inertia + inertia)

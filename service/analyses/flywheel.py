@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
@@ -15,27 +16,24 @@ if TYPE_CHECKING:
 
 FLUCTUATION = 0.02
 """Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""
+_RPM = 30.0 / math.pi
 _TRIED = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> dict[str, Any]:
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     from ...model.transient.flywheel import design_flywheel
-    from ...model.transient.steady import Runner
 
     found = design_flywheel(mechanism, linkage, fluctuation)
     table = [design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
-    runner = Runner(mechanism, linkage)
-    try:
-        bare = runner.constant(0.0) if mechanism.drive is None else runner.under(_bare(mechanism))
-    except InputError:
-        bare = None
+    bare = _without(mechanism, linkage)
     return {
         "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
         "wanted_fluctuation": fluctuation,
         "flywheel_kgm2": found.inertia,
         "classical_estimate_kgm2": found.estimate,
-        "fluctuation_without_flywheel": None if bare is None else bare.fluctuation,
+        "fluctuation_without_flywheel": None if bare is None else bare[0],
+        "least_speed_without_flywheel_rpm": None if bare is None else _RPM * bare[1],
         "steady": steady_numbers(found.running),
         "fluctuations": list(_TRIED),
         "flywheels_kgm2": [design.inertia for design in table],
@@ -43,11 +41,21 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     }
 
 
-def _bare(mechanism: Mechanism) -> Any:
+def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float] | None:
+    """Return fluctuation and least speed, rad/s, of the machine without a flywheel; None if no running is found."""
     from dataclasses import replace
 
-    assert mechanism.drive is not None
-    return replace(mechanism.drive, flywheel=0.0)
+    from ...model.transient.steady import Runner
+
+    runner, drive = Runner(mechanism, linkage), mechanism.drive
+    try:
+        if drive is None:
+            least, greatest = runner.speeds(0.0)
+            return (greatest - least) / runner.speed, least
+        running = runner.under(replace(drive, flywheel=0.0))
+        return running.fluctuation, float(abs(running.speed).min())
+    except InputError:
+        return None
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
@@ -56,9 +64,13 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
     wanted, inertia = numbers["wanted_fluctuation"], numbers["flywheel_kgm2"]
     bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
-    # A constant torque keeps any mean speed if the crank may go slowly enough somewhere; a motor may be too weak.
-    stuck = "comes close to stopping" if numbers["motor"] == "constant torque" else "does not come through a turn"
-    without = f"the crank {stuck}" if bare is None else f"it is {bare:.4g}"
+    slowest = numbers["least_speed_without_flywheel_rpm"]
+    if bare is None:
+        without = "no steady running was found"
+    elif slowest:
+        without = f"it is {bare:.4g}, down to {slowest:.4g} rpm"
+    else:
+        without = f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
     console.print(
         f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
         f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}."

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage import Linkage
+from slidercrank.model.links import RigidLink
 from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor
@@ -74,6 +75,28 @@ def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> Non
     assert numbers["flywheels_kgm2"][2] == numbers["flywheel_kgm2"]
     assert "Flywheel on the crank shaft" in shown(flywheel, MACHINE)
     assert "constant torque" in flywheel.numbers(STROKES, LINKAGE)["motor"]
+
+
+@pytest.mark.parametrize(
+    ("speed", "least", "words"),
+    [(10.0 * np.pi, 3.0163774, "without one it is 6.329, down to 3.016 rpm."), (np.pi, 0.0, "the crank all but stops")],
+)
+def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: float, least: float, words: str) -> None:
+    machine = Mechanism(
+        speed=speed,
+        crank=RigidLink(mass=0.5),
+        rod=RigidLink(mass=0.8),
+        slider_mass=2.0,
+        gravity=(0.0, -9.81),
+        loads=(StrokeForce(outward=-200.0, inward=-200.0),),
+    )
+    linkage = Linkage(0.05, 0.16, 0.05)
+    numbers = flywheel.numbers(machine, linkage)
+    assert numbers["fluctuation_without_flywheel"] == pytest.approx(6.3286239 if least else 63.3867047, rel=1e-7)
+    assert numbers["least_speed_without_flywheel_rpm"] == pytest.approx(least, rel=1e-7)
+    stream = io.StringIO()
+    flywheel.show(Console(file=stream, width=400), numbers)
+    assert words in stream.getvalue()
 
 
 def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> None:

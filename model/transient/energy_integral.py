@@ -1,0 +1,117 @@
+"""Running under a constant torque by the energy integral: exact where no load depends on the speed.
+
+With K = (J + J_drive) w^2 / 2 the speed leaves the equation of motion, dK / d(theta) = T - C. The torque of a turn that
+repeats is the mean of C, and with W, the integral of T - C counted from its least value,
+
+    K(theta) = K_least + W(theta),        period = integral of sqrt((J + J_drive) / 2 K) d(theta).
+
+One unknown is left for the mean speed: K_least > 0. No load jumps over the crank angle, so W rises smoothly from its
+least value, and the period grows without bound as K_least falls to 0: every mean speed has its running, however closely
+the crank comes to stopping.
+
+Viscous loads D w are taken along the speed found last, from a constant one on: then the result is a first guess.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .equation import TURN, Array
+
+if TYPE_CHECKING:
+    from .turn import Guess, PeriodicTurn
+
+_STOPS = 1e-12
+"""Least share of the energies at work that is told from none: a millionth of the greatest speed."""
+_NEAR = 1e-2
+"""Share of the range of W within which several least values may each bring the crank close to stopping."""
+_ROUNDS, _SETTLED = 60, 1e-6
+"""Rounds of taking the viscous loads anew, and the change of speed, of the greatest, that ends them."""
+_GRADES = 10
+"""Panels on either side of a least value, each a quarter of the last: down to a millionth of a radian."""
+
+
+@dataclass(frozen=True)
+class Coasting:
+    """A turn by the energy integral.
+
+    load: C and the viscous loads on the nodes, N m. guess: where Newton's iteration starts; None if the viscous loads
+    do not settle. stops: the crank is slower than can be told even with the least K_least, which guess has then.
+    """
+
+    load: Array
+    guess: Guess | None
+    stops: bool
+
+
+def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
+    """Return the turn that repeats by the energy integral; inertia: of the drive, kg m^2; speed: mean, rad/s, its size.
+
+    No energy below zero may hide between nodes: see `cut_where_least`.
+    """
+    pace, viscous = np.full(turn.angle.shape, speed), bool(turn.terms.drag.any())
+    for _ in range(_ROUNDS):
+        load = turn.terms.static + turn.way * turn.terms.drag * pace
+        guess, stops = _running(turn, load, inertia, speed)
+        if stops or not viscous:
+            return Coasting(load, guess, stops)
+        change = np.sqrt(2.0 * guess[0]) - pace
+        pace = pace + 0.5 * change  # the whole of it overshoots where the drag is strong
+        if np.abs(change).max() <= _SETTLED * pace.max():
+            return Coasting(load, guess, stops)
+    return Coasting(load, None, stops)
+
+
+def cut_where_least(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
+    """Return the turn with panels that end where W is least; load: on the nodes, N m."""
+    from scipy.optimize import brentq
+
+    surplus = turn.way * (turn.mean(load) - load)
+    at = np.concatenate([[-1.0], turn.nodes, [1.0]])
+
+    def within(x: float, panel: int) -> float:
+        return turn.within(surplus, panel, x)[0]
+
+    found = []
+    for panel in range(len(turn.width)):
+        values = np.concatenate([[within(-1.0, panel)], surplus[panel], [within(1.0, panel)]])
+        for i in np.flatnonzero((values[:-1] < 0.0) & (values[1:] > 0.0)):
+            x = float(brentq(within, at[i], at[i + 1], args=(panel,), xtol=1e-15))
+            found.append(turn.low[panel] + 0.5 * (1.0 + x) * turn.width[panel])
+    return turn.cut(np.array(found))
+
+
+def graded(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
+    """Return the turn with ever finer panels on both sides of the least values of W.
+
+    turn: from `cut_where_least`. load: on the nodes, N m.
+    """
+    starts, _ = turn.integral(turn.mean(load) - load)
+    least = turn.low[starts - starts.min() <= _NEAR * np.ptp(starts)]
+    away = np.abs(turn.width).max() * 4.0 ** -np.arange(_GRADES)
+    return turn.cut((least[:, None] + np.concatenate([-away, away])).ravel())
+
+
+def _running(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> tuple[Guess, bool]:
+    """Return the running under a load, N m on the nodes, and whether its crank stops."""
+    from scipy.optimize import brentq
+
+    starts, nodes = turn.integral(turn.mean(load) - load)
+    least = min(float(starts.min()), float(nodes.min()))
+    starts, nodes, total = starts - least, nodes - least, turn.terms.inertia + inertia
+    weights = np.abs(turn.width)[:, None] * turn.weights
+
+    def late(log: float) -> float:
+        period = float(np.sum(weights * np.sqrt(0.5 * total / (math.exp(log) + nodes))))
+        return period * speed / TURN - 1.0
+
+    size = float(nodes.max()) + 0.5 * speed**2 * float(total.max())
+    low, high = math.log(_STOPS * size), math.log(2.0 * size)
+    stops = not late(low) > 0.0
+    kept = math.exp(low if stops else brentq(late, low, high, xtol=1e-15, rtol=1e-14))
+    at_starts = turn.equation.inertia(turn.low) + inertia
+    return ((kept + nodes) / total, (kept + starts) / at_starts, turn.mean(load)), stops
