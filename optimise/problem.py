@@ -14,6 +14,7 @@ from ..model.loads import require_word
 from ..model.mechanism import Mechanism
 from ..objectives.quantity import Quantity
 from ..objectives.registry import QUANTITIES, quantity
+from .causes import undefined_because
 from .convex.costs import Costs
 from .methods.registry import require_known as require_known_method
 
@@ -193,8 +194,13 @@ class Problem:
             raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
         limits = (limit for variant in self.variants for limit in variant.limits)
-        for name in (*names, *(constraint.quantity for constraint in (*self.constraints, *limits))):
-            self.quantity(name)
+        machines = [variant.mechanism for variant in self.variants] or [self.mechanism]
+        keys = [("objectives", name) for name in names]
+        keys += [("constraints", constraint.quantity) for constraint in (*self.constraints, *limits)]
+        for table, name in keys:
+            reason = undefined_because(self.quantity(name), machines)
+            if reason:
+                raise InputError(f"{table}.{name}: {reason}")
         for name in names:
             if names.count(name) > 1:
                 raise InputError(f"the objective {name} is given twice; keep one")

@@ -1,21 +1,31 @@
-"""Refusal of objectives that are zero for every design: rounding would rank the designs."""
+"""Refusal of what is zero for every design: objectives, which rounding would rank, and requirements that none meets."""
 
 from __future__ import annotations
 
 from ..model.errors import InputError
-from ..objectives.cycle_average import CycleAverage
+from .causes import zero_because
 from .problem import Problem
 
 
 def require_ranking(problem: Problem) -> None:
-    """Raise `InputError` for an objective that is zero whatever the design, robust or not, in all variants."""
+    """Raise `InputError` for a quantity that is zero whatever the design, robust or not, in all variants.
+
+    As an objective, and in a constraint that zero does not meet.
+    """
+    machines = [part.mechanism for part in problem.parts()]
     for objective in problem.objectives:
-        quantity = problem.quantity(objective.quantity)
-        quantity = getattr(quantity, "inner", quantity)
-        if isinstance(quantity, CycleAverage) and all(quantity.zero_for(part.mechanism) for part in problem.parts()):
-            other = "peak_power" if quantity.times_speed else "peak_torque or rms_torque"
+        reason = zero_because(problem.quantity(objective.quantity), machines)
+        if reason:
+            raise InputError(f"objectives.{objective.quantity}: {reason}")
+    for constraint in problem.constraints:
+        low = constraint.lower is not None and constraint.lower > 0.0
+        high = constraint.upper is not None and constraint.upper < 0.0
+        quantity = problem.quantity(constraint.quantity)
+        reason = zero_because(quantity, machines) if low or high else None
+        if reason:
+            word = "equals" if constraint.equality else "min" if low else "max"
+            bound = (constraint.lower if low else constraint.upper) or 0.0
             raise InputError(
-                f"objectives.{objective.quantity}: a machine that takes no work over a turn has none, whatever its "
-                "dimensions; got no friction, no viscous load and no load that differs between the strokes; "
-                f"use {other}, or add what the machine works against"
+                f"constraints.{constraint.quantity}: {word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol} "
+                f"excludes zero, and it is zero for every design of this job: {reason}"
             )

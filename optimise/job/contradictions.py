@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterator
 
 from ...model.errors import JobError
-from ...model.links import Bar, Link
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
 from ..problem import Problem
@@ -18,22 +17,7 @@ from ..zero_objectives import require_ranking
 from .box import require_reachable
 from .slow_stroke import require_slow_stroke
 
-_ERRORS = ("position_error", "position_error_rss")
-_TORQUES = (
-    *("peak_torque", "peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque"),
-    *("peak_power", "mean_power"),
-)
-_INERTIAS = (
-    *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "rms_shaking_moment"),
-    "peak_reflected_inertia",
-)
 _SIGNED = ("mean_torque", "mean_power")
-_FORCES = (
-    "peak_pivot_force",
-    "peak_crank_pin_force",
-    "peak_slider_pin_force",
-    "peak_guide_force",
-)
 
 
 def require_consistent(problem: Problem) -> None:
@@ -42,7 +26,6 @@ def require_consistent(problem: Problem) -> None:
         _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
-    _require_causes(problem)
     require_ranking(problem)
     require_reachable(problem)
     require_slow_stroke(problem)
@@ -102,40 +85,3 @@ def _require_free(problem: Problem, name: str) -> None:
             f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
             "at 0; give variables.offset a range or leave out the objective"
         )
-
-
-def _require_causes(problem: Problem) -> None:
-    """Refuse position errors without tolerances, and torques and forces that nothing causes."""
-    wanted = [(f"objectives.{o.quantity}", o.quantity) for o in problem.objectives]
-    held = [(f"constraints.{c.quantity}", c.quantity) for c in problem.constraints]
-    machine = problem.mechanism.fullest
-    for key, name in (*wanted, *held):
-        if name in _ERRORS and not machine.tolerances.given:
-            raise JobError(
-                f"{key}: a position error comes from tolerances; got none; "
-                'add for example [tolerances] crank = "0.05 mm"'
-            )
-        if name == "self_locking_margin" and not machine.friction.acts:
-            raise JobError(
-                f"{key}: a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, "
-                "or use transmission_angle"
-            )
-    m = machine
-    moving = m.slider_mass > 0.0 or _weighs(m.rod)
-    turning = _weighs(m.crank) or m.counterweight.mass > 0.0 or m.counterweight.inertia > 0.0
-    # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
-    torque = bool(m.loads) or moving or (turning and (any(m.gravity) or m.acceleration != 0.0))
-    for key, name in wanted:
-        if name in _INERTIAS and not (moving or turning):
-            raise JobError(
-                f'{key}: it comes from masses; got none; add for example [mechanism] slider = {{ mass = "0.8 kg" }}'
-            )
-        if (name in _TORQUES and not torque) or (name in _FORCES and not (torque or turning)):
-            raise JobError(
-                f"{key}: it comes from masses and loads; got none that matter; add for example "
-                '[mechanism] slider = { mass = "0.8 kg" }, or a [[load]]'
-            )
-
-
-def _weighs(link: Link) -> bool:
-    return isinstance(link, Bar) or link.mass > 0.0 or bool(link.inertia)

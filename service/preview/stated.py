@@ -23,6 +23,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     the machine are left out without it, those that only a search can afford always.
     """
     from ...model.mechanism import Mechanism
+    from ...optimise.causes import undefined_because
     from ...optimise.problem import Objective, Problem
 
     ranges = _ranges(tables.get("variables"))
@@ -38,7 +39,8 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
         offset=ranges["offset"],
         objectives=(Objective(quantity="stroke", sense="minimise"),),
     )
-    constraints = tuple(_constraints(tables.get("constraints"), with_machine=with_machine))
+    found = _constraints(tables.get("constraints"), with_machine=with_machine)
+    constraints = tuple(c for c in found if not undefined_because(problem.quantity(c.quantity), [machine]))
     if not with_machine:
         problem = replace(problem, mechanism=Mechanism(speed=machine.speed, branch=machine.branch))
     return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
