@@ -28,7 +28,8 @@ DIMENSIONS = ("crank", "rod", "offset")
 class Column:
     """A column. key: as in JSON and CSV. title: for people. factor: what one SI unit is in its unit.
 
-    own_unit: whether it was called by the key that carries the unit, so that a plain number is in that unit.
+    own_unit: whether it was called by a key that carries a unit, so that a plain number is in that unit.
+    plain: what such a number is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`.
     """
 
     key: str
@@ -36,21 +37,32 @@ class Column:
     unit: str
     factor: float
     own_unit: bool
+    plain: float = 1.0
 
 
 def find_column(name: str, keys: Collection[str]) -> Column:
     """Return the column that a name means: a key of the table, or a quantity as in job files ("peak_torque").
 
+    A key of any system of units is one of the table: `crank_in` is `crank_mm`.
     Raises `InputError` with the nearest names.
     """
     name = name.strip()
-    key = name if name in keys else _meant(name, keys)
+    metric = metric_key(name)
+    same = name if name in keys else next((key for key in keys if metric_key(key) == metric), None)
+    key = _meant(name, keys) if same is None else same
     plain, unit, factor = split_unit(key)
     slack = key.startswith("slack_")
     title = _titles().get(
         metric_key(key).removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
     )
-    return Column(key, f"slack of {title}" if slack else title, unit, factor, name == key)
+    return Column(
+        key,
+        f"slack of {title}" if slack else title,
+        unit,
+        factor,
+        same is not None,
+        1.0 if same is None else factor / split_unit(name)[2],
+    )
 
 
 @functools.cache

@@ -91,7 +91,7 @@ def _number(text: str, column: Column, value: str) -> float:
             pass
         else:
             if math.isfinite(number):
-                return number
+                return number * column.plain
     try:
         return to_si(value, kind_of(column.unit)) * column.factor
     except InputError as error:

@@ -164,6 +164,23 @@ def test_conditions_name_their_own_unit_whatever_is_shown(run: Path, command: Co
     assert len({len(rows) for rows in numbers}) == 1
 
 
+def test_columns_are_called_as_any_export_writes_them(run: Path, command: Command) -> None:
+    rows = json.loads(command("front", run, "--json").stdout)["designs"]
+    head = command("export", run, "--csv", "-", "--units", "inch").stdout.splitlines()[0].split(",")
+    for key in ("crank_in", "peak_torque_lbf_in", "rod_in"):
+        assert key in head
+        metric = metric_key(key)
+        middle = sorted(row[metric] for row in rows)[len(rows) // 2]
+        bound = middle * key_in(metric, "inch")[1]
+        for units, where in itertools.product(("metric", "inch"), (f"{key} <= {bound!r}", f"{metric} <= {middle!r}")):
+            told = command("front", run, "--json", "--units", units, "--where", where, "--sort", key).stdout
+            found = json.loads(told)["designs"]
+            assert len(found) == sum(row[metric] <= middle * (1.0 + 1e-8) for row in rows)
+    shown = json.loads(command("front", run, "--json", "--columns", "crank_in").stdout)["designs"]
+    assert shown == [{"crank_mm": row["crank_mm"]} for row in rows]
+    assert command("front", run, "--where", "crank_ft >= 1").exit_code == 2
+
+
 def test_a_design_and_its_report_follow(run: Path, command: Command, tmp_path: Path) -> None:
     told = command("front", run, "--knee", "--units", "inch").stdout
     assert re.search(r"crank +[\d.]+ +in *\n", told)
