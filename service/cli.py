@@ -66,7 +66,7 @@ class Commands(TyperGroup):
         except KeyboardInterrupt:
             say("slidercrank: interrupted")
             raise typer.Exit(INTERRUPTED) from None
-        except (BrokenPipeError, typer.Abort):
+        except typer.Abort:
             raise
         except Exception as error:
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
@@ -190,5 +190,5 @@ def _last() -> None:
     """Write what is kept back, while a failure can still be told."""
     try:
         sys.stdout.flush()
-    except (OutputLost, BrokenPipeError):
+    except OutputLost:
         give_up_output()

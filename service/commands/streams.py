@@ -11,21 +11,42 @@ from ...model.errors import OutputLost
 
 
 class Output(io.TextIOWrapper):
-    """Standard output; raises `OutputLost` where it cannot be written, `BrokenPipeError` where nobody reads on."""
+    """Standard output; raises `OutputLost` where it cannot be written.
+
+    Where nobody reads on (`| head -1`), what follows goes nowhere, and the command ends with an exit code of its own.
+    """
+
+    left = False
+    """Whether the reader has left."""
 
     def write(self, text: str) -> int:
         """Write text."""
         try:
             return super().write(text)
         except OSError as error:
-            raise _lost(error) from None
+            self._give_up(error)
+            return len(text)
 
     def flush(self) -> None:
         """Write what is kept back."""
         try:
             super().flush()
         except OSError as error:
-            raise _lost(error) from None
+            self._give_up(error)
+
+    def _give_up(self, error: OSError) -> None:
+        if not isinstance(error, BrokenPipeError):
+            raise OutputLost(
+                f"standard output must take what is written; got: {error.strerror or error}; "
+                "make room, or write elsewhere"
+            ) from None
+        self.left = True
+        give_up_output()
+
+
+def reader_left() -> bool:
+    """Return whether nobody reads standard output on."""
+    return isinstance(sys.stdout, Output) and sys.stdout.left
 
 
 def guard_streams() -> None:
@@ -46,11 +67,3 @@ def guard_streams() -> None:
 def give_up_output() -> None:
     """Send what is still kept back to nowhere: the end of the process would try again, and fail aloud."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _lost(error: OSError) -> Exception:
-    if isinstance(error, BrokenPipeError):
-        return error
-    return OutputLost(
-        f"standard output must take what is written; got: {error.strerror or error}; make room, or write elsewhere"
-    )

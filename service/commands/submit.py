@@ -17,6 +17,7 @@ from .job_names import Name, find_job, store_that_is_there
 from .optimise import EXIT_CODES, Json
 from .screen import console, give, progress_bar, say
 from .stores import Address, open_store, tell_idle
+from .streams import reader_left
 
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
@@ -101,11 +102,13 @@ def _source(job: Path) -> Artefact | None:
 
 
 def _follow(store: Store, job: Job, *, json: bool) -> int:
-    """Write the events of a job until it ends, and return its exit code."""
+    """Write the events of a job until it ends, and return its exit code; 0 as soon as nobody reads on."""
     try:
         with _shown(json) as show:
             for event in events_until_end(store, job.id):
                 show(event)
+                if reader_left():
+                    return EXIT_CODES["done"]
         ended = store.job(job.id)
         if not json:
             _close(store, ended)

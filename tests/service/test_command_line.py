@@ -131,19 +131,6 @@ def test_debugging_shows_the_traceback_of_a_fault(tmp_path: Path) -> None:
     assert "Traceback" in done.stderr
 
 
-def test_a_reader_that_leaves_is_no_fault(tmp_path: Path) -> None:
-    """`slidercrank schema | head -1`."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "slidercrank", "schema"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    assert process.stdout is not None
-    assert process.stderr is not None
-    process.stdout.close()
-    assert b"Traceback" not in process.stderr.read()
-    assert process.wait() != 0
-    process.stderr.close()
-
-
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_a_killed_run_is_marked_unfinished(tmp_path: Path) -> None:
     process = start(SLOW.format(stuck=False), "optimise", fronts.job_file(tmp_path), "--runs", tmp_path / "runs")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -23,8 +24,23 @@ def test_output_that_cannot_be_written_is_one_sentence(command: str) -> None:
     assert done.stderr.count("\n") == 1
 
 
-def test_output_that_nobody_reads_on_is_no_error() -> None:
-    assert run("schema | head -1").stderr == ""
+@pytest.mark.parametrize(
+    ("options", "code", "said"),
+    [([], 0, ""), (["--json"], 0, ""), (["--where", "crank <= 1 mm"], 3, "slidercrank: none of the ")],
+)
+def test_a_reader_that_leaves_changes_neither_exit_code_nor_messages(
+    options: list[str], code: int, said: str, kept: Path
+) -> None:
+    (folder,) = (place for place in kept.iterdir() if place.is_dir())
+    command = [sys.executable, "-m", "slidercrank", "front", str(folder), *options]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    process.stdout.close()  # before anything is written
+    process.stdout = None
+    _, messages = process.communicate()
+    assert process.returncode == code
+    assert messages.startswith(said)
+    assert messages.count("\n") == (1 if said else 0)
 
 
 @pytest.mark.parametrize("errors", ["2> /dev/full", "2>&-"])
