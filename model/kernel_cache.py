@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import time
 import uuid
@@ -11,6 +12,8 @@ from typing import Any
 
 from numba.core import config as _config
 from numba.core.caching import FunctionCache
+
+_log = logging.getLogger(__name__)
 
 _PATIENCE = 120.0  # s; a process that takes longer to compile a kernel is stopped, or gone wrong
 _TICK = 0.05  # s
@@ -27,6 +30,7 @@ class KernelCache(FunctionCache):
             super().__init__(function)  # type: ignore[no-untyped-call]
         finally:
             config.CACHE_DIR = before
+        self._told = folder / "told"
         self._path = Path(self._cache_file._cache_path) / f"{self._impl.filename_base}.lock"
         self._lock: int | None = None
         # Two processes that keep a kernel at the same time would give two signatures the same file.
@@ -43,6 +47,8 @@ class KernelCache(FunctionCache):
             found = self._load(sig, target_context)
             if found is not None:
                 self._end()
+            else:
+                self._tell()
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -60,6 +66,12 @@ class KernelCache(FunctionCache):
             with contextlib.suppress(OSError):
                 self.flush()  # type: ignore[no-untyped-call]
             return None
+
+    def _tell(self) -> None:
+        """Say that the model is compiled: once for a folder of kernels, before the first of them."""
+        with contextlib.suppress(OSError):  # told before
+            os.close(os.open(self._told, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
+            _log.warning("slidercrank compiles the model, once after installation: about a minute")
 
     def _begin(self) -> None:
         """Take the lock of this function's kernels."""

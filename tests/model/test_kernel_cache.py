@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 SOURCE = """
 import sys, time
@@ -31,11 +32,15 @@ print(sum(kernel(float(x)) for x in range(3)), sum(kernel.stats.cache_misses.val
 """
 
 
-def test_a_kernel_that_several_processes_need_is_compiled_once(tmp_path: Path) -> None:
+def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(SOURCE)
     command = [sys.executable, str(tmp_path / "program.py"), str(tmp_path)]
-    running = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
-    said = [process.communicate()[0].split() for process in running]
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    running = [subprocess.Popen(command, **pipes) for _ in range(4)]
+    outputs = [process.communicate() for process in running]
+    said = [output.split() for output, _ in outputs]
+    told = "".join(messages for _, messages in outputs)
+    assert told == "slidercrank compiles the model, once after installation: about a minute\n"
     assert [process.returncode for process in running] == [0] * 4
     assert {value for value, _ in said} == {"6.0"}
     assert sum(int(missed) for _, missed in said) == 1
