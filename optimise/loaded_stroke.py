@@ -1,4 +1,4 @@
-"""Warnings of a loaded stroke that is the fast one, before a search and after it."""
+"""Warnings of a loaded stroke that is the fast one, and of offsets that a slow stroke leaves out, before and after."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _SHEETS = 20
 
 
 def expected_warnings(problem: Problem) -> list[str]:
-    """Return the warning of a problem, if designs within its ranges have their loaded stroke as the fast one.
+    """Return the warnings of a problem: loaded strokes that are fast within its ranges, and offsets that are left out.
 
-    No warning where the problem says which stroke is to be the slow one.
+    The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
     """
     fast, turning, sides = 0, 0, []
     for index, sheet in enumerate(sheets(problem)[:_SHEETS]):
@@ -44,23 +44,42 @@ def expected_warnings(problem: Problem) -> list[str]:
         fast, turning = fast + int(found.sum()), turning + int(((slow != "equal") & (loaded != "equal")).sum())
         sides += [str(stroke) for stroke in loaded[found]]
     if not fast:
-        return []
+        return _left_out(problem)
     where = "in every design" if fast == turning else "in a part of the designs"
-    return [_sentence(problem, where, sides)]
+    return [*_left_out(problem), _sentence(problem, where, sides)]
 
 
 def front_warnings(front: ParetoFront) -> list[str]:
-    """Return the warning of a front, if designs of it have their loaded stroke as the fast one."""
+    """Return the warnings of a front: loaded strokes of its designs that are fast, and offsets that were left out."""
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
     slow, loaded = (front.designs[name].to_numpy(dtype=str) for name in ("slow_stroke", "loaded_stroke"))
     found = free & _fast(slow, loaded)
     if not found.any():
-        return []
+        return _left_out(front.problem)
     count = int(found.sum())
     where = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
-    return [_sentence(front.problem, where, [str(stroke) for stroke in loaded[found]])]
+    return [*_left_out(front.problem), _sentence(front.problem, where, [str(stroke) for stroke in loaded[found]])]
+
+
+def _left_out(problem: Problem) -> list[str]:
+    """Return the warning of a slow stroke that leaves the lesser part of a range of offsets."""
+    for part in problem.parts():
+        side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
+        if side is None or not lower < 0.0 < upper:
+            continue
+        low, high = (0.0, upper) if side > 0.0 else (lower, 0.0)
+        if high - low < 0.5 * (upper - lower):
+            turning, other = "counter-clockwise", "clockwise"
+            if part.mechanism.direction < 0.0:
+                turning, other = other, turning
+            return [
+                f'slow_stroke = "{part.slow_stroke}" leaves only offsets from {1e3 * low:.6g} to {1e3 * high:.6g} mm '
+                f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, as the crank turns {turning}; "
+                f"if the others are meant, let it turn {other}"
+            ]
+    return []
 
 
 def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> NDArray[np.bool_]:

@@ -235,3 +235,30 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_before_and_after_the_search()
 )
 def test_nothing_is_warned_of_where_the_slow_stroke_is_the_loaded_one_or_meant(changes: dict[str, Any]) -> None:
     assert expected_warnings(parse_job(job(**changes))) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "ends", "remedy"),
+    [
+        ({"variables": {"offset": ["-1 mm", "200 mm"]}, "constraints": {"slow_stroke": "outward"}}, "-1 to 0 mm", True),
+        ({"variables": {"offset": ["-200 mm", "1 mm"]}, "constraints": {"slow_stroke": "inward"}}, "0 to 1 mm", True),
+        ({"variables": {"offset": ["-1 mm", "200 mm"]}, "constraints": {"slow_stroke": "inward"}}, "", False),
+        ({"constraints": {"slow_stroke": "inward"}}, "", False),
+    ],
+)
+def test_a_slow_stroke_that_leaves_the_lesser_part_of_the_offsets_is_warned_of(
+    changes: dict[str, Any], ends: str, remedy: bool
+) -> None:
+    problem = parse_job(job(**changes))
+    warnings = expected_warnings(problem)
+    assert len(warnings) == remedy
+    if not remedy:
+        return
+    assert f"leaves only offsets from {ends} of the range" in warnings[0]
+    assert "let it turn clockwise" in warnings[0]
+    other = deepcopy(changes) | {"mechanism": {"speed": "-120 rpm"}}
+    assert expected_warnings(parse_job(job(**other))) == []
+    front = solve(problem)
+    assert front_warnings(front) == (warnings if len(front) else [])
+    sizes = [float(end) * 1e-3 for end in ends.removesuffix(" mm").split(" to ")]
+    assert ((front.dimensions[:, 2] >= sizes[0]) & (front.dimensions[:, 2] <= sizes[1])).all()
