@@ -71,7 +71,7 @@ class KernelCache(FunctionCache):
         """Say that the model is compiled: once for a folder of kernels, before the first of them."""
         with contextlib.suppress(OSError):  # told before
             os.close(os.open(self._told, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
-            _log.warning("slidercrank compiles the model, once after installation: about a minute")
+            _log.warning("slidercrank compiles its formulas, once after installation: up to a minute")
 
     def _begin(self) -> None:
         """Take the lock of this function's kernels."""

@@ -40,7 +40,7 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(tmp_path
     outputs = [process.communicate() for process in running]
     said = [output.split() for output, _ in outputs]
     told = "".join(messages for _, messages in outputs)
-    assert told == "slidercrank compiles the model, once after installation: about a minute\n"
+    assert told == "slidercrank compiles its formulas, once after installation: up to a minute\n"
     assert [process.returncode for process in running] == [0] * 4
     assert {value for value, _ in said} == {"6.0"}
     assert sum(int(missed) for _, missed in said) == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +53,7 @@ def simulated_turn(machine: Mechanism, design: Array, running: SteadyRunning) ->
     state, least = np.array([0.5 * fastest**2, 0.0]), math.inf
     for low, high in itertools.pairwise(ends):
         angles = np.linspace(low, high, 40_001)
-        tolerances = {"rtol": 1e-11, "atol": 1e-14 * fastest**2}
+        tolerances: Any = {"rtol": 1e-11, "atol": 1e-14 * fastest**2}
         found = solve_ivp(rates, (low, high), state, "DOP853", angles, **tolerances)
         state, least = found.y[:, -1], min(least, float(found.y[0].min()))
     return float(state[1]), math.sqrt(2.0 * least), math.sqrt(2.0 * float(state[0]))
@@ -71,7 +72,7 @@ def matches(machine: Mechanism, design: Array, running: SteadyRunning) -> None:
 
 def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above_a_fluctuation_of_two() -> None:
     rng = np.random.default_rng(20)
-    found = []
+    found: list[float] = []
     while len(found) < 6:
         machine, design = random_machine(rng)
         least, greatest = Runner(machine, Linkage(*design)).speeds(0.0)
