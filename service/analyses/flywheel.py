@@ -68,7 +68,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     if bare is None:
         without = "no steady running was found"
     elif slowest:
-        without = f"it is {bare:.4g}, down to {slowest:.4g} rpm"
+        without = f"it is {bare:.4g} (least speed {slowest:.4g} rpm)"
     else:
         without = f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
     console.print(
