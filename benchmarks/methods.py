@@ -21,11 +21,11 @@ from pymoo.util.ref_dirs import get_reference_directions
 
 from slidercrank.optimise.elimination import sheets
 from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.front import Progress
 from slidercrank.optimise.hypervolume import choose, hypervolume, nondominated, scaling
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.registry import METHODS
 from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.solve import solve
 
 from .machines import Array

@@ -157,7 +157,7 @@ def _judge_rounds(verdict: Verdict, number: int, events: Sequence[Event], noted:
             if again > 1:
                 verdict.violate("rounds amiss", f"job {number}: claim {note.fence} begins {again} rounds back")
         latest[note.fence] = note.number
-    rounds = [event.data["round"] for event in events if event.kind == "progress"]
+    rounds = [event.data["round"] for event in events if event.kind == "progress" and not event.data["steps"]]
     if rounds != list(range(1, len(rounds) + 1)):
         verdict.violate("rounds amiss", f"job {number}: its events tell of rounds {rounds}")
 

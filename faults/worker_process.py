@@ -35,7 +35,8 @@ def _note(journal: Journal, pause: float) -> None:
     chance = random.Random()
 
     def slow_tell(claim: Claim, progress: Any, *front: Any) -> None:
-        journal.note("evaluated", claim.job.id, claim.job.fence, progress.round)
+        if not progress.steps:
+            journal.note("evaluated", claim.job.id, claim.job.fence, progress.round)
         time.sleep(chance.uniform(0.0, pause))
         tell(claim, progress, *front)
 

@@ -18,40 +18,13 @@ from .hypervolume import scaling
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .pile import STATIONARY
 from .problem import Constraint, Objective, Problem
+from .progress import Progress
 from .stationarity import multipliers
 
 Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
 _LEAST = 1e-4  # of a range: a step that is worth telling
 Status = Literal["done", "cancelled", "infeasible"]
-REPEATING = "repeating rounds"
-"""Stage of a search that goes on: its rounds are those of the earlier run, without evaluating anything."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """Where a search stands after one of its rounds, or in a long stage between two.
-
-    round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
-    hypervolume: what those dominate; it never falls. While the search goes on it is told in boxes that the first
-    feasible designs span, and may exceed 1; in the history of a front, as a share of the box of that front. Not
-    comparable between runs. step, steps: how far the stage is, 0 of 0 at the end of a round.
-    """
-
-    stage: str
-    round: int
-    rounds: int
-    evaluations: int
-    feasible: int
-    hypervolume: float
-    seconds: float
-    step: int = 0
-    steps: int = 0
-
-    @property
-    def repeats(self) -> bool:
-        """Whether the search only repeats what an earlier run of it did."""
-        return self.stage == REPEATING
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -66,7 +66,8 @@ class Counts(Protocol):
 class Ledger:
     """The steps of one search: first those of an earlier run, then those that are computed now, which it keeps.
 
-    told: rounds told so far. before: those that the earlier run told.
+    told: rounds told so far. before: those that the earlier run told. repeated: records of the earlier run that are
+    gone through, of `resumed`. ended: when the search was first told to end, by `time.perf_counter`; else None.
 
     In `Record.words` a step is two words of digest, the evaluations that it took, and the number of its arrays; then
     of each array its kind (0 for floats, 1 for integers), its dimensions' number and sizes, and its numbers.
@@ -89,7 +90,9 @@ class Ledger:
         self._keep = keep
         self._identity = identity() if identity is not None and (keep is not None or past) else None
         _require_own(past, self._identity)
-        self._past = _steps(past)
+        self.repeated, self.resumed = 0, len(past)
+        self.ended: float | None = None
+        self._past = _steps(self._gone_through(past))
         self._next = next(self._past, None)
         self.before = past[-1].told if past else 0
         self._number = len(past)
@@ -111,12 +114,13 @@ class Ledger:
 
     def poll(self) -> None:
         """Raise `Cancelled` if the search is to end. To be called wherever it computes, every second or sooner."""
-        if self._cancelled is not None and self._next is None and self._cancelled():
-            raise Cancelled
+        if self._next is None:
+            self.interrupt()
 
     def interrupt(self) -> None:
         """Raise `Cancelled` if the search is to end, also while it replays; for what may never end by itself."""
         if self._cancelled is not None and self._cancelled():
+            self.ended = time.perf_counter() if self.ended is None else self.ended
             raise Cancelled
 
     def close(self) -> None:
@@ -153,6 +157,12 @@ class Ledger:
         self._flush()
         return self.told > self.before
 
+    def _gone_through(self, past: Sequence[Record]) -> Iterator[Record]:
+        """Yield records, and count those whose steps have all been taken."""
+        for record in past:
+            yield record
+            self.repeated += 1
+
     def _flush(self) -> None:
         if self._keep is not None and self._pending and self._identity is not None:
             words, self._pending = np.concatenate(self._pending), []
@@ -186,7 +196,7 @@ def _words(step: _Step) -> Words:
     return np.concatenate(parts)
 
 
-def _steps(past: Sequence[Record]) -> Iterator[_Step]:
+def _steps(past: Iterable[Record]) -> Iterator[_Step]:
     for record in past:
         words, at = record.words, 0
         try:

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evaluation import FEASIBLE, Evaluator
-from .front import REPEATING, Progress
 from .growth import Growth
 from .hypervolume import Stand, nondominated
 from .ledger import Ledger
 from .problem import Problem
+from .progress import REPEATING, Progress
 from .sampling import around, first_samples, generator, stacked
 from .stationarity import Array
 
@@ -171,12 +171,12 @@ class Run:
 
         return stand
 
-    def stand(self, stage: str, done: int, of: int) -> None:
-        """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told."""
-        if self.stages is None or time.monotonic() - self._heard < TELL:
+    def stand(self, stage: str, done: int, of: int, *, now: bool = False) -> None:
+        """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told, or now."""
+        if self.stages is None or (time.monotonic() - self._heard < TELL and not now):
             return
         if self.ledger.told < self.ledger.before or self.ledger.replaying:
-            stage, done, of = REPEATING, self.ledger.told, self.ledger.before
+            stage, done, of = REPEATING, self.ledger.repeated, self.ledger.resumed
         last = self.told[-1] if self.told else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
         self._say(replace(last, stage=stage, seconds=self.ledger.seconds, step=done, steps=max(done, of)), self.stages)
 

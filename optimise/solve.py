@@ -17,7 +17,7 @@ from .elimination import Sheet, sheets
 from .engine.engine import Engine
 from .enumeration import enumerate_settled, searched
 from .evaluation import Evaluator
-from .front import ParetoFront, Progress
+from .front import ParetoFront
 from .gradients import require_gradients, without_gradient
 from .identity import identity_of
 from .infeasibility import diagnose
@@ -25,6 +25,7 @@ from .ledger import Cancelled, Ledger, Record
 from .methods.registry import require_eliminated, require_fit, search_of
 from .mirror import once
 from .problem import Problem
+from .progress import REPEATING, Progress
 from .search import Archive, Callback, Run, zoom
 from .so_far import so_far
 from .stationarity import Array
@@ -70,11 +71,13 @@ def solve(
                 progress(entry)
 
         run.progress = told
+    if resume:
+        run.stand(REPEATING, 0, 1, now=True)
     try:
-        with interrupted_by(ledger.interrupt):
+        with interrupted_by(ledger.interrupt) as interruption:
             return _searched(problem, evaluators, run)
     except Cancelled:
-        return so_far(problem, evaluators, run)
+        return so_far(problem, evaluators, run, silent=interruption.killed)
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:

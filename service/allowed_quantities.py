@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import contextlib
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..model.errors import JobError
 
 if TYPE_CHECKING:
+    from ..optimise.engine.engine import Engine
     from ..optimise.problem import Problem
 
 LONGEST_CALL = 300.0
@@ -39,3 +41,20 @@ def bounded(problem: Problem, seconds: float) -> Problem:
     return (
         replace(problem, own=tuple(bounded(quantity, seconds) for quantity in problem.own)) if problem.own else problem
     )
+
+
+@contextlib.contextmanager
+def ending_own(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
+    """End the processes of a problem's own functions on leaving: they idle, or worse, until the problem is forgotten.
+
+    engine: where they may have been called, too; it ends its processes, and starts others when it is next needed.
+    """
+    from ..objectives.own.quantity import close_own, runs_own
+
+    try:
+        yield
+    finally:
+        for quantity in problem.own:
+            close_own(quantity)
+        if engine is not None and any(map(runs_own, problem.own)):
+            engine.close()

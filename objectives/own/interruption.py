@@ -5,26 +5,54 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
+from dataclasses import dataclass
 
 Poll = Callable[[], None]
-_POLL: ContextVar[Poll | None] = ContextVar("poll", default=None)
+FAREWELL = 0.5
+"""s that a call which is to end may still take: a process that answers is kept."""
+
+
+@dataclass
+class Interruption:
+    """What may end calls. farewell: time that they still have then, s. killed: whether one did not end in that time."""
+
+    poll: Poll
+    farewell: float = FAREWELL
+    killed: bool = False
+
+
+_CURRENT: ContextVar[Interruption | None] = ContextVar("interruption", default=None)
 
 
 @contextlib.contextmanager
-def interrupted_by(poll: Poll) -> Iterator[None]:
+def interrupted_by(poll: Poll, *, farewell: float = FAREWELL) -> Iterator[Interruption]:
     """While entered, let `poll` be called several times a second during every call that this thread waits for.
 
     A search cannot hand its own question down: quantities are evaluated in a hundred places that know of no search.
     """
-    token = _POLL.set(poll)
+    interruption = Interruption(poll, farewell)
+    token = _CURRENT.set(interruption)
     try:
-        yield
+        yield interruption
     finally:
-        _POLL.reset(token)
+        _CURRENT.reset(token)
 
 
 def ask() -> None:
     """Raise whatever ends the call under way, if anything does."""
-    poll = _POLL.get()
-    if poll is not None:
-        poll()
+    interruption = _CURRENT.get()
+    if interruption is not None:
+        interruption.poll()
+
+
+def farewell() -> float:
+    """Return how long a call that is to end may still take, s."""
+    interruption = _CURRENT.get()
+    return FAREWELL if interruption is None else interruption.farewell
+
+
+def killed() -> None:
+    """Take note that a call did not end in the time that it still had."""
+    interruption = _CURRENT.get()
+    if interruption is not None:
+        interruption.killed = True

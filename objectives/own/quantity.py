@@ -130,6 +130,12 @@ class OwnQuantity:
             gradients[rows, :count] = part.gradients
         return Pieces(values, gradients, labels)
 
+    def close(self) -> None:
+        """End the function's process, if it has one; the next call starts another."""
+        call, self._session.call = self._session.call, None
+        if isinstance(call, Worker):
+            call.close()
+
     # ---- how it is asked ------------------------------------------------------------------------------------------
 
     def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
@@ -265,6 +271,15 @@ def bounded(quantity: Quantity, longest: float) -> Quantity:
         return replace(quantity, longest=longest)
     inner = getattr(quantity, "inner", None)
     return quantity if inner is None else replace(cast(Any, quantity), inner=bounded(inner, longest))
+
+
+def close_own(quantity: Quantity) -> None:
+    """End the processes of own functions that a quantity, or one that it is made of, has started."""
+    if isinstance(quantity, OwnQuantity):
+        quantity.close()
+    inner = getattr(quantity, "inner", None)
+    if inner is not None:
+        close_own(inner)
 
 
 def runs_own(quantity: Quantity) -> bool:

@@ -26,12 +26,11 @@ import numpy as np
 from ...model.mechanism import Mechanism
 from .apply import Answer, Array, Refused
 from .child import HEAD, unpacked
-from .interruption import ask
+from .interruption import ask, farewell, killed
 
 _START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit after which the process is ended from here
 _TICK = 0.1  # s between two questions whether the call is to end
-_FAREWELL = 0.5  # s that a call which is to end may still take: a process that answers is kept
 _ENDING = 5.0  # s that a process without an output has to end
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
 _CHILD = (sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()")
@@ -66,6 +65,7 @@ class Worker:
             if self._process is not None and self._owner != os.getpid():
                 self._forget()
             if self._process is None:
+                ask()
                 self._start()
             machine = None if mechanism is self._mechanism else mechanism
             self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
@@ -139,9 +139,10 @@ class Worker:
                     self._end()
         except BaseException:
             try:
-                kind, _ = self._messages.get(timeout=_FAREWELL)
+                kind, _ = self._messages.get(timeout=farewell())
             except queue.Empty:
                 kind = b""
+                killed()
             if kind not in (b"A", b"R"):
                 self.close()
             raise

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, cast
 
 from ...model.errors import EngineError, InputError
-from ...objectives.own.interruption import ask
+from ...objectives.own.interruption import ask, farewell, killed
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3
@@ -21,7 +21,6 @@ MOST_BREAKS = 3
 _STARTS = 8  # in a row that may fail
 _START = 3.0  # s, that it takes about to start them and to load what is compiled
 _TICK = 0.1  # s, between two questions whether to stop
-_FAREWELL = 0.5  # s that work under way may still take then; processes that have finished it are kept
 
 
 class Processes:
@@ -109,7 +108,8 @@ class Processes:
         except BaseException:
             for future in running:
                 future.cancel()
-            if wait([future for future in running if future.running()], timeout=_FAREWELL).not_done:
+            if wait([future for future in running if future.running()], timeout=farewell()).not_done:
+                killed()
                 self._abandon()
             raise
 

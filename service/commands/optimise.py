@@ -26,8 +26,9 @@ from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
-    from ...optimise.front import ParetoFront, Progress
+    from ...optimise.front import ParetoFront
     from ...optimise.problem import Problem
+    from ...optimise.progress import Progress
     from ..store import Claim, Store
 
 NOTHING_FEASIBLE, INTERRUPTED = 3, 130

@@ -13,7 +13,7 @@ from ..standing import standing
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.front import Progress
+    from ...optimise.progress import Progress
 
 
 def console() -> Console:

@@ -24,8 +24,8 @@ from .schema import designs, jobs, records, workers
 from .submitting import put_files
 
 if TYPE_CHECKING:
-    from ...optimise.front import Progress
     from ...optimise.ledger import Record
+    from ...optimise.progress import Progress
 
 _log = logging.getLogger(__name__)
 _TOLD = 1.0  # s after which it is told that a write has to wait
@@ -81,12 +81,12 @@ class Claim:
             self._kept.append(record)
 
     def tell(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
-        """Write where the search stands, together with the records kept since. To repeat rounds is not to have begun.
+        """Write where the search stands, together with the records kept since. To load or repeat is not to have begun.
 
         front: some designs of the front so far, as JSON has them. Only the latest is kept, with the job: events that
         each carried one would make a store of many runs grow.
         """
-        self.begun = self.begun or not progress.repeats
+        self.begun = self.begun or not progress.prepares
         data = finite(asdict(progress))
         standing = data if front is None else {**data, "front": finite(front)}
         self._write({"progress": text_of(standing)}, [("progress", data)])

@@ -10,12 +10,12 @@ import socket
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
-from ..allowed_quantities import LONGEST_CALL, bounded, require_allowed
+from ..allowed_quantities import LONGEST_CALL, bounded, ending_own, require_allowed
 from ..disk_room import full_places, is_full
 from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
@@ -28,13 +28,15 @@ from .so_far import front_so_far
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
-    from ...optimise.front import ParetoFront, Progress
+    from ...optimise.front import ParetoFront
     from ...optimise.ledger import Record
+    from ...optimise.progress import Progress
     from ...optimise.stationarity import Array
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
 _FULL = 10.0  # s until a job is tried again that found a disk full
+_PARTS = 2  # that are loaded before a search: what it computes with, then the job with its records
 _PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 
@@ -206,9 +208,11 @@ def _stumble(claim: Claim, error: Exception) -> None:
 def _solve(
     store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, pulse: Pulse, stop: Stop
 ) -> None:
+    _load(claim, 0)
     from ...optimise.job import parse_job
     from ...optimise.solve import solve
 
+    _load(claim, 1)
     tables = store.tables(claim.job.id)
     require_allowed(tables, terms.allowed_quantities)
     problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
@@ -230,16 +234,27 @@ def _solve(
         heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
         return heard(cancelled=over, resume=past, keep=claim.keep, engine=engine)
 
-    try:
-        front = search(claim.records())
-    except ForeignRecords as error:  # of an earlier release, or another kind of machine
-        claim.start_over(f"begins anew: {error}")
-        front = search([])
-    result = result_of(front, claim.job.run)
+    with ending_own(problem, engine):
+        try:
+            front = search(claim.records())
+        except ForeignRecords as error:  # of an earlier release, or another kind of machine
+            claim.start_over(f"begins anew: {error}")
+            front = search([])
+        result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)
     claim.finish(result, [versions_file(front.versions)])
     _log.info("%s: %s", result.status, result.message)
+
+
+def _load(claim: Claim, parts: int) -> None:
+    """Tell how much of what a search needs is loaded, beside the numbers and the front that the job had before."""
+    from ...optimise.progress import LOADING, Progress
+
+    known = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
+    front = known.pop("front", None)
+    last = Progress(**{**asdict(Progress(LOADING, 0, 0, 0, 0, 0.0, 0.0)), **known})
+    claim.tell(replace(last, stage=LOADING, step=parts, steps=_PARTS), front)
 
 
 def versions_file(versions: Mapping[str, str]) -> Artefact:

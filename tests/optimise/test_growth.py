@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front import Progress
 from slidercrank.optimise.growth import Growth
 from slidercrank.optimise.hypervolume import REFERENCE, nondominated
 from slidercrank.optimise.ledger import Record
 from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.search import Archive, Run
 from slidercrank.optimise.solve import solve
 

@@ -12,12 +12,13 @@ import pytest
 
 from slidercrank.model.errors import ForeignRecords
 from slidercrank.optimise import identity, ledger
-from slidercrank.optimise.front import ParetoFront, Progress
+from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.identity import identity_of
 from slidercrank.optimise.ledger import Cancelled, Identity, Ledger, Numbers, Record
 from slidercrank.optimise.methods import starts
 from slidercrank.optimise.methods.registry import METHODS, NAMES
 from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.robust import Robust, robust
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, shipped

@@ -14,8 +14,8 @@ from slidercrank.model.links import Bar
 from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import Progress
 from slidercrank.optimise.problem import Sense
+from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.solve import solve
 
 from .problems import MACHINE, RUNS, Bounds, degrees, problem, shipped_front

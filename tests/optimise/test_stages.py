@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise import ledger, search
-from slidercrank.optimise.front import REPEATING, ParetoFront, Progress
+from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.hypervolume import choose
 from slidercrank.optimise.ledger import Record
+from slidercrank.optimise.progress import REPEATING, Progress
 from slidercrank.optimise.solve import solve
 
 from .problems import Bounds, degrees, problem
@@ -52,14 +53,25 @@ def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_
 
 def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
     _, _, kept = searched()
-    rounds = kept[len(kept) // 2].told
+    past = kept[: len(kept) // 2 + 1]
+    rounds = past[-1].told
     assert rounds > 2
-    _, told, _ = searched(resume=kept[: len(kept) // 2 + 1])
+    _, told, _ = searched(resume=past)
     repeated = [entry for entry in told if entry.stage == REPEATING]
     assert told[: len(repeated)] == repeated
-    assert {entry.steps for entry in repeated} == {rounds}
-    assert sorted({entry.step for entry in repeated})[-2:] in ([rounds - 2, rounds - 1], [rounds - 1, rounds])
+    assert {entry.steps for entry in repeated} == {len(past)}
+    steps = [entry.step for entry in repeated]
+    assert steps == sorted(steps)
+    assert steps[0] == 0
+    assert steps[-1] > len(past) // 2
     assert next(entry for entry in told if not entry.steps).round == rounds + 1
+
+
+def test_a_search_that_goes_on_tells_so_before_it_computes_anything(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "TELL", 3600.0)
+    _, _, kept = searched()
+    _, told, _ = searched(resume=kept)
+    assert (told[0].stage, told[0].step, told[0].steps) == (REPEATING, 0, len(kept))
 
 
 def test_what_is_told_changes_nothing() -> None:

@@ -14,8 +14,9 @@ from slidercrank.model.loads import StrokeForce
 from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import ParetoFront, Progress
+from slidercrank.optimise.front import ParetoFront
 from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Sense
+from slidercrank.optimise.progress import Progress
 
 FOUR = ("time_ratio", "peak_torque", "transmission_angle", "position_error")
 _SENSES: dict[str, Sense] = {"time_ratio": "maximise", "transmission_angle": "maximise"}

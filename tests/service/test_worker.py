@@ -46,6 +46,12 @@ def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
     return lambda search: monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
 
 
+def rounds(store: Store, job: int) -> list[int]:
+    """Return the rounds that were told of a job."""
+    told = [event.data for event in store.events(job) if event.kind == "progress"]
+    return [data["round"] for data in told if not data["steps"]]
+
+
 def test_a_worker_solves_what_waits_and_writes_what_it_found(store: Store, searches: Any) -> None:
     searches(search)
     jobs = [submit(store, TABLES), submit(store, TABLES, priority=1)]
@@ -55,8 +61,8 @@ def test_a_worker_solves_what_waits_and_writes_what_it_found(store: Store, searc
         assert store.result(job.id).designs[0]["crank_mm"] == 140.0
         assert store.result(job.id).knee == 0
         assert store.artefact(job.id, "versions.json").content == b'{\n  "slidercrank": "0"\n}\n'
-        kinds = [event.data.get("state", event.kind) for event in store.events(job.id)]
-        assert kinds == ["queued", "running", "progress", "progress", "progress", "done"]
+        kinds = [event.data.get("state") or event.data["stage"] for event in store.events(job.id)]
+        assert kinds == ["queued", "running", "loading", "loading", "evolving", "evolving", "evolving", "done"]
     assert store.workers() == []
 
 
@@ -119,6 +125,30 @@ def test_an_error_that_stays_sets_the_job_aside(store: Store, searches: Any, mon
     assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "RuntimeError: no way (attempt 3 of 3)")
 
 
+def test_a_job_that_goes_on_tells_at_once_that_it_loads_beside_what_it_had(store: Store, searches: Any) -> None:
+    job = submit(store, TABLES)
+    first = store.claim("first")
+    assert first is not None
+    first.keep(search_record(0))
+    first.tell(at_round(1), {"columns": ["time_ratio"], "points": [[1.5]]})
+    first.hand_back("")
+    shown: list[Any] = []
+
+    def loaded(problem: Problem, **more: Any) -> ParetoFront:
+        shown.append(store.job(job.id).progress)
+        return search(problem, **more)
+
+    searches(loaded)
+    work(store, drain=True)
+    (standing,) = shown
+    assert (standing["stage"], standing["round"], standing["evaluations"]) == ("loading", 1, at_round(1).evaluations)
+    assert 0 < standing["step"] < standing["steps"]
+    assert standing["front"]["points"] == [[1.5]]
+    events = store.events(job.id)
+    again = max(index for index, event in enumerate(events) if event.data.get("state") == "running")
+    assert (events[again + 1].data["stage"], events[again + 1].data["step"]) == ("loading", 0)
+
+
 def test_a_job_with_records_of_another_release_begins_anew(
     store: Store, searches: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -145,8 +175,7 @@ def test_a_job_with_records_of_another_release_begins_anew(
     assert store.job(job.id).state == "done"
     told = [event.data["text"] for event in store.events(job.id) if event.kind == "message"]
     assert any(text.startswith("begins anew: a run goes on only with the versions") for text in told)
-    rounds = [event.data["round"] for event in store.events(job.id) if event.kind == "progress"]
-    assert rounds == [1, 1, 2, 3]
+    assert rounds(store, job.id) == [1, 1, 2, 3]
 
 
 def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> None:
@@ -260,7 +289,7 @@ def test_a_worker_that_wakes_after_its_lease_leaves_the_job_to_the_next(
     searches(search)
     solve_claimed(store, second[0], lambda: False)
     assert store.job(job.id).state == "done"
-    assert [event.data["round"] for event in store.events(job.id) if event.kind == "progress"] == [1, 2, 3]
+    assert rounds(store, job.id) == [1, 2, 3]
 
 
 def test_a_paused_search_learns_between_its_writes_that_its_lease_was_lost(

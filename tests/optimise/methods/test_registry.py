@@ -13,9 +13,9 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.elimination import sheets
 from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.front import Progress
 from slidercrank.optimise.methods.registry import METHODS, NAMES, budget
 from slidercrank.optimise.problem import Problem, Settings
+from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.search import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
