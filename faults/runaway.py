@@ -35,12 +35,16 @@ LOOPS = {
     "catches all": "while True:\n        try: sum(range(99))\n        except BaseException: pass",
 }
 _FUNCTION = """
+import os
+import pathlib
+
 calls = 0
 
 def judge(designs):
     global calls
     calls += 1
     if calls > {after}:
+        pathlib.Path(f"{{__file__}}.{{os.getpid()}}").touch()
         loop()
     return designs.crank
 
@@ -72,8 +76,11 @@ limit = "1e5 s"
 _WHEN = {"before": 0, "after": 12}
 
 
-def runaway(count: int, seed: int) -> Verdict:
-    """Let functions loop in a service and on the command line, `count` rounds of all; return what came of it."""
+def runaway(count: int, seed: int, *, short: bool = False) -> Verdict:
+    """Let functions loop in a service and on the command line, `count` rounds of all; return what came of it.
+
+    short: of each kind of end but one, in a service that is ended by SIGTERM.
+    """
     chance, verdict = random.Random(seed), Verdict()
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         folder = Path(name)
@@ -85,6 +92,9 @@ def runaway(count: int, seed: int) -> Verdict:
             kinds = list(range(len(LOOPS)))
             chance.shuffle(kinds)
             each = cycle(kinds)
+            if short:
+                _in_a_service(verdict, folder, each, ends=(signal.SIGTERM,), short=True)
+                continue
             _in_a_service(verdict, folder, each)
             for when in _WHEN:
                 for blow in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
@@ -96,19 +106,27 @@ def _tables(function: str) -> Mapping[str, Any]:
     return tomllib.loads(_JOB.replace("FUNCTION", function))
 
 
-def _in_a_service(verdict: Verdict, folder: Path, kinds: cycle[int]) -> None:
+def _in_a_service(
+    verdict: Verdict,
+    folder: Path,
+    kinds: cycle[int],
+    *,
+    ends: tuple[signal.Signals, ...] = (signal.SIGTERM, signal.SIGKILL),
+    short: bool = False,
+) -> None:
     allowed = [f"loops_{number}_{when}:judge" for number in range(len(LOOPS)) for when in _WHEN]
     options = [word for function in allowed for word in ("--allow-quantity", function)]
     options += ["--lease", "2", "--grace", "1"]
-    for end in (signal.SIGTERM, signal.SIGKILL):
+    for end in ends:
         with Serving(str(folder / f"{end.name}.db"), *options, folder=str(folder)) as serving:
             serving.until_ready()
-            for when in _WHEN:
-                _cancelled(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
-                _out_of_time(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
-                _worker_killed(verdict, serving, f"loops_{next(kinds)}_{when}:judge", when)
+            for when in ("after",) if short else _WHEN:
+                _cancelled(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
+                if not short:
+                    _out_of_time(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
+                _worker_killed(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
             function = f"loops_{next(kinds)}_after:judge"
-            _under_way(verdict, serving, function, "after")
+            _under_way(verdict, serving, folder, function, "after")
             serving.stop_watching()
             serving.process.send_signal(end)
             # Its workers have their grace, which is a second, and five more to end.
@@ -117,46 +135,42 @@ def _in_a_service(verdict: Verdict, folder: Path, kinds: cycle[int]) -> None:
         left_over(verdict, serving, within=10.0)
 
 
-def _under_way(verdict: Verdict, serving: Serving, function: str, when: str, **limits: float) -> int:
+def _under_way(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str, **limits: float) -> int:
     """Return the number of a job whose function has come to its loop."""
     verdict.jobs += 1
     number = serving.submit(_tables(function), **limits)
-    if not serving.until(lambda: _loops(serving, number, when), 120.0):
+    if not serving.until(lambda: _loops(serving, folder, number, when), 120.0):
         verdict.violate("lost", f"{function}: it does not loop: {serving.job(number)}")
     return number
 
 
-def _loops(serving: Serving, number: int, when: str) -> bool:
-    functions = serving.functions()
-    return bool(functions) and (when == "before" or serving.job(number)["records"] > 2) and _busy(functions)
+def _loops(serving: Serving, folder: Path, number: int, when: str) -> bool:
+    return (when == "before" or serving.job(number)["records"] > 2) and _looping(folder, serving.functions())
 
 
-def _busy(functions: list[psutil.Process]) -> bool:
-    """Whether functions are past their imports, by the time that they have taken."""
-    try:
-        return any(time.time() - process.create_time() > 8.0 for process in functions)
-    except psutil.NoSuchProcess:
-        return False
+def _looping(folder: Path, functions: list[psutil.Process]) -> bool:
+    """Whether one of these processes has come to its loop: it leaves a file with its number."""
+    return any(list(folder.glob(f"loops_*.py.{process.pid}")) for process in functions)
 
 
-def _cancelled(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
-    number = _under_way(verdict, serving, function, when)
+def _cancelled(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
+    number = _under_way(verdict, serving, folder, function, when)
     functions = serving.functions()
     serving.cancel(number)
     _gone(verdict, f"{function}, cancelled", functions, SOON)
     _ended(verdict, serving, number, function, "cancelled")
 
 
-def _out_of_time(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
+def _out_of_time(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
     begin = time.monotonic()
-    number = _under_way(verdict, serving, function, when, seconds=15.0)
+    number = _under_way(verdict, serving, folder, function, when, seconds=15.0)
     functions = serving.functions()
     _gone(verdict, f"{function}, out of time", functions, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0)
     _ended(verdict, serving, number, function, "cancelled")
 
 
-def _worker_killed(verdict: Verdict, serving: Serving, function: str, when: str) -> None:
-    number = _under_way(verdict, serving, function, when)
+def _worker_killed(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
+    number = _under_way(verdict, serving, folder, function, when)
     functions = serving.functions()
     for worker in serving.workers():
         worker.kill()
@@ -208,7 +222,7 @@ def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: st
     own = psutil.Process(process.pid)
     end = time.monotonic() + 120.0
     functions: list[psutil.Process] = []
-    while not (functions and _busy(functions)) and time.monotonic() < end and process.poll() is None:
+    while not _looping(folder, functions) and time.monotonic() < end and process.poll() is None:
         functions = own.children(recursive=True)
         time.sleep(0.1)
     if process.poll() is not None or not functions:

@@ -124,8 +124,10 @@ def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
 
 
 def _again_command(run: str, runs: Path | None, store: str | None) -> str:
-    """Return the command that goes on with a run, with the places that were named."""
-    places = [*(["--runs", str(runs)] if runs else []), *(["--store", store] if store else [])]
+    """Return the command that goes on with a run, with the places that were named; a password is left to be typed."""
+    from ..store.database import without_secrets
+
+    places = [*(["--runs", str(runs)] if runs else []), *(["--store", without_secrets(store)] if store else [])]
     return shlex.join(["slidercrank", "optimise", "--resume", run, *places])
 
 

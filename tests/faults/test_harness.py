@@ -14,6 +14,7 @@ from faults.kills import kills
 from faults.pauses import pauses
 from faults.places import Kind
 from faults.restarts import restarts
+from faults.runaway import runaway
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux")
@@ -65,3 +66,9 @@ def test_no_flood_of_requests_keeps_others_out() -> None:
     flooded = flood(1, seed=1, patience=5.0)  # other tests run beside it
     assert flooded.violations == []
     assert flooded.signs > 10
+
+
+def test_functions_that_loop_end_with_their_job_their_worker_and_their_service() -> None:
+    verdict = runaway(1, seed=1, short=True)
+    assert verdict.violations == []
+    assert verdict.resumptions == 3

@@ -120,7 +120,7 @@ BAD = [
     ("20 °C", kinds.ANGLE, ["°C", "temperatures"]),
     ("20 mm/m", kinds.ANGLE, ["angle", "0.1 deg"]),
     ("0.1", kinds.ANGLE, ["with its unit", "0.1 deg"]),
-    ("80", kinds.LENGTH, ["with its unit", "80 mm", "plain number in m"]),
+    ("80", kinds.LENGTH, ["with its unit", "80 mm", "plain number in m (in a job file, without quotes)"]),
     ("80 MM", kinds.LENGTH, ["MM", "did you mean mm?"]),
     ("80 milimeter", kinds.LENGTH, ["milimeter"]),
     ("80 Mm", kinds.LENGTH, ["at most 10000 m", "check the unit"]),

@@ -244,3 +244,7 @@ def test_the_command_that_goes_on_names_the_places_that_were_named() -> None:
     assert _again_command("a-run", None, None) == "slidercrank optimise --resume a-run"
     named = _again_command("a-run", Path("my runs"), "my store.db")
     assert named == "slidercrank optimise --resume a-run --runs 'my runs' --store 'my store.db'"
+    secret = _again_command("a-run", None, "postgresql://clerk:geheim@host/jobs?sslmode=require&sslpassword=auch")
+    assert "geheim" not in secret
+    assert "auch" not in secret
+    assert "--store 'postgresql://clerk:***@host/jobs?" in secret

@@ -52,6 +52,15 @@ def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store
     assert page.evaluate("window.notReloaded")
 
 
+def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Store) -> None:
+    submit(store, TABLES)
+    page = open_page(store, "#/jobs/1")
+    expect(page.get_by_text("Waits for a worker.")).to_be_visible()
+    taken(store)
+    expect(page.get_by_text("Waits for a worker.")).to_be_hidden(timeout=2_000)
+    expect(page.get_by_text("Nothing yet.").first).to_be_visible()
+
+
 def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     claim = taken(store)
@@ -71,7 +80,8 @@ def test_long_stages_between_rounds_are_shown_with_how_far_they_are(open_page: O
     page = open_page(store, "#/jobs/1")
     claim.tell(progress(9), FRONT)
     expect(page.get_by_text("9 of 9")).to_be_visible()
-    for stage, step in (("repeating rounds", 4), ("selecting designs", 1200), ("finishing designs", 2900)):
+    stages = {"loading": 1, "repeating rounds": 4, "selecting designs": 1200, "finishing designs": 2900}
+    for stage, step in stages.items():
         claim.tell(replace(progress(9), stage=stage, step=step, steps=3000), FRONT)
         expect(page.get_by_text(stage)).to_be_visible()
         expect(page.get_by_text(f"{step:,} of 3,000")).to_be_visible()

@@ -268,7 +268,8 @@ def test_nothing_secret_of_an_address_is_shown() -> None:
         shown = f"{database.name} {refused.value} {without_secrets(ADDRESS)} {without_secrets('--store=' + ADDRESS)}"
     for secret in ("geheim", "verraten", "auch", "-ca"):
         assert secret not in shown
-    assert "clerk:***@127.0.0.1:1/jobs?" in shown
+    assert "psycopg" not in shown
+    assert "postgresql://clerk:***@127.0.0.1:1/jobs?" in shown
     assert "host=127.0.0.1" in shown
 
 

@@ -1,0 +1,118 @@
+"""Processes of own functions in a worker: they end with their job, and one that did not answer is not asked again."""
+
+from __future__ import annotations
+
+import gc
+import os
+import time
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+import pytest
+
+from slidercrank.objectives.own.worker import Worker
+from slidercrank.service.store import Store
+from slidercrank.service.workers.worker import Terms, work
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")
+BUSY = 1.0  # s that a busy machine may add
+MODULE = """
+import pathlib, time
+
+calls = 0
+
+def fine(designs):
+    return designs.crank
+
+def loops(designs):
+    global calls
+    calls += 1
+    while calls > 6:
+        pathlib.Path("looping").touch()
+        time.sleep(0.1)
+    return designs.crank
+"""
+JOB = """
+name = "own"
+[mechanism]
+speed = "300 rpm"
+[variables]
+crank = ["20 mm", "60 mm"]
+rod = ["80 mm", "300 mm"]
+offset = ["5 mm", "60 mm"]
+[objectives]
+mine = "minimise"
+time_ratio = "maximise"
+[optimiser]
+method = "nsga2"
+samples = 20
+evaluations = 200
+designs = 4
+[quantity.mine]
+function = "FUNCTION"
+unit = "mm"
+gradient = "none"
+"""
+
+
+@pytest.fixture
+def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
+    """Return an empty store in the folder of the functions; nothing is collected that refers to itself."""
+    (tmp_path / "own_functions.py").write_text(MODULE)
+    monkeypatch.chdir(tmp_path)
+    gc.disable()
+    try:
+        with Store(tmp_path / "store.db") as opened:
+            yield opened
+    finally:
+        gc.enable()
+
+
+def submit(store: Store, function: str) -> int:
+    """Return the number of a job with one of the functions."""
+    return store.submit(tomllib.loads(JOB.replace("FUNCTION", function)), name="own").id
+
+
+def functions() -> list[str]:
+    """Return the processes of own functions that this one has."""
+    commands = [" ".join(process.cmdline()) for process in psutil.Process().children(recursive=True)]
+    return [command for command in commands if "own.child" in command]
+
+
+def test_the_process_of_a_function_ends_with_its_job(store: Store) -> None:
+    job = submit(store, "own_functions:fine")
+    work(store, drain=True, terms=Terms(allowed_quantities=("own_functions:fine",)))
+    assert store.job(job).state == "done"
+    assert functions() == []
+
+
+def test_a_function_that_did_not_answer_is_not_asked_again(
+    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start = Worker._start
+    starts: list[str] = []
+
+    def counted(worker: Worker) -> None:
+        starts.append(worker.function)
+        start(worker)
+
+    monkeypatch.setattr(Worker, "_start", counted)
+    job = submit(store, "own_functions:loops")
+    looping = tmp_path / "looping"
+    begin: list[float] = []
+
+    def stop_watch() -> bool:
+        if looping.exists() and not begin:
+            begin.append(time.monotonic())
+            store.cancel(job)
+        return False
+
+    work(store, drain=True, terms=Terms(allowed_quantities=("own_functions:loops",)), stop=stop_watch)
+    assert time.monotonic() - begin[0] < 2.0 + BUSY
+    ended = store.job(job)
+    assert (ended.state, len(starts)) == ("cancelled", 1)
+    assert ended.records > 0
+    assert ended.reason.startswith("cancelled; functions of its own took too long to tell of what was found")
+    assert functions() == []
