@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,15 +48,18 @@ designs = 8
 Where = str
 
 
-def disk(count: int, seed: int) -> Verdict:
-    """Fill each disk that a run writes to `count` times, and that of a service once; return what came of it."""
+def disk(count: int, seed: int, places: Sequence[str] = PLACES) -> Verdict:
+    """Fill each disk that a run writes to `count` times, and that of a service once; return what came of it.
+
+    places: those of `PLACES` that a run has on the disk.
+    """
     chance, verdict = random.Random(seed), Verdict()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         job = Path(folder) / "job.toml"
         job.write_text(_JOB)
         whole = _undisturbed(job, Path(folder) / "undisturbed")
         for number in range(count):
-            for where in PLACES:
+            for where in places:
                 with small_disk() as small:
                     _strike(verdict, small, where, job, Path(folder) / f"{where} {number}", whole, chance)
         with small_disk() as small:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import subprocess
@@ -99,6 +100,11 @@ class Serving:
         answer = self._client.post("/jobs", json={"job": dict(tables), "limits": limits} if limits else {"job": tables})
         answer.raise_for_status()
         return int(answer.json()["id"])
+
+    def ask(self, path: str, body: Mapping[str, Any]) -> None:
+        """Ask it for something, whatever comes of it."""
+        with contextlib.suppress(httpx.TransportError):
+            self._client.post(path, json=dict(body))
 
     def cancel(self, number: int) -> None:
         """Cancel a job."""

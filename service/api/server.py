@@ -6,6 +6,7 @@ import gc
 import ipaddress
 import os
 import socket
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 from ...model.errors import InputError
@@ -93,14 +94,18 @@ def config_of(app: FastAPI) -> Config:
     )
 
 
-def run_server(app: FastAPI, listening: socket.socket) -> None:
-    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before."""
+def run_server(app: FastAPI, listening: socket.socket, *, stopping: Callable[[], None] = lambda: None) -> None:
+    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before.
+
+    stopping: called when that is to end, before the requests under way have their time to.
+    """
     import uvicorn
 
     class Server(uvicorn.Server):
         """Ends the streams of events first: they would wait until they are cut."""
 
         async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+            stopping()
             app.state.feed.close()
             await super().shutdown(sockets)
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import os
+import sys
+import threading
 from typing import Annotated
 
 import typer
@@ -109,8 +112,19 @@ def serve(
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
         set_up_logs(log_format.value)
-        with Supervisor(work, processes):
-            run_server(app, socket)
+        with Supervisor(work, processes) as supervisor:
+            run_server(app, socket, stopping=supervisor.leave)
+    _leave_requests()
+
+
+def _leave_requests() -> None:
+    """End at once where requests are still at work: nobody waits for their answers, and all jobs are handed back."""
+    from ..workers.pulse import leave
+
+    if any(not thread.daemon and thread is not threading.main_thread() for thread in threading.enumerate()):
+        logging.shutdown()
+        sys.stdout.flush()
+        leave(0)
 
 
 def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:

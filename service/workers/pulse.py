@@ -53,8 +53,9 @@ class Pulse:
         there is a grace, too.
         grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
         ends with 0. For as long as it takes, if None.
-        patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. While
-        a search loads or compiles what it computes with, it hears of nothing. For as long as it takes, if None.
+        patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
+        does one whose worker is to stop: nothing is lost. While a search loads or compiles what it computes with, it
+        hears of nothing. For as long as it takes, if None.
         """
         self.claim = claim
         self.lost = ""
@@ -138,11 +139,13 @@ class Pulse:
         if self._grace is None or not self._stop():
             return
         self._asked = time.monotonic() if self._asked is None else self._asked
-        if time.monotonic() - self._asked < self._grace or self._end.is_set():
+        loads = not self.claim.begun and self._patience is not None and self._patience < self._grace
+        if time.monotonic() - self._asked < (self._patience if loads else self._grace) or self._end.is_set():
             return
-        _log.warning("handed back: its round did not end within %g s", self._grace)
+        where = "before its search began" if loads else "in the middle of a round"
+        _log.warning("handed back: its worker stopped %s", where)
         with contextlib.suppress(LeaseLost, StoreError):
-            self.claim.hand_back("its worker stopped in the middle of a round; another one goes on")
+            self.claim.hand_back(f"its worker stopped {where}; another one goes on")
         leave(0)
 
 

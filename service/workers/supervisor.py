@@ -55,8 +55,12 @@ class Supervisor:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._leaving.set()
+        self.leave()
         self._thread.join()
+
+    def leave(self) -> None:
+        """Begin to stop the workers, without waiting for them."""
+        self._leaving.set()
 
     def processes(self) -> list[int]:
         """Return the process numbers of the workers that run now."""

@@ -8,6 +8,7 @@ import pytest
 
 from faults.commits import commits
 from faults.dask_faults import strike
+from faults.disk import disk
 from faults.flood import flood
 from faults.full import full
 from faults.kills import kills
@@ -15,6 +16,7 @@ from faults.pauses import pauses
 from faults.places import Kind
 from faults.restarts import restarts
 from faults.runaway import runaway
+from faults.small_disk import small_disk
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux")
@@ -72,3 +74,14 @@ def test_functions_that_loop_end_with_their_job_their_worker_and_their_service()
     verdict = runaway(1, seed=1, short=True)
     assert verdict.violations == []
     assert verdict.resumptions == 3
+
+
+def test_a_full_disk_of_the_store_is_told_and_what_ran_goes_on() -> None:
+    try:
+        with small_disk():
+            pass
+    except SystemExit as reason:
+        pytest.skip(str(reason))
+    verdict = disk(1, seed=1, places=("store",))
+    assert verdict.violations == []
+    assert verdict.failed == 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import threading
 import time
 import tomllib
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from faults.serving import Serving, alive
 from slidercrank.objectives.own.worker import Worker
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import Terms, work
@@ -25,6 +27,11 @@ calls = 0
 
 def fine(designs):
     return designs.crank
+
+def stays(designs):
+    while True:
+        pathlib.Path("looping").touch()
+        time.sleep(0.1)
 
 def loops(designs):
     global calls
@@ -116,3 +123,23 @@ def test_a_function_that_did_not_answer_is_not_asked_again(
     assert ended.records > 0
     assert ended.reason.startswith("cancelled; functions of its own took too long to tell of what was found")
     assert functions() == []
+
+
+def test_a_service_ends_soon_though_a_request_is_at_a_function_that_loops(tmp_path: Path) -> None:
+    (tmp_path / "own_functions.py").write_text(MODULE)
+    arguments = ("--workers", "0", "--allow-quantity", "own_functions:stays")
+    with Serving(str(tmp_path / "store.db"), *arguments, folder=str(tmp_path)) as serving:
+        assert serving.until(serving.ready, 60.0)
+        job = tomllib.loads(JOB.replace("FUNCTION", "own_functions:stays"))
+        asked = {"job": job, "crank": "40 mm", "rod": "100 mm", "offset": "10 mm"}
+        asking = threading.Thread(target=serving.ask, args=("/analyse", asked))
+        asking.start()
+        assert serving.until((tmp_path / "looping").exists, 60.0)
+        at_work = serving.functions()
+        begin = time.monotonic()
+        serving.process.terminate()
+        assert serving.process.wait(30.0) == 0
+        assert time.monotonic() - begin < 5.0
+        asking.join()
+    assert at_work
+    assert not any(map(alive, at_work))

@@ -103,6 +103,17 @@ def test_a_worker_in_an_endless_round_hands_its_job_back_when_its_grace_is_over(
     assert after.reason == "its worker stopped in the middle of a round; another one goes on"
 
 
+def test_a_job_whose_search_has_not_begun_is_handed_back_before_the_grace_is_over(store: Store) -> None:
+    job = put_in(store, "loads")
+    with Supervisor(settings(store, lease=60.0, grace=60.0), 1, program=MADE_UP):
+        until(lambda: store.job(job.id).state == "running", "claim of the job")
+        begin = time.monotonic()
+    assert time.monotonic() - begin < 10.0
+    after = store.job(job.id)
+    assert (after.state, after.attempts) == ("queued", 0)
+    assert after.reason == "its worker stopped before its search began; another one goes on"
+
+
 def test_a_worker_that_cannot_stop_is_killed(
     store: Store, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
