@@ -139,10 +139,11 @@ class Pulse:
         if self._grace is None or not self._stop():
             return
         self._asked = time.monotonic() if self._asked is None else self._asked
-        loads = not self.claim.begun and self._patience is not None and self._patience < self._grace
-        if time.monotonic() - self._asked < (self._patience if loads else self._grace) or self._end.is_set():
+        begun = self.claim.begun or self._patience is None
+        grace = self._grace if begun else min(self._grace, self._patience or 0.0)
+        if time.monotonic() - self._asked < grace or self._end.is_set():
             return
-        where = "before its search began" if loads else "in the middle of a round"
+        where = "in the middle of a round" if begun else "before its search began"
         _log.warning("handed back: its worker stopped %s", where)
         with contextlib.suppress(LeaseLost, StoreError):
             self.claim.hand_back(f"its worker stopped {where}; another one goes on")
