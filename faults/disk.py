@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -48,18 +48,15 @@ designs = 8
 Where = str
 
 
-def disk(count: int, seed: int, places: Sequence[str] = PLACES) -> Verdict:
-    """Fill each disk that a run writes to `count` times, and that of a service once; return what came of it.
-
-    places: those of `PLACES` that a run has on the disk.
-    """
+def disk(count: int, seed: int) -> Verdict:
+    """Fill each disk that a run writes to `count` times, and that of a service once; return what came of it."""
     chance, verdict = random.Random(seed), Verdict()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         job = Path(folder) / "job.toml"
         job.write_text(_JOB)
-        whole = _undisturbed(job, Path(folder) / "undisturbed")
+        whole = _undisturbed(job, Path(folder) / "undisturbed") if count else []
         for number in range(count):
-            for where in places:
+            for where in PLACES:
                 with small_disk() as small:
                     _strike(verdict, small, where, job, Path(folder) / f"{where} {number}", whole, chance)
         with small_disk() as small:
@@ -153,10 +150,11 @@ def _listen(process: subprocess.Popen[str], disk: str) -> tuple[str, float | Non
     timer = threading.Timer(_HANGS, process.kill)
     timer.start()
     lines, told = [], None
-    for line in process.stderr:
-        lines.append(line)
-        if told is None and disk in line and "free" in line:
-            told = time.monotonic()
+    with process.stderr:
+        for line in process.stderr:
+            lines.append(line)
+            if told is None and disk in line and "free" in line:
+                told = time.monotonic()
     process.wait()
     timer.cancel()
     return "".join(lines), told, timer.finished.is_set() and process.returncode == -9
