@@ -40,6 +40,20 @@ Message = tuple[bytes, bytes]
 Process = subprocess.Popen[bytes]
 
 
+_running: weakref.WeakSet[Worker] = weakref.WeakSet()
+
+
+def _forget_all() -> None:
+    """In a fork: leave all processes of functions to the one that started them."""
+    for worker in list(_running):
+        worker.forget()
+    _running.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_all)
+
+
 class Worker:
     """A process that runs one function. Raises `Refused` for all that it does wrong, and is then over.
 
@@ -62,8 +76,6 @@ class Worker:
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         """Return the function's answer for designs (n, 3); see `apply`."""
         with self._lock:
-            if self._process is not None and self._owner != os.getpid():
-                self._forget()
             if self._process is None:
                 ask()
                 self._start()
@@ -86,11 +98,13 @@ class Worker:
         guard: Process | None = None
         if os.name == "posix":
             # The guard comes first: there is no moment at which the child runs without it.
-            guard = subprocess.Popen((*_GUARD, self._log), stdin=subprocess.PIPE, process_group=0)
+            guard = subprocess.Popen((*_GUARD, self._log), stdin=subprocess.PIPE, bufsize=0, process_group=0)
             group = {"process_group": guard.pid}
-        process = subprocess.Popen(_CHILD, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **group)
-        self._process, self._guard, self._owner, self._late = process, guard, os.getpid(), False
+        # Without buffers: a fork would copy what they hold, and locks of them that a thread has at that moment.
+        process = subprocess.Popen(_CHILD, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, **group)
+        self._process, self._guard, self._late = process, guard, False
         self._end = weakref.finalize(self, _end, process, guard, self._log)
+        _running.add(self)
         self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
         threading.Thread(
             target=_listen, args=(process.stdout, self._messages), name="own function", daemon=True
@@ -98,22 +112,25 @@ class Worker:
         self._send((self._log, self.limit, self.function, self.folders))
         self._answer(_START + self.limit)
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
         """Leave the process to the one that started it, of which this one is a fork."""
-        self._end.detach()
+        self._end.detach()  # at the end of this process, too
         for one in (self._process, self._guard):
             if one is not None:
-                assert one.stdin is not None
-                one.stdin.close()  # the copy of the pipe here would keep the guard from its work
+                for pipe in (one.stdin, one.stdout):
+                    if pipe is not None:
+                        pipe.close()  # the copy of the pipe here would keep the guard from its work
                 one.returncode = 0  # not a child of this process: nothing to wait for
         self._process = self._guard = self._mechanism = None
+        self._lock = threading.Lock()  # a thread that is not here may have held the other one
 
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):  # it ended; `_answer` says why
-            pickle.dump(request, self._process.stdin)
-            self._process.stdin.flush()
+            left = memoryview(pickle.dumps(request))
+            while left:
+                left = left[self._process.stdin.write(left) :]
 
     def _answer(self, limit: float) -> bytes:
         kind, content = self._next(limit)
@@ -176,13 +193,21 @@ class Worker:
 def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
     """Put what a process says into a queue, and an empty message at its end."""
     with stream, contextlib.suppress(OSError, ValueError):
-        while len(head := stream.read(HEAD.size)) == HEAD.size:
+        while len(head := _read(stream, HEAD.size)) == HEAD.size:
             kind, length = HEAD.unpack(head)
-            content = stream.read(length)
+            content = _read(stream, length)
             if len(content) < length:
                 break
             messages.put((kind, content))
     messages.put((b"", b""))
+
+
+def _read(stream: IO[bytes], length: int) -> bytes:
+    """Return so many bytes, fewer only at the end."""
+    content = bytearray()
+    while len(content) < length and (more := stream.read(length - len(content))):
+        content += more
+    return bytes(content)
 
 
 def _end(process: Process, guard: Process | None, log: str) -> None:

@@ -41,6 +41,13 @@ def forks(designs):
     while True:
         pass
 
+def place(designs):
+    return 1.0 * os.getpid() + 0.0 * designs.crank[:, 0].real
+
+def slow_place(designs):
+    time.sleep(0.5)
+    return place(designs)
+
 def killed(designs):
     os.kill(os.getpid(), 9)
 """
@@ -137,3 +144,77 @@ def test_a_function_does_not_outlive_a_killed_process(tmp_path: Path, worker: Ca
         left = functions(asking.pid)
         asking.send_signal(signal.SIGKILL)
     assert gone(left)
+
+
+FORKING = """
+import gc, multiprocessing, os, signal, sys, threading, time
+import numpy as np
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.objectives.own.worker import Worker
+
+signal.signal(signal.SIGALRM, lambda *_: os.killpg(0, signal.SIGKILL))  # a hang ends by itself, with its children
+signal.alarm(60)
+asked = Worker("loops:" + sys.argv[1], [sys.argv[2]], 1e5)
+
+def place(_=None):
+    return int(asked(Mechanism(), np.array([[0.03, 0.1, 0.01]]), None).values.ravel()[0])
+
+def forked(work):
+    child = os.fork()
+    if not child:
+        work()
+        sys.exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+def differ():
+    assert len({here, place(), place()}) == 2
+
+here = place()
+"""
+
+
+def forking(folder: Path, function: str, script: str) -> subprocess.Popen[str]:
+    """Start a process that asks a function, then does what a script says."""
+    command = [sys.executable, "-c", FORKING + script, function, str(folder)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+
+@pytest.mark.parametrize(
+    ("function", "script"),
+    [
+        ("place", "assert forked(lambda: None) == 0"),
+        ("place", "assert forked(differ) == 0"),
+        ("place", "assert forked(lambda: (globals().pop('asked'), gc.collect())) == 0"),
+        ("place", "assert forked(lambda: (asked.close(), differ())) == 0"),
+        ("place", "assert here not in multiprocessing.get_context('fork').Pool(2).map(place, range(4))"),
+        ("slow_place", "threading.Thread(target=place).start(); time.sleep(0.2); assert forked(differ) == 0"),
+    ],
+    ids=["ends at once", "asks", "forgets it", "closes it", "as a pool", "while a thread asks"],
+)
+def test_a_fork_has_a_process_of_its_own_and_leaves_that_of_its_parent_alone(
+    function: str, script: str, tmp_path: Path, worker: Callable[[str], Worker]
+) -> None:
+    worker(function)
+    with forking(tmp_path, function, f"{script}\nassert place() == here\n") as asking:
+        _, errors = asking.communicate()
+    assert asking.returncode == 0, errors
+
+
+def test_a_fork_that_lives_on_does_not_keep_the_function_of_its_parent_alive(
+    tmp_path: Path, worker: Callable[[str], Worker]
+) -> None:
+    worker("place")
+    script = "print(here, os.fork() or 'fork', flush=True)\ntime.sleep(60)\n"
+    with forking(tmp_path, "place", script) as asking:
+        assert asking.stdout is not None
+        lines = sorted(asking.stdout.readline().split() for _ in range(2))
+        functions_of = functions(asking.pid)
+        (fork,) = (psutil.Process(int(other)) for _, other in lines if other != "fork")
+        functions_of.remove(fork)
+        assert [each.pid for each in functions_of if each.pid == int(lines[0][0])]
+        try:
+            asking.send_signal(signal.SIGKILL)
+            assert gone(functions_of)
+            assert fork.is_running()
+        finally:
+            fork.kill()
