@@ -15,12 +15,14 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from .figures import require_figures
+from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import ShownDep, ShownDesign
 from .state import StoreDep
 from .turns import DRAWING
 
 if TYPE_CHECKING:
+    from ...objectives.kinds import System
     from ..report.document import Report
     from ..store import Store
 
@@ -87,24 +89,24 @@ def animate_linkage(shown: ShownDep) -> Response:
 
 
 @router.get("/report.html", dependencies=[Depends(require_figures)], **_kind("text/html"))
-def report_design(shown: ShownDep, store: StoreDep) -> Response:
+def report_design(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric") -> Response:
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
 
-    content = _made(shown, "report", lambda: html_file(_report(shown, store)))
+    content = _made(shown, f"report {units}", lambda: html_file(_report(shown, store, units)))
     return _file(shown, "html", "text/html; charset=utf-8", content, label="-report")
 
 
 @router.get("/report.pdf", dependencies=[Depends(require_figures)], **_kind("application/pdf"))
-def print_report(shown: ShownDep, store: StoreDep) -> Response:
+def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric") -> Response:
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file
 
-    content = _made(shown, "pdf", lambda: pdf_file(_report(shown, store)))
+    content = _made(shown, f"pdf {units}", lambda: pdf_file(_report(shown, store, units)))
     return _file(shown, "pdf", "application/pdf", content, label="-report")
 
 
-def _report(shown: ShownDesign, store: Store) -> Report:
+def _report(shown: ShownDesign, store: Store, units: System) -> Report:
     """Return the report of a design, with what the store keeps beside the result."""
     from ..report.design_report import design_report
     from ..report.subject import subject_of
@@ -125,6 +127,7 @@ def _report(shown: ShownDesign, store: Store) -> Report:
         certificate=certificate,
         front=found.front,
         changed=shown.variation(),
+        system=units,
     )
     return design_report(subject)
 

@@ -17,7 +17,7 @@ LONGEST = 1e7  # mm
 SHORTEST = 1e-4  # mm
 _SAME = 1e-9  # of a length: an address has the design's own
 
-Length = Annotated[float, Field(ge=SHORTEST, le=LONGEST)]
+Length = Annotated[float, Field(ge=SHORTEST, le=LONGEST, allow_inf_nan=False)]
 Lengths = tuple[float, float, float]
 """Crank, rod, offset, mm."""
 

@@ -80,7 +80,7 @@ class OtherLengths(BaseModel):
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
-    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, examples=[20.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
     angles: int = Field(180, ge=0, le=MOST)
     hold: Literal["crank", "rod", "offset"] | None = None
 

@@ -14,6 +14,7 @@ import pytest
 from ezdxf.filemanagement import read as read_dxf
 
 from slidercrank.service.api.settings import Settings
+from slidercrank.service.designs.shown_units import row_in
 from slidercrank.service.runs.result import rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
@@ -85,6 +86,20 @@ def test_the_report_has_the_numbers_of_the_api_and_of_the_csv(solved: Solved, cl
     versions = client.get(f"{solved.path}/files/versions.json").json()
     assert f"numpy {versions['numpy']}" in page
     assert "No certificate" in page
+
+
+def test_a_report_is_in_the_units_that_are_asked_for(solved: Solved, client: httpx.Client) -> None:
+    page = client.get(f"{solved.path}/designs/3/report.html", params={"units": "inch"}).text
+    cells = re.findall(r'<td class="right">([^<]*)</td><td>([a-zA-Z0-9_]+)</td></tr>', page)
+    stored = {key: text for text, key in cells}
+    design = row_in(client.get(f"{solved.path}/designs/3").json()["design"], "inch")
+    assert "crank_in" in stored
+    assert list(stored) == list(design)
+    for key, value in design.items():
+        if isinstance(value, float):
+            assert float(stored[key]) == pytest.approx(value, rel=1e-12), key
+    assert "mm" not in re.sub(r"<[^>]*>", " ", page.partition("Summary")[2].partition("</section>")[0]).split()
+    refused(client.get(f"{solved.path}/designs/3/report.html", params={"units": "feet"}), 422)
 
 
 def test_a_report_is_kept_and_drawn_once(solved: Solved, client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -181,9 +196,9 @@ def test_the_lengths_of_the_design_itself_change_nothing(solved: Solved, client:
     [
         ({"crank_mm": 100}, "come together, crank_mm, rod_mm and offset_mm; got none for rod_mm and offset_mm"),
         ({"crank_mm": 100, "rod_mm": 90, "offset_mm": 0}, "rod must exceed crank + |offset| for full rotation"),
-        ({"crank_mm": "nan", "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
+        ({"crank_mm": "nan", "rod_mm": 300, "offset_mm": 0}, "crank_mm: must be a finite number; got"),
         ({"crank_mm": 0, "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
-        ({"crank_mm": 10, "rod_mm": 300, "offset_mm": "inf"}, "offset_mm"),
+        ({"crank_mm": 10, "rod_mm": 300, "offset_mm": "inf"}, "offset_mm: must be a finite number; got"),
         ({"crank_mm": "long", "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
     ],
 )

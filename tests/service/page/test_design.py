@@ -333,6 +333,11 @@ def test_units_are_the_readers(opened: Opened) -> None:
     page.get_by_label("Units").select_option("inch")
     assert float(cell.inner_text()) == pytest.approx(millimetres / 25.4, rel=1e-4)
     assert float(page.get_by_label("Crank", exact=True).input_value()) == pytest.approx(millimetres / 25.4, rel=1e-4)
+    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    asked = {str(link.get_attribute("href")).rpartition("/")[2] for link in links.all()}
+    assert {name for name in asked if name.endswith("?units=inch")} == {
+        f"{name}?units=inch" for name in ("report.html", "report.pdf", "design_3.png", "design_3.svg")
+    }
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

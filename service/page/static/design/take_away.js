@@ -3,6 +3,7 @@
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { say } from "../lib/notices.js";
+import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [
   ["linkage.dxf", "DXF", "The linkage at true scale, for CAD"],
@@ -13,11 +14,14 @@ const FILES = [
   ["report.pdf", "PDF", "The report to print"],
 ];
 
+const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
+
 /**
  * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
  * itself again with null.
  */
-export function takeAway(job, number) {
+export function takeAway(job, number, { signal } = {}) {
+  let lengths = null;
   const anchor = (path, title, words) => h("a", { class: "button", "data-path": path, download: "", title: words }, title);
   const links = [
     ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),
@@ -25,11 +29,16 @@ export function takeAway(job, number) {
   ];
   const said = h("span", { class: "quiet", role: "status" });
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
-  const show = (lengths) => {
-    for (const link of links) link.href = address(link.dataset.path, lengths ?? {});
+  const show = (other) => {
+    lengths = other;
+    for (const link of links) {
+      const units = WITH_UNITS.test(link.dataset.path.split("/").pop()) ? { units: apiSystem() } : {};
+      link.href = address(link.dataset.path, { ...lengths, ...units });
+    }
     said.textContent = lengths ? `of design ${number}, changed` : "";
   };
   show(null);
+  window.addEventListener("units", () => show(lengths), { signal });
   return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, links, copy, said), show };
 }
 

@@ -43,7 +43,7 @@ export async function show(place, { parts, query, signal }) {
     if (!angle.playing) angle.set(at);
   };
   const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
-  const files = takeAway(job, number);
+  const files = takeAway(job, number, { signal });
   fill(place, top(shared), files.node, places.objectives,
     h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places.topics);
   for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
