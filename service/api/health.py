@@ -7,7 +7,7 @@ from typing import Literal
 from fastapi import APIRouter, Request, Response
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
-from .metrics import Metrics, live_workers
+from .metrics import Metrics
 from .models import Count, Shown
 from .state import StoreDep
 
@@ -37,9 +37,9 @@ async def show_live() -> Live:
 
 @router.get("/health/ready")
 def show_ready(store: StoreDep) -> Ready:
-    """Return that the database can be read and has room, how many workers there are, and how many jobs wait."""
-    store.require_room()
-    workers = live_workers(store)
+    """Return that the database can be read and written, how many workers there are, and how many jobs wait."""
+    store.require_ready()
+    workers = store.workers_at_work()
     return Ready(takes_jobs=workers > 0, workers=workers, waiting=store.counts().get("queued", 0))
 
 

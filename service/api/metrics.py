@@ -45,16 +45,11 @@ class Metrics(Collector):
         yield jobs
         wait = self._store.longest_wait()
         yield GaugeMetricFamily("slidercrank_queue_seconds", "How long the oldest job in the queue waits, s", wait)
-        yield GaugeMetricFamily("slidercrank_workers", "Workers heard of lately", live_workers(self._store))
+        yield GaugeMetricFamily("slidercrank_workers", "Workers heard of lately", self._store.workers_at_work())
 
     def text(self) -> bytes:
         """Return all figures in the text format. Raises `StoreError`."""
         return generate_latest(self._registry)
-
-
-def live_workers(store: Store) -> int:
-    """Return how many workers were heard of lately."""
-    return sum(worker.at_work for worker in store.workers())
 
 
 class Timed:

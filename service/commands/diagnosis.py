@@ -73,8 +73,13 @@ def _store(address: str, named: bool) -> Iterator[Check]:
 
 
 def _private(address: str) -> Iterator[Check]:
-    """Look at who may read a store that is a file: it has all that the token of a service protects."""
-    if "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
+    """Look at who may use a store that is a file: it has all that the token of a service protects."""
+    from ..store.database import may_use, remedy_of_rights
+
+    if "://" not in address and not may_use(Path(address)):
+        text = f"{address} may not be written, so that no job gets on; {remedy_of_rights(Path(address))}"
+        yield Check(name="permissions", grade="problem", text=text)
+    elif "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
         text = f"others of this machine may read or write {address} (mode {mode:03o} for them); chmod 600 {address}"
         yield Check(name="permissions", grade="note", text=text)
 
@@ -83,6 +88,8 @@ def _database(address: str, database: Database) -> Iterator[Check]:
     from ..store.inspection import clock_ahead, damages, server_version
     from ..store.schema_version import strangers, versions
 
+    if not database.sqlite:
+        database.require_ready()
     yield Check(name="store", grade="ok", text=f"{database.name} answers, {server_version(database)}")
     foreign = strangers(database)
     if foreign:
@@ -115,14 +122,13 @@ def _at_work(address: str, now: float) -> Iterator[Check]:
     from ..store.records import SILENT
 
     with Store(address) as store:
-        counts, workers = store.counts(), store.workers()
+        counts, heard = store.counts(), store.workers_at_work()
+        silent = max(0, len(store.workers()) - heard)
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
-    heard = [worker for worker in workers if worker.at_work]
     text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
     yield Check(name="jobs", grade="ok", text=text)
-    text = f"{len(heard)} at work"
-    silent = len(workers) - len(heard)
+    text = f"{heard} at work"
     if silent:
         text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
     waiting = counts.get("queued", 0) + len(expired)

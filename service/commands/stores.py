@@ -60,5 +60,5 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 
 def tell_idle(store: Store) -> None:
     """Say that jobs wait if no worker is there to solve them."""
-    if not any(worker.at_work for worker in store.workers()):
+    if not store.workers_at_work():
         say("slidercrank: no worker is at work, so jobs wait; start one with: slidercrank serve")

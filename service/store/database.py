@@ -74,6 +74,19 @@ class Database:
         if self._folder is not None and free(self._folder) < LEAST:
             raise self._full("its disk is full")
 
+    def require_ready(self) -> None:
+        """Raise `StoreError` if the disk of a file has no room, or a server takes no changes."""
+        self.require_room()
+        if self.sqlite:
+            return
+        query = "SELECT pg_is_in_recovery() OR current_setting('default_transaction_read_only')::bool"
+        with self.reading() as connection:
+            if connection.exec_driver_sql(query).scalar():
+                raise StoreError(
+                    f"the store must be a database that can be written; {self.name} is read-only; name the primary "
+                    "server, or switch default_transaction_read_only off there"
+                )
+
     def _full(self, reason: str) -> Full:
         there = "" if self._folder is None else f"; {room(self._folder)}"
         return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; make room")
@@ -110,6 +123,11 @@ class Database:
             raise StoreError(
                 f"the file of a store stays where it is while it is used; {self.name} was deleted, moved or replaced; "
                 "put it back, or stop what uses it and start again"
+            )
+        if self._file is not None and self._file.shut():  # what is open goes on, nothing else could begin
+            raise StoreError(
+                f"the file of a store stays readable and writable while it is used; {self.name} is not any more; "
+                f"give these rights back: {remedy_of_rights(self._file.path)}"
             )
 
     @contextlib.contextmanager
@@ -156,11 +174,16 @@ class _File:
 
     def __init__(self, path: str) -> None:
         """Make it where it is not there; where that cannot be, opening it says why."""
-        self._path = Path(path)
+        self.path = Path(path)
         with contextlib.suppress(OSError):
             # The files beside it, of the write-ahead log, get its permissions.
             os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
         self._known = self._number()
+        self._open = may_use(self.path)
+
+    def shut(self) -> bool:
+        """Whether it may not be read and written any more."""
+        return self._open and not may_use(self.path)
 
     def there(self) -> bool:
         """Whether it is the same file still."""
@@ -168,10 +191,20 @@ class _File:
 
     def _number(self) -> tuple[int, int] | None:
         try:
-            found = self._path.stat()
+            found = self.path.stat()
         except OSError:
             return None
         return found.st_dev, found.st_ino
+
+
+def may_use(path: Path) -> bool:
+    """Whether this user may read and write the file of a store."""
+    return os.access(path, os.R_OK | os.W_OK)
+
+
+def remedy_of_rights(path: Path) -> str:
+    """Return what gives the rights back that `may_use` misses."""
+    return f"chmod u+rw {path}, as the user who owns it"
 
 
 def without_secrets(text: str) -> str:

@@ -135,6 +135,10 @@ class Store:
         """Raise `StoreError`, which names the disk, where the disk of the store has no room."""
         self._database.require_room()
 
+    def require_ready(self) -> None:
+        """Raise `StoreError` where nothing can be written: its disk has no room, or its server takes no changes."""
+        self._database.require_ready()
+
     def _waiting(self, found: list[Job]) -> list[Job]:
         try:
             self.require_room()
@@ -310,6 +314,10 @@ class Store:
         """Note that a worker has left."""
         with self._database.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
+
+    def workers_at_work(self) -> int:
+        """Return how many workers were heard of lately, busy or not."""
+        return sum(worker.at_work for worker in self.workers())
 
     def workers(self) -> list[Worker]:
         """Return all workers that came and have not left, the one heard of last first.

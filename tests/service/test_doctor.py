@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sqlite3
 from collections import namedtuple
@@ -109,6 +110,18 @@ def test_a_database_without_tables_is_noted_and_gets_none(file: Path, command: C
     connection = sqlite3.connect(file)
     assert connection.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,)
     connection.close()
+
+
+def test_a_file_that_may_not_be_written_is_a_problem(
+    file: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Store(file).close()
+    monkeypatch.setattr(os, "access", lambda path, _mode: Path(path).stat().st_mode & 0o600 == 0o600)
+    assert looked_at(command)[0] == 0
+    file.chmod(0o400)
+    code, found = looked_at(command)
+    assert (code, found["permissions"][0]) == (1, "problem")
+    assert f"chmod u+rw {file}" in found["permissions"][1]
 
 
 def test_a_server_that_is_away_is_a_problem(command: Command) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, create_engine, text
 
 from slidercrank.model.errors import InputError, LeaseLost, StoreError
 from slidercrank.service.store import Artefact, Store
@@ -20,6 +21,7 @@ from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.claiming import claim_next
 from slidercrank.service.store.database import Database, Unavailable, without_secrets
 from slidercrank.service.store.schema import metadata
+from tests.service.conftest import Command
 from tests.service.store.contents import add, end_lease, everything, progress, result, search_record
 from tests.service.store.postgresql import Cluster
 
@@ -239,6 +241,42 @@ def test_workers_on_postgresql_do_not_wait_for_each_other(server: Cluster) -> No
         assert other is not None
         assert (held.id, other.job.id) == (first.id, second.id)
         assert [store.job(job.id).worker for job in (first, second)] == ["first", "second"]
+
+
+def test_a_server_that_takes_no_changes_is_told(server: Cluster, command: Command) -> None:
+    address = server.new_address()
+    engine = create_engine(f"postgresql+psycopg://tests@/postgres?host={server.folder}", isolation_level="AUTOCOMMIT")
+    with Store(address) as store, engine.connect() as connection:
+        store.require_ready()
+        connection.exec_driver_sql("ALTER SYSTEM SET default_transaction_read_only = on")
+        connection.exec_driver_sql("SELECT pg_reload_conf()")
+        try:
+            wait_for(lambda: refused_writing(store))
+            done = command("doctor", "--store", address)
+            assert done.exit_code == 1
+            assert "is read-only; name the primary server" in done.stdout
+        finally:
+            connection.exec_driver_sql("SET default_transaction_read_only = off")
+            connection.exec_driver_sql("ALTER SYSTEM RESET default_transaction_read_only")
+            connection.exec_driver_sql("SELECT pg_reload_conf()")
+        wait_for(lambda: not refused_writing(store))
+    engine.dispose()
+
+
+def refused_writing(store: Store) -> bool:
+    """Whether the store says that nothing can be written."""
+    with contextlib.suppress(StoreError):
+        store.require_ready()
+        return False
+    return True
+
+
+def wait_for(condition: Callable[[], bool]) -> None:
+    """Wait until a condition holds; a server takes in its settings a moment later."""
+    end = time.monotonic() + 10.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
 
 
 def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
