@@ -9,7 +9,9 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 
 import httpx
 
@@ -55,7 +57,7 @@ def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
         over = threading.Event()
         watch = threading.Thread(target=_watch, args=(served, over, flooded, patience))
         watch.start()
-        kinds = [kind for kind in (_bodies, _addresses, _headers, _slow_bodies) for _ in range(count)]
+        kinds = [kind for kind in (_bodies, _large_jobs, _addresses, _headers, _slow_bodies) for _ in range(count)]
         random_.shuffle(kinds)
         try:
             _half_open(served, flooded, 1100)
@@ -143,6 +145,22 @@ def _bodies(served: Api, flooded: Flooded) -> None:
     ):
         whole = body * max(1, 1_000_000 // len(body)) if len(body) < 10_000 else body
         _refused(served, flooded, "body", _posted(kind, whole))
+
+
+def _large_jobs(served: Api, flooded: Flooded) -> None:
+    """Send jobs that take long to read, ten of each at once."""
+    for path, kind, body in (
+        ("check", "application/toml", b"[[load]]\n" * 110_000),
+        ("preview", "application/json", b'{"job": {"load": [' + b",".join([b"{}"] * 110_000) + b"]}}"),
+        ("check", "application/json", b'{"job": {"load": [' + b",".join([b"{}"] * 9_900) + b"]}}"),
+    ):
+        headers = {"Authorization": f"Bearer {TOKEN}", "Content-Type": kind}
+        post = partial(httpx.post, content=body, headers=headers, trust_env=False, timeout=90.0)
+        with ThreadPoolExecutor(10) as at_once:
+            answers = list(at_once.map(post, [f"{served.url}api/v1/{path}"] * 10))
+        flooded.requests += len(answers)
+        refused = {"check": 422, "preview": 200}[path]
+        flooded.violations += [f"a large job: {one.status_code}" for one in answers if one.status_code != refused]
 
 
 def _addresses(served: Api, flooded: Flooded) -> None:

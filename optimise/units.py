@@ -186,6 +186,8 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any") -> float:
 
 def shown(value: object) -> str:
     """Return a value for a message: as a job file writes it, printable, of moderate length."""
+    if value is None:
+        return "null"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -197,6 +199,8 @@ def shown(value: object) -> str:
         plain = len(value) <= 4 and not any(isinstance(x, list | tuple | Mapping) for x in value)
         inner = ", ".join(map(shown, value)) if plain else ""
         return f"[{inner}]" if plain else f"a list of {len(value)}"
+    if isinstance(value, bytes):
+        return f"{len(value)} bytes"
     if isinstance(value, int) and value.bit_length() > 200:
         return "a very long whole number"
     text = str(value) if isinstance(value, int | float | date | time) else reprlib.repr(value)

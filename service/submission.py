@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from .allowed_quantities import require_allowed
+from .allowed_quantities import parse_allowed
 from .runs.result import json_text
 from .store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
 
@@ -20,22 +20,19 @@ def submit(
     limits: Limits = NO_LIMITS,
     source: Artefact | None = None,
     allowed_quantities: Collection[str] = (),
+    checked: str | None = None,
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
     source: the job file as it was given, "job.toml" or "job.json"; without one it is made from the tables.
+    allowed_quantities: functions, "module:function", that the job may name as quantities. checked: the name of a job
+    that was checked already.
 
-    allowed_quantities: functions, "module:function", that the job may name as quantities.
-
-    Raises `JobError` for a job that is not valid, or that names other functions: workers do not run those of others.
+    Raises `JobError` for a job that is not valid, or that names other functions.
     """
-    from ..optimise.job import parse_job
-
-    require_allowed(tables, allowed_quantities)
-    problem = parse_job(tables, allow_user_code=bool(allowed_quantities))
     return store.submit(
         tables,
-        name=problem.name,
+        name=checked or parse_allowed(tables, allowed_quantities).name,
         priority=priority,
         key=key,
         most_attempts=most_attempts,

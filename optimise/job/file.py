@@ -13,10 +13,13 @@ from typing import Any
 
 from ...model.errors import JobError
 from ..units import shown
+from .messages import key_of
 from .unquoted import remedy
 
 LARGEST = 1_000_000
-"""Bytes. A job with the longest tables allowed takes a tenth of it."""
+"""Bytes. A job of as many values as are allowed takes a fifth of it, notes and comments aside."""
+MOST = 10_000
+"""Values, lists and tables of a job: those of five [[load]] tables of 1,000 points. Each takes up to 30 us."""
 DEEPEST = 8
 """Tables within tables; a job has five at most."""
 # Possessive, and a text that is not closed ends with the file: the search takes a time in proportion to its length.
@@ -24,6 +27,8 @@ _WORD = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"?+|'[^'\n]*+'?+)"""
 _TEXT = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|''' + r"""'''(?:[^']|'(?!''))*+(?:'''|\Z)"""
 _DOT = r"[ \t]*+\.[ \t]*+"
 _DEEP = rf"{_WORD}(?:{_DOT}{_WORD}){{{DEEPEST}}}"
+_PASSED = re.compile(rf"(?s)(?:{_TEXT})|\"(?:[^\"\\\n]|\\.)*+\"?+|'[^'\n]*+'?+|#[^\n]*+")
+"""Texts and comments."""
 _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_DOT}{_WORD})*+|.))*+{_DEEP}")
 
 
@@ -90,10 +95,14 @@ def toml_tables(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text. Raises JobError.
 
     Dotted keys of more than `DEEPEST` words are refused before the text is parsed: `tomllib` takes a time and a memory
-    for one that grow with the square of its length.
+    for one that grow with the square of its length. So are texts of far more values than a job has: each has one or two
+    of the signs that are counted.
     """
     if _DEEP_KEY.match(text):
         raise _too_deep()
+    signs = _PASSED.sub("", text)
+    if sum(signs.count(sign) for sign in "=,[{") > 2 * MOST + 100:
+        raise _too_many("more")
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -119,19 +128,42 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def require_plain(value: object, depth: int = 0) -> None:
-    """Refuse data nested too deeply, keys that are not text, and nulls. Raises JobError."""
-    if depth == 0 and not isinstance(value, Mapping):
-        raise JobError(f"a job must be a table of keys; got {shown(value)}")
-    if depth > DEEPEST:
+def _too_many(got: str) -> JobError:
+    return JobError(
+        f"a job has at most {MOST} values, lists and tables; got {got}; leave some out, such as points of long tables"
+    )
+
+
+def require_few(tables: object) -> None:
+    """Raise JobError for data of more values, lists and tables than a job has."""
+    left, count = [tables], -1
+    while left:
+        count += 1
+        item = left.pop()
+        if isinstance(item, Mapping | list | tuple):
+            left += item.values() if isinstance(item, Mapping) else item
+    if count > MOST:
+        raise _too_many(f"{count}")
+
+
+def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
+    """Refuse data of too many values or nested too deeply, keys that are not text, and nulls. Raises JobError.
+
+    at: where it stands in the job.
+    """
+    if not at:
+        if not isinstance(value, Mapping):
+            raise JobError(f"a job must be a table of keys; got {shown(value)}")
+        require_few(value)
+    if len(at) > DEEPEST:
         raise JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the job")
     if isinstance(value, Mapping):
         for key, item in value.items():
             if not isinstance(key, str):
                 raise JobError(f"a key must be text; got {shown(key)}")
             if item is None:
-                raise JobError(f"{shown(key)} must have a value; got null; leave the key out instead")
-            require_plain(item, depth + 1)
+                raise JobError(f"{key_of((*at, key))}: must have a value; got null; leave the key out instead")
+            require_plain(item, (*at, key))
     elif isinstance(value, list | tuple):
-        for item in value:
-            require_plain(item, depth + 1)
+        for place, item in enumerate(value):
+            require_plain(item, (*at, place))

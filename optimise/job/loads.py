@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -123,6 +124,11 @@ class PositionLoad(Part):
 
     def build(self) -> model.Load:
         """Return the load as the model has it."""
+        return self.built
+
+    @cached_property
+    def built(self) -> model.Load:
+        """The load as the model has it, which takes a time where a table is long."""
         return model.PositionTable(
             positions=self.positions,
             forces=self.forces,
@@ -150,6 +156,11 @@ class AngleLoad(Part):
 
     def build(self) -> model.Load:
         """Return the load as the model has it."""
+        return self.built
+
+    @cached_property
+    def built(self) -> model.Load:
+        """The load as the model has it, which takes a time where a table is long."""
         return model.AngleTable(angles=self.crank_angles, forces=self.forces, during=self.during)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -17,6 +17,31 @@ LONGEST = 100
 """How many are looked at: each costs a search for a near key."""
 
 Schema = dict[str, Any]
+
+_TABLE, _NUMBER, _WHOLE = "must be a table of keys", "must be a number", "must be a whole number"
+_RULES = {
+    **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), _TABLE),
+    **dict.fromkeys(("tuple_type", "list_type"), "must be a list"),
+    **dict.fromkeys(("float_type", "float_parsing"), _NUMBER),
+    **dict.fromkeys(("int_type", "int_from_float", "int_parsing"), _WHOLE),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "must be true or false"),
+    "int_parsing_size": "must be a whole number of moderate size",
+    "finite_number": "must be a finite number",
+    "string_type": "must be text in quotes",
+    "string_unicode": "must be text that can be printed",
+    "string_too_short": "must not be empty",
+}
+_LIMITS = {
+    "greater_than_equal": ("must be at least {}", "ge"),
+    "greater_than": ("must be above {}", "gt"),
+    "less_than_equal": ("must be at most {}", "le"),
+    "less_than": ("must be below {}", "lt"),
+    "string_pattern_mismatch": ("must match the pattern {}", "pattern"),
+    "string_too_long": ("must have at most {} characters", "max_length"),
+    "literal_error": ("must be {}", "expected"),
+    "enum": ("must be {}", "expected"),
+}
+"""What a kind of error says, by its name in pydantic, and which value of its context it names."""
 
 
 def explain(error: ValidationError, schema: Schema) -> list[str]:
@@ -34,14 +59,14 @@ def explain(error: ValidationError, schema: Schema) -> list[str]:
         if details["type"] == "extra_forbidden":
             allowed = list(_properties(schema, path[:-1]))
             near = closest(str(path[-1]), allowed)
-            meant.add(_key([*path[:-1], near]) if near else "")
+            meant.add(key_of([*path[:-1], near]) if near else "")
             unknown.append(_unknown(path, details["input"], allowed, near))
         else:
-            sentence = f"{_key(path)}: {_sentence(path, details, schema)}"
+            sentence = f"{key_of(path)}: {_sentence(path, details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
             else:
-                missing[_key(path)] = sentence
+                missing[key_of(path)] = sentence
     return [*unknown, *wrong, *(text for key, text in missing.items() if key not in meant)]
 
 
@@ -54,7 +79,7 @@ def _is_tag(part: object) -> bool:
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
 
 
-def _key(path: Sequence[object]) -> str:
+def key_of(path: Sequence[object]) -> str:
     """Return a location as a job file has it: mechanism.slider.mass, load #2.force."""
     text = ""
     for part in path:
@@ -69,7 +94,7 @@ def _key(path: Sequence[object]) -> str:
 
 def _unknown(path: Sequence[Any], value: object, allowed: list[str], near: str | None) -> str:
     choice = f"did you mean {near}?" if near else f"possible here: {', '.join(allowed)}"
-    return f"{_key(path)}: unknown key; got {shown(value)}; {choice}"
+    return f"{key_of(path)}: unknown key; got {shown(value)}; {choice}"
 
 
 def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str:
@@ -87,33 +112,24 @@ def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str
         near = closest(value, words) if isinstance(value, str) else None
         meant = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {got}{meant}"
-    rules = {
-        "model_type": "must be a table of keys",
-        "model_attributes_type": "must be a table of keys",
-        "dict_type": "must be a table of keys",
-        "tuple_type": "must be a list",
-        "string_type": "must be text in quotes",
-        "string_unicode": "must be text that can be printed",
-        "int_type": "must be a whole number",
-        "int_from_float": "must be a whole number",
-        "int_parsing_size": "must be a whole number of moderate size",
-    }
-    limits = {
-        "greater_than_equal": ("must be at least", "ge"),
-        "less_than_equal": ("must be at most", "le"),
-        "less_than": ("must be below", "lt"),
-    }
-    if kind in limits:
-        rule, name = limits[kind]
-        return f"{rule} {context[name]}; {got}{write}"
+    if kind == "string_pattern_mismatch":  # names of choices, which become columns
+        return f"must begin with a letter, then have letters, digits, spaces, - and _ only; {got}{write}"
     if kind == "string_too_long":
-        return f"must have at most {context['max_length']} characters; {got}; shorten it"
+        return f"{rule_of(details)}; {got}; shorten it"
     if kind in ("too_short", "too_long"):
         most = kind == "too_long"
         count = context["max_length" if most else "min_length"]
         return f"must have at {'most' if most else 'least'} {count} entries; got {context['actual_length']}{write}"
-    rule = rules.get(kind, details["msg"][:1].lower() + details["msg"][1:])
-    return f"{rule}; {got}{write}"
+    return f"{rule_of(details)}; {got}{write}"
+
+
+def rule_of(details: Mapping[str, Any]) -> str:
+    """Return what a value must be that a validator found wrong, without words of Python."""
+    kind, context = details["type"], details.get("ctx", {})
+    if kind in _LIMITS:
+        words, name = _LIMITS[kind]
+        return words.format(context[name])
+    return _RULES.get(kind) or str(details["msg"])[:1].lower() + str(details["msg"])[1:]
 
 
 def _any_of(words: Sequence[str]) -> str:

@@ -21,7 +21,7 @@ from .drive import DrivePart
 from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
-from .own import Declared, QuantityPart, folders_of, named
+from .own import MOST_OWN, Declared, QuantityPart, folders_of, named
 from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, slow_stroke_of, tables
 from .robust import RobustPart, robustly
 from .sections import EXAMPLE as SECTIONS
@@ -130,7 +130,7 @@ class Job(Part):
         description="a wanted slider motion, from which motion_deviation and motion_deviation_rms are counted",
         examples=[{"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]}],
     )
-    quantity: Annotated[dict[str, QuantityPart], Field(max_length=20), AfterValidator(named)] = Field(
+    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = Field(
         {},
         description="functions of your own as quantities, by name",
         examples=[{"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}}],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,7 +30,12 @@ def _function(text: str) -> str:
 
 
 def _unit(text: str) -> str:
-    kind_for(text)
+    try:
+        kind_for(text)
+    except InputError as error:
+        raise InputError(
+            f'must be a unit; got {shown(text)}: {error}; write it like "N m", or "" for a ratio'
+        ) from None
     return text
 
 
@@ -37,6 +43,10 @@ def _one_line(text: str) -> str:
     if not text.strip() or not text.isprintable():
         raise InputError(f"must be one line of text, not empty; got {shown(text)}")
     return text
+
+
+MOST_OWN = 20
+"""Functions of a job."""
 
 
 class QuantityPart(Part):
@@ -107,7 +117,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         )
     parts = parts if isinstance(parts, Mapping) else {}
     tables: dict[str, tuple[str, Kind]] = {}
-    for name, part in parts.items():
+    for name, part in itertools.islice(parts.items(), MOST_OWN):  # more are refused
         unit = part.get("unit", "") if isinstance(part, Mapping) else ""
         try:
             kind = kind_for(unit if isinstance(unit, str) else "")

@@ -19,7 +19,8 @@ from .file import DEEPEST
 from .quantities import ConstraintsPart
 from .values import AnyRange, Part, PositiveRange
 
-_ROOTS = ("mechanism", "load", "friction", "tolerances")
+ROOTS = ("mechanism", "load", "friction", "tolerances")
+"""Tables whose numbers may vary."""
 Table = dict[str, Any]
 
 
@@ -53,7 +54,7 @@ class VariablesPart(Part):
             return data
         found: dict[str, Any] = {}
         for key, value in data.items():
-            steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in _ROOTS else [key]
+            steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in ROOTS else [key]
             if len(steps) > DEEPEST:
                 raise InputError(f"a path has at most {DEEPEST} words; got {shown(key)}; shorten it")
             _place(found, steps, deepcopy(value), key)
@@ -62,7 +63,7 @@ class VariablesPart(Part):
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that vary beside the dimensions: path and what is given for it."""
-        return {path: leaf for root in _ROOTS for path, leaf in _leaves(getattr(self, root), root)}
+        return {path: leaf for root in ROOTS for path, leaf in _leaves(getattr(self, root), root)}
 
 
 class OptionPart(Part):

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from copy import deepcopy
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,13 +24,16 @@ from ..problem import Constraint, Range, Variant
 from ..units import closest, shown
 from .messages import explain
 from .quantities import constraints_of, slow_stroke_of
-from .values import Choices, ToleranceOf
+from .values import Choices, Part, ToleranceOf
+from .variables import ROOTS
 
 if TYPE_CHECKING:
     from .model import Job
 
 MOST = 200
 """Combinations of choices that are enumerated."""
+_MOST_READ = 2000
+"""Numbers that vary, counted in every combination: each takes up to 1 ms, with fifty loads."""
 DIMENSIONS = ("crank", "rod", "offset")
 _STRAY = 1e-12  # rounding of a factor
 
@@ -49,7 +51,7 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
     base = job.machine()
     found = []
     for path, given in job.variables.paths.items():
-        if not (isinstance(given, Mapping) and set(given) == {"choices"}):
+        if not _is_choice(given):
             found.append(_varying(job, f"{key}.{path}", path, given))
     try:
         return replace(base, varying=tuple(found))
@@ -69,6 +71,12 @@ def variants_of(job: Job) -> tuple[tuple[str, ...], tuple[Variant, ...]]:
             f"variables: every combination of choices is tried, so there are {MOST} at most; got {sizes} = {count}; "
             "leave out some, or let a number vary over a range"
         )
+    numbers = sum(not _is_choice(given) for given in job.variables.paths.values())
+    if count * numbers > _MOST_READ:
+        raise JobError(
+            f"variables: numbers that vary are read in every combination of choices, {_MOST_READ} in all at most; got "
+            f"{numbers} numbers in {count} combinations; leave out some of either"
+        )
     combinations = itertools.product(*(options for _, options in axes))
     variants = tuple(_variant(job, [name for name, _ in axes], chosen) for chosen in combinations)
     return tuple(name for name, _ in axes if name not in DIMENSIONS), variants
@@ -81,6 +89,10 @@ def ends_of(given: tuple[float, float] | Choices) -> Range:
     return Range(lower=given[0], upper=given[1])
 
 
+def _is_choice(given: object) -> bool:
+    return isinstance(given, Mapping) and set(given) == {"choices"}
+
+
 def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
     """Yield name and options of every choice."""
     for name in DIMENSIONS:
@@ -88,7 +100,7 @@ def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
         if isinstance(given, Choices):
             yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in given.choices]
     for path, given in job.variables.paths.items():
-        if isinstance(given, Mapping) and set(given) == {"choices"}:
+        if _is_choice(given):
             values = given["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
                 raise JobError(f"variables.{path}: choices are a list of two values or more; got {shown(values)}")
@@ -168,15 +180,11 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         raise JobError(
             f"{key}: must run from its lower to its upper end; got {shown(given[0])} to {shown(given[1])}; swap the two"
         )
-    low, high = (dict(_numbers(other.machine(), "")) for other in jobs)
-    end, there = (upper, high) if upper else (lower, low)
     sets = []
-    for place in low:
-        if low[place] == high.get(place):
-            continue
-        factor = there[place] / end
+    for place, low, high in _differing(jobs[0].machine(), jobs[1].machine(), ""):
+        factor = high / upper if upper else low / lower
         stray = _STRAY * abs(factor) * max(abs(lower), abs(upper))
-        if abs(low[place] - factor * lower) > stray or abs(high[place] - factor * upper) > stray:
+        if not (abs(low - factor * lower) <= stray and abs(high - factor * upper) <= stray):
             raise JobError(f"{key}: the machine does not follow it in proportion; let it be a choice instead")
         sets.append((place, factor))
     try:
@@ -194,19 +202,18 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
     key: where the values come from, for messages. Raises JobError.
     """
-    data = job.model_dump(exclude_unset=True)
-    known = [path for path, value in _given(data, "") if isinstance(value, int | float | str)]
-    data = deepcopy(data)
+    data: dict[str, Any] = _stated(job)
     for path, value in values.items():
-        steps = path.split(".")
-        table: Any = data
-        if path not in known:
+        root = path.partition(".")[0]
+        try:
+            if root not in ROOTS:
+                raise LookupError(root)
+            data = _with(data, path.split("."), value)
+        except LookupError:
+            known = [path for path, value in _given(job.model_dump(exclude_unset=True), "") if _is_plain(value)]
             near = closest(path, known)
             hint = f"did you mean {near}?" if near else "give it there, as the value that single designs have"
-            raise JobError(f"{key}: must name a number that the job gives; got {path}; {hint}")
-        for step in steps[:-1]:
-            table = table[int(step) - 1] if isinstance(table, list | tuple) else table[step]
-        table[steps[-1]] = value
+            raise JobError(f"{key}: must name a number that the job gives; got {path}; {hint}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
@@ -219,11 +226,45 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         raise JobError(f"{key}: {sentence}") from None
 
 
+def _stated(part: Any) -> dict[str, Any]:
+    """Return what a part of a job states, by key; its own parts as they are, so that they are not read again."""
+    return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
+
+
+def _with(part: Any, steps: list[str], value: Any) -> Any:
+    """Return a part of a job with a value in place of a plain one; what the path leads past stays as it was read.
+
+    Raises `LookupError` where the job has no number or text.
+    """
+    step, *rest = steps
+    table: Any
+    place: Any
+    if isinstance(part, list | tuple):
+        table, place = list(part), next((n for n in range(len(part)) if step == str(n + 1)), None)
+        if place is None or not rest:
+            raise LookupError(step)
+    elif isinstance(part, Part | Mapping):
+        table, place = _stated(part), step
+    else:
+        raise LookupError(step)
+    if rest:
+        table[place] = _with(table[place], rest, value)
+    elif _is_plain(table[place]):
+        table[place] = value
+    else:
+        raise LookupError(step)
+    return table
+
+
+def _is_plain(value: object) -> bool:
+    return isinstance(value, int | float | str)
+
+
 def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of everything in a job that is no table; places in lists count from 1."""
     if isinstance(data, Mapping):
         for name, item in data.items():
-            if root or name in ("mechanism", "load", "friction", "tolerances"):
+            if root or name in ROOTS:
                 yield from _given(item, f"{root}.{name}" if root else str(name))
     elif isinstance(data, list | tuple):
         for place, item in enumerate(data):
@@ -245,13 +286,18 @@ def _number(job: Job, path: str, key: str) -> float:
     return float(number)
 
 
-def _numbers(part: Any, root: str) -> Iterator[tuple[str, float]]:
-    """Yield dotted path and value of every number of a machine."""
-    if is_dataclass(part):
-        for field in fields(part):
-            yield from _numbers(getattr(part, field.name), f"{root}.{field.name}" if root else field.name)
-    elif isinstance(part, tuple):
-        for place, item in enumerate(part):
-            yield from _numbers(item, f"{root}.{place}")
-    elif isinstance(part, int | float) and not isinstance(part, bool):
-        yield root, float(part)
+def _differing(low: Any, high: Any, root: str) -> Iterator[tuple[str, float, float]]:
+    """Yield dotted path and both values of every number that differs between two machines."""
+    if low == high:
+        return
+    if is_dataclass(low) and type(low) is type(high):
+        for field in fields(low):
+            place = f"{root}.{field.name}" if root else field.name
+            yield from _differing(getattr(low, field.name), getattr(high, field.name), place)
+    elif isinstance(low, tuple) and isinstance(high, tuple) and len(low) == len(high):
+        for number, pair in enumerate(zip(low, high, strict=True)):
+            yield from _differing(*pair, f"{root}.{number}")
+    elif isinstance(low, int | float) and isinstance(high, int | float):
+        yield root, float(low), float(high)
+    else:  # of another kind: it does not follow
+        yield root, math.nan, math.nan

@@ -23,7 +23,7 @@ from .models import Whole
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
-from .turns import SIMULATING
+from .turns import READING, SIMULATING
 
 if TYPE_CHECKING:
     from ...model.linkage import Linkage
@@ -126,7 +126,8 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     from ...model.linkage import Linkage
 
     topics = chosen_topics(asked.show, job=True)
-    problem = given_problem(asked.job, settings.allowed_quantities, asked.values)
+    with READING:
+        problem = given_problem(asked.job, settings.allowed_quantities, asked.values)
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from importlib.metadata import PackageNotFoundError, version
 
 from fastapi import FastAPI
@@ -74,6 +75,8 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     )
     app.state.store = store
     app.state.settings = settings
+    app.state.told = {}  # faults that were logged, and when
+    app.state.reading = asyncio.Lock()
     app.state.submissions = RateLimit(settings.submissions_per_minute)
     app.state.feed = Feed(store)
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)

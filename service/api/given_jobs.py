@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..allowed_quantities import LONGEST_ANSWER, bounded, require_allowed
+from ..allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from .job_requests import require_no_file
 
 if TYPE_CHECKING:
@@ -20,8 +20,5 @@ def given_problem(
     allowed: functions, "module:function", that it may name as quantities. values: numbers to put in place of those
     that it gives, by their paths. Raises `JobError`, also for a job that names a file.
     """
-    from ...optimise.job import parse_job
-
     require_no_file(tables)
-    require_allowed(tables, allowed)
-    return bounded(parse_job(tables, values, allow_user_code=bool(allowed)), LONGEST_ANSWER)
+    return bounded(parse_allowed(tables, allowed, values), LONGEST_ANSWER)

@@ -10,14 +10,13 @@ from typing import Annotated, Any
 from fastapi import Header, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
-from .strict_input import read_json, require_moderate
+from .strict_input import GIVEN, in_turn, read_json, require_moderate
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -99,7 +98,7 @@ async def asked_for(request: Request) -> Asked:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        tables = await run_in_threadpool(tables_of, body, settings.most_depth)
+        tables = await in_turn(request.app, body, tables_of, body, settings.most_depth)
         return Asked(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
@@ -107,7 +106,8 @@ async def asked_for(request: Request) -> Asked:
             f"a job comes as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; give one of these content types",
         )
     try:
-        stated = Submission.model_validate(await run_in_threadpool(read_json, body, settings.most_depth))
+        given = request.scope[GIVEN] if GIVEN in request.scope else read_json(body, settings.most_depth)  # of no body
+        stated = Submission.model_validate(given)
     except ValidationError as error:
         found = error.errors(include_url=False)
         raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None

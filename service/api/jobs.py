@@ -16,13 +16,15 @@ from ..job_record import job_record
 from ..store import Job, State, Store
 from ..submission import submit
 from .exports import formats
-from .job_requests import Asked, Clone, IdempotencyKey, asked_for, require_no_file, within
+from .given_jobs import given_problem
+from .job_requests import Asked, Clone, IdempotencyKey, asked_for, within
 from .merge_patch import merged
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
 from .problems import problem_responses
 from .rate_limit import limit_submissions
 from .settings import Settings
 from .state import SettingsDep, StoreDep
+from .turns import READING
 
 router = APIRouter(tags=["jobs"])
 _SUBMITTED: dict[str, Any] = {
@@ -130,7 +132,8 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
 
 
 def _submitted(asked: Asked, store: Store, settings: Settings, response: Response, key: str | None) -> dict[str, Any]:
-    require_no_file(asked.tables)
+    with READING:
+        problem = given_problem(asked.tables, settings.allowed_quantities)
     job: Job = submit(
         store,
         asked.tables,
@@ -138,7 +141,7 @@ def _submitted(asked: Asked, store: Store, settings: Settings, response: Respons
         key=key,
         limits=asked.limits,
         source=asked.source,
-        allowed_quantities=settings.allowed_quantities,
+        checked=problem.name,
     )
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job_record(job)

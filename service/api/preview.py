@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from .given_jobs import given_problem
 from .schema import Understood, understood
 from .state import SettingsDep
+from .turns import READING
 
 if TYPE_CHECKING:
     from ...model.linkage import Linkage
@@ -89,7 +90,6 @@ class PreviewModel(BaseModel):
     """What can be said of a job while it is being written."""
 
     wrong: list[WrongModel]
-    checked: bool = Field(description="false for a job of so many values that only its submission checks it")
     understood: Understood | None = Field(description="what was understood, once nothing is wrong")
     allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
     example: ExampleModel | None = Field(description="null where nothing turns fully")
@@ -100,14 +100,14 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
     from ..preview.look import look_at
 
-    look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
-    return PreviewModel(
-        wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
-        checked=look.checked,
-        understood=None if look.problem is None else understood(look.problem, draft.job),
-        allowed=_allowed(look),
-        example=_example(look),
-    )
+    with READING:
+        look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
+        return PreviewModel(
+            wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
+            understood=None if look.problem is None else understood(look.problem, draft.job),
+            allowed=_allowed(look),
+            example=_example(look),
+        )
 
 
 def _allowed(look: Look) -> AllowedModel | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
@@ -28,6 +29,8 @@ _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (NotFound, HTTPStatus.NOT_FOUND),
     (InputError, HTTPStatus.UNPROCESSABLE_ENTITY),
 )
+_QUIET = 60.0  # s
+_OBJECT = ("model_type", "model_attributes_type", "dict_type")
 _RETRY = {"Retry-After": "5"}
 
 
@@ -66,17 +69,33 @@ def status_of(error: SlidercrankError) -> HTTPStatus:
     return next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
 
 
-async def _refused(_request: Request, error: Exception) -> Response:
+async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = status_of(error)
-    if status >= HTTPStatus.INTERNAL_SERVER_ERROR:
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and _is_news(request.app.state.told, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None)
 
 
-async def _not_valid(_request: Request, error: Exception) -> Response:
+def _is_news(told: dict[str, float], sentence: str) -> bool:
+    """Whether a fault was not logged within the last minute: every request meets it, as long as it lasts."""
+    now = time.monotonic()
+    if now - told.get(sentence, -_QUIET) < _QUIET:
+        return False
+    for old in [one for one, at in told.items() if now - at >= _QUIET]:
+        del told[old]
+    told[sentence] = now
+    return True
+
+
+async def _not_valid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     found = error.errors()
+    if any(isinstance(one["input"], bytes) for one in found):  # what is not JSON by its type stays as it came
+        kind = request.headers.get("content-type", "no type")[:100]
+        turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
+        sentence = f"body: is a JSON object of the type application/json; got {kind}; send it as that{turned}"
+        return problem(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
     sentences = [_sentence(one) for one in found[:_MOST]]
     more = ["... and more"] if len(found) > _MOST else []
     return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *more]))
@@ -105,6 +124,7 @@ def _methods(request: Request) -> list[str]:
 
 def _sentence(details: Mapping[str, Any]) -> str:
     """Return rule and value of one thing that is wrong in a request."""
+    from ...optimise.job.messages import rule_of
     from ...optimise.units import shown
 
     where = _place(details["loc"])
@@ -112,8 +132,8 @@ def _sentence(details: Mapping[str, Any]) -> str:
         return f"{where}: is required; it is missing; add it"
     if details["type"] == "extra_forbidden":
         return f"{where}: unknown; got {shown(details['input'])}; leave it out"
-    message = str(details["msg"])
-    return f"{where}: {message[:1].lower()}{message[1:]}; got {shown(details['input'])}; correct it"
+    rule = rule_of(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"
+    return f"{where}: {rule}; got {shown(details['input'])}; correct it"
 
 
 def _place(location: Sequence[Any]) -> str:

@@ -12,6 +12,7 @@ from .given_jobs import given_problem
 from .job_requests import Asked, asked_for
 from .problems import problem_responses
 from .state import SettingsDep
+from .turns import READING
 
 if TYPE_CHECKING:
     from ...optimise.problem import Problem
@@ -48,7 +49,8 @@ def show_schema() -> dict[str, Any]:
 @router.post("/check", responses=problem_responses(415))
 def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
     """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
-    return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
+    with READING:
+        return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
 
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:

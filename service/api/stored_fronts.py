@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
-from ..allowed_quantities import LONGEST_ANSWER, bounded, require_allowed
+from ..allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..designs.columns import Column, find_column
 from ..designs.stored_designs import StoredDesign, design_of, front_of
 from ..runs.result import Result, Row
@@ -132,11 +132,7 @@ class StoredFronts:
         return front
 
     def _problem(self, number: int) -> Problem:
-        from ...optimise.job import parse_job
-
-        tables = self._store.tables(number)
-        require_allowed(tables, self._allowed)
-        return bounded(parse_job(tables, allow_user_code=bool(self._allowed)), LONGEST_ANSWER)
+        return bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_ANSWER)
 
     def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
         self._kept[key] = front

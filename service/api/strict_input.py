@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
 import re
 from collections import Counter
+from collections.abc import Callable
 from http import HTTPStatus
-from typing import Any
+from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
@@ -16,11 +18,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from ...model.errors import InputError
 from .problems import problem
 
+T = TypeVar("T")
 _JSON = re.compile(r"application/(json|[\w.+-]+\+json)\s*(;.*)?", re.IGNORECASE)
 _LARGEST = 2**53
 """Whole numbers beyond it change on their way through the numbers of other languages (RFC 8259, 6)."""
 _DIGITS = 4 * len(str(_LARGEST))
-_LARGE = 16_384  # bytes; longer bodies are read in a thread, so that other requests go on meanwhile
+_LARGE = 16_384  # bytes; longer bodies are read in a thread, one at a time, so that other requests go on meanwhile
+GIVEN = "slidercrank.json"
+"""Key of a request's scope with what its body says, if that is JSON."""
 
 
 class StrictInput:
@@ -49,10 +54,7 @@ class StrictInput:
             return
         if body and _JSON.fullmatch(headers.get("content-type", "")):
             try:
-                if len(body) > _LARGE:
-                    await run_in_threadpool(read_json, body, self.most_depth)
-                else:
-                    read_json(body, self.most_depth)
+                scope[GIVEN] = await in_turn(scope["app"], body, read_json, body, self.most_depth)
             except InputError as error:
                 await problem(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
                 return
@@ -74,6 +76,15 @@ class StrictInput:
                 return None
             more = message.get("more_body", False)
         return b"".join(parts)
+
+
+async def in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
+    """Return what a body says. Large ones wait for each other: reading one holds the interpreter for long stretches."""
+    if len(body) <= _LARGE:
+        return read(*of)
+    turn: asyncio.Lock = app.state.reading
+    async with turn:
+        return await run_in_threadpool(read, *of)
 
 
 def _again(body: bytes, receive: Receive) -> Receive:

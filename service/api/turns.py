@@ -44,3 +44,5 @@ class Turns:
 DRAWING = Turns("drawing")
 """matplotlib is not made for threads."""
 SIMULATING = Turns("simulation")
+READING = threading.Lock()
+"""Jobs are read one at a time: several at once would not be sooner done, and keep signs of life waiting."""

@@ -16,6 +16,7 @@ from ..workers.sizes import size_of
 from .screen import give
 from .stores import Address, open_store, store_address
 from .worker_options import (
+    AllowQuantity,
     Grace,
     Lease,
     LogFormat,
@@ -51,10 +52,7 @@ def serve(
     allow_host: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="By which the service may be called, too. Repeatable.")
     ] = None,
-    allow_quantity: Annotated[
-        list[str] | None,
-        typer.Option(metavar="MODULE:FUNCTION", help="That jobs may name as a quantity of their own. Repeatable."),
-    ] = None,
+    allow_quantity: AllowQuantity = None,
     submissions: Annotated[
         int, typer.Option("--submissions-per-minute", min=0, help="Of all clients together; 0 is no limit.")
     ] = 600,

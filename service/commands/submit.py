@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -52,27 +52,32 @@ def submit(
     It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
     """
     from ...optimise.job import load_job, read_job
+    from ..allowed_quantities import functions_of
     from ..job_record import job_record
     from ..runs.result import json_text
     from ..store import Limits
     from ..submission import submit as put_in
 
-    load_job(job, allow_user_code=False)  # for its messages, which name the file
+    load_job(job)  # for its messages, which name the file
+    tables = read_job(job)
+    functions = sorted(set(functions_of(tables).values()))
     most = None if memory is None else size_of(memory, "--memory")
     limits = Limits(seconds=seconds, evaluations=evaluations, memory=most)
     with open_store(store) as opened:
         queued = put_in(
             opened,
-            read_job(job),
+            tables,
             priority=priority,
             key=key,
             most_attempts=attempts,
             limits=limits,
             source=_source(job),
+            allowed_quantities=functions,
         )
         if not (watch and json):
             give(json_text(job_record(queued)) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
         if queued.state == "queued":
+            _tell_of(functions, job)
             tell_idle(opened)
         if watch:
             raise typer.Exit(_follow(opened, queued, json=json))
@@ -88,6 +93,16 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
         if found.state == "queued":
             tell_idle(opened)
         raise typer.Exit(_follow(opened, found, json=json))
+
+
+def _tell_of(functions: Sequence[str], job: Path) -> None:
+    """Say what workers need for a job that names functions of its own."""
+    if functions:
+        options = " ".join(f"--allow-quantity {function}" for function in functions)
+        say(
+            f"slidercrank: workers call {', '.join(functions)} only if they may, and find the module where they were "
+            f"started: slidercrank serve {options}; or solve the job here: slidercrank optimise {job}"
+        )
 
 
 def _source(job: Path) -> Artefact | None:

@@ -11,6 +11,7 @@ from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, Tl
 from ..workers.sizes import size_of
 from .stores import Address, open_store, store_address
 from .worker_options import (
+    AllowQuantity,
     Grace,
     Lease,
     LogFormat,
@@ -26,6 +27,7 @@ def worker(
     store: Address = None,
     processes: Annotated[int, typer.Option(min=1, max=256, help="How many; each solves one job at a time.")] = 1,
     lease: Lease = 30.0,
+    allow_quantity: AllowQuantity = None,
     drain: Annotated[bool, typer.Option("--drain", help="End as soon as no job waits.")] = False,
     most_running: MostRunning = None,
     most_seconds: MostSeconds = None,
@@ -59,7 +61,9 @@ def worker(
         lease=lease,
         drain=drain,
         most_running=most_running,
-        terms=Terms(limits=limits, grace=grace, engine=engine),
+        terms=Terms(
+            limits=limits, grace=grace, engine=engine, allowed_quantities=tuple(sorted(set(allow_quantity or ())))
+        ),
         log_format=log_format.value,
     )
     with Termination() as termination:

@@ -24,6 +24,10 @@ Lease = Annotated[
 Grace = Annotated[
     float, typer.Option(min=0.0, max=600.0, help="Seconds that a round has to end once the worker is to stop.")
 ]
+AllowQuantity = Annotated[
+    list[str] | None,
+    typer.Option(metavar="MODULE:FUNCTION", help="That jobs may name as a quantity of their own. Repeatable."),
+]
 MostRunning = Annotated[
     int | None, typer.Option(min=1, help="Let at most so many jobs of the store be solved at a time.")
 ]

@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
-from ..allowed_quantities import LONGEST_CALL, bounded, ending_own, require_allowed
+from ..allowed_quantities import LONGEST_CALL, bounded, ending_own, parse_allowed
 from ..disk_room import full_places, is_full
 from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
@@ -209,13 +209,10 @@ def _solve(
     store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, pulse: Pulse, stop: Stop
 ) -> None:
     _load(claim, 0)
-    from ...optimise.job import parse_job
     from ...optimise.solve import solve
 
     _load(claim, 1)
-    tables = store.tables(claim.job.id)
-    require_allowed(tables, terms.allowed_quantities)
-    problem = parse_job(tables, allow_user_code=bool(terms.allowed_quantities))
+    problem = parse_allowed(store.tables(claim.job.id), terms.allowed_quantities)
     problem = bounded(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
     latest: list[Array] = []

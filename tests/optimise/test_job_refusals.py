@@ -253,7 +253,7 @@ def test_several_problems_are_listed_unknown_keys_first_missing_ones_last() -> N
 
 def test_very_many_problems_are_cut_short() -> None:
     with pytest.raises(JobError) as caught:
-        parse_job(tomllib.loads(SIEVE) | {f"key{n}": n for n in range(20_000)})
+        parse_job(tomllib.loads(SIEVE) | {f"key{n}": n for n in range(9_000)})
     lines = str(caught.value).splitlines()
     assert len(lines) == 10
     assert lines[0] == "very many problems"
@@ -266,7 +266,11 @@ def test_very_many_problems_are_cut_short() -> None:
         ([], "a job must be a table of keys; got []"),
         ("name", 'a job must be a table of keys; got "name"'),
         ({1: 2}, "a key must be text; got 1"),
-        ({"name": None}, '"name" must have a value; got null'),
+        ({"name": None}, "name: must have a value; got null"),
+        ({"load": [{"viscous": None}]}, "load #1.viscous: must have a value; got null"),
+        ({"load": [None]}, "load #1: must be a table such as"),
+        ({"robust": {"kind": "percentile", "share": "x"}}, 'robust.share: must be a number; got "x"'),
+        ({"choice": [{"name": "a.b", "option": []}]}, "choice #1.name: must begin with a letter"),
         ({"name": [[[[[[[[[[]]]]]]]]]]}, "nest at most 8 deep"),
         ({"a\nb": 1}, '"a\\nb": unknown key'),
         ({"name": "\ud800"}, "name: must be"),

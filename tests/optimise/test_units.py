@@ -142,7 +142,7 @@ BAD = [
     (math.nan, kinds.LENGTH, ["finite", "nan"]),
     (math.inf, kinds.RATIO, ["finite", "inf"]),
     (True, kinds.LENGTH, ["length", "true", "80 mm"]),
-    (None, kinds.LENGTH, ["length", "None"]),
+    (None, kinds.LENGTH, ["length", "null"]),
     (["80 mm"], kinds.LENGTH, ['["80 mm"]']),
     ({"mm": 80}, kinds.LENGTH, ["a table of 1 keys"]),
     (10**400, kinds.LENGTH, ["a very long whole number", "check the unit"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -91,11 +92,33 @@ def test_what_cannot_be_submitted_is_one_sentence(
     assert done.stderr.count("\n") == 1
 
 
-def test_a_job_with_functions_of_its_own_is_refused(job: Path, command: Command) -> None:
-    job.write_text(f'{fronts.JOB}\n[quantity]\nmine = {{ function = "os:getcwd", unit = "mm" }}\n')
-    done = command("submit", job)
-    assert done.exit_code == 2
-    assert "functions of your own are not run here" in done.stderr
+@pytest.mark.parametrize("who", ["nobody", "a worker", "this command"])
+def test_a_function_of_a_job_is_called_where_whoever_runs_it_allows_it(
+    who: str, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = fronts.JOB.replace("[objectives]", '[objectives]\nmine = "minimise"')
+    (tmp_path / "own.toml").write_text(f'{text}\n[quantity]\nmine = {{ function = "lengths:rod", unit = "mm" }}\n')
+    (tmp_path / "lengths.py").write_text("def rod(designs):\n    return designs.rod[:, 0]\n")
+    monkeypatch.chdir(tmp_path)
+    if who == "this command":
+        assert command("optimise", "own.toml", "--no-figures").exit_code == 0
+        return
+    done = command("submit", "own.toml")
+    assert (done.exit_code, done.stdout.splitlines()) == (0, ["job 1: Short test [job], queued"])
+    told = done.stderr.splitlines()[0]
+    assert told.endswith(
+        "slidercrank serve --allow-quantity lengths:rod; or solve the job here: slidercrank optimise own.toml"
+    )
+    options = re.findall(r"--allow-quantity \S+(?=;)", told)[0].split() if who == "a worker" else []
+    assert command("worker", "--drain", *options).exit_code == 0
+    job = json.loads(command("jobs", "--json").stdout)[0]
+    if who == "a worker":
+        assert (job["state"], job["summary"]["designs"] > 0) == ("done", True), job
+    else:
+        assert job["state"] == "failed"
+        assert (
+            'only functions that the operator allows are run here; got "lengths:rod"; have it allowed' in job["reason"]
+        )
 
 
 def test_jobs_are_listed_with_what_they_found(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 import tomllib
@@ -12,6 +13,7 @@ import httpx
 import pytest
 
 from slidercrank.model.linkage import Linkage
+from slidercrank.optimise.job.file import MOST
 from tests.service.api.serving import refused
 
 Job = dict[str, Any]
@@ -197,12 +199,22 @@ def test_no_job_takes_long_or_breaks_the_preview(shared: httpx.Client, feeder: J
     assert time.monotonic() - begin < 5.0  # far from what is usual, near to what would mean no bound at all
 
 
-def test_a_job_of_very_many_values_is_looked_at_but_not_read(shared: httpx.Client, feeder: Job) -> None:
-    found = preview(shared, hostile(feeder)["tables of loads"])
-    assert not found["checked"]
-    assert found["understood"] is None
-    assert found["example"] is not None
-    assert preview(shared, feeder)["checked"]
+def test_a_job_of_too_many_values_is_refused_with_their_number_at_every_door(shared: httpx.Client, feeder: Job) -> None:
+    count = len(json.dumps(feeder).split(",")) + MOST
+    rule = f"a job has at most {MOST} values, lists and tables; got "
+    empty: list[Any] = [{}, {"viscous": 1.0}, []]
+    for one in empty:
+        job = {**feeder, "load": [one] * count}
+        found = preview(shared, job)
+        assert [one["path"] for one in found["wrong"]] == [""]
+        assert found["wrong"][0]["sentence"].startswith(rule)
+        assert found["understood"] is found["example"] is found["allowed"] is None
+        for path in ("/check", "/jobs", "/toml"):
+            assert refused(shared.post(path, json={"job": job}), 422) == found["wrong"][0]["sentence"]
+    text = b"[[load]]\n" * count
+    assert refused(shared.post("/check", content=text, headers={"Content-Type": "application/toml"}), 422).startswith(
+        rule
+    )
 
 
 def test_a_preview_is_of_a_job_and_nothing_else(shared: httpx.Client) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
+import os
 import socket
 from pathlib import Path
 
 import httpx
 import pytest
 
+from slidercrank.optimise.units import shown
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.store import Artefact, Store
 from tests.service.api.conftest import Serve
@@ -158,11 +160,29 @@ def test_a_store_deleted_or_replaced_while_it_is_served_is_noticed_at_once(
     assert "was deleted, moved or replaced" in refused(client.get("/health/ready"), 503)
     refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
     assert not file.exists(), "no empty one is made in its place"
-    assert "was deleted, moved or replaced" in caplog.text
+    assert caplog.text.count("was deleted, moved or replaced") == 1, "told once, not at every request"
     file.touch()
     refused(client.get("/jobs"), 503)
     away.replace(file)
     assert client.get("/jobs/1").json()["state"] == "queued"
+
+
+def test_a_store_that_may_no_longer_be_written_is_noticed_and_used_again_once_it_may(
+    client: httpx.Client, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "store.db"
+    # Of root, too, the bits of the file count here.
+    monkeypatch.setattr(os, "access", lambda path, _mode: Path(path).stat().st_mode & 0o600 == 0o600)
+    assert client.get("/health/ready").status_code == 200
+    for mode in (0o400, 0o000):
+        file.chmod(mode)
+        for _ in range(3):
+            sentence = refused(client.get("/health/ready"), 503)
+            refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
+        assert f"is not any more; give these rights back: chmod u+rw {file}" in sentence
+        assert caplog.text.count("stays readable and writable") == 1
+        file.chmod(0o600)
+        assert client.get("/health/ready").status_code == 200
 
 
 def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:
@@ -172,7 +192,9 @@ def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:
         for function in functions:
             job = {**EXAMPLE, "quantity": {"x": {"function": function}}}
             for path in ("/jobs", "/check"):
-                assert "only functions that the operator allows" in refused(client.post(path, json={"job": job}), 422)
+                sentence = refused(client.post(path, json={"job": job}), 422)
+                assert sentence.startswith("quantity.x.function: must "), sentence
+                assert f"got {shown(function)}; " in sentence
 
 
 def test_a_database_that_is_gone_is_told_with_when_to_come_again(

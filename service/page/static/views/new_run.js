@@ -130,8 +130,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     mark(answer.wrong);
     const count = answer.wrong.length;
     status.classList.toggle("good", count === 0);
-    if (!answer.checked) say("This job has very many values; starting it checks them.");
-    else say(count === 0 ? "Ready to start." : count === 1 ? "One thing to correct." : `${count} things to correct.`);
+    say(count === 0 ? "Ready to start." : count === 1 ? "One thing to correct." : `${count} things to correct.`);
     showFacts(facts, answer);
     drawn.show(answer.example);
   }
