@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..figures.style import INK, MUTED, new_figure, write
-from .document import Block, Facts, Paragraph, Picture, Report, Section, Table, Tone
-from .text_lines import wrapped
+from .document import Facts, Paragraph, Picture, Report, Section, Table, Tone
+from .text_lines import longest_word, wrapped
 
 WIDTH, HEIGHT = 8.27, 11.69  # inches, A4
 _LEFT, _RIGHT, _TOP, _BOTTOM = 0.75, 0.75, 0.75, 0.85
@@ -101,9 +101,12 @@ class _Layout:
         for block, after in zip(section.blocks, (*section.blocks[1:], None), strict=True):
             if isinstance(block, Paragraph) and isinstance(after, Table):
                 self.room(1.3)  # what is said of a table stays with it
-            self.block(block)
+            if isinstance(block, Facts):
+                self.facts(block, tail=2.0 * _TEXT * _LEADING if isinstance(after, Paragraph) else 0.0)
+            else:
+                self.block(block)
 
-    def block(self, block: Block) -> None:
+    def block(self, block: Paragraph | Table | Picture) -> None:
         """Write a part of a section."""
         if isinstance(block, Paragraph):
             size = _SMALL + 0.4 if block.tone == "note" else _TEXT
@@ -112,18 +115,16 @@ class _Layout:
             bold = block.tone == "bad"
             self.lines(wrapped(text, size, _ACROSS, bold=bold), size, ink=_INKS[block.tone], bold=bold)
             self.y -= 0.03
-        elif isinstance(block, Facts):
-            self.facts(block)
         elif isinstance(block, Table):
             self.table(block)
         else:
             self.picture(block)
 
-    def facts(self, facts: Facts) -> None:
-        """Write names with what there is to say beside them."""
-        for name, texts in facts.rows:
+    def facts(self, facts: Facts, *, tail: float) -> None:
+        """Write names with what there is to say beside them. tail: inches of what stays with the last of them."""
+        for place, (name, texts) in enumerate(facts.rows, 1):
             lines = [line for text in texts for line in wrapped(text, _TEXT, _ACROSS - _NAMES)]
-            self.room(min(len(lines), 4) * _TEXT * _LEADING)
+            self.room(min(len(lines), 4) * _TEXT * _LEADING + (tail if place == len(facts.rows) else 0.0))
             top = self.y - _TEXT * _LEADING
             page = self.pages[-1]
             write(page.figure, _LEFT, top, name, fontsize=_TEXT, color=MUTED)
@@ -133,7 +134,7 @@ class _Layout:
     def table(self, table: Table) -> None:
         """Write a table, its heads again on every page."""
         size = _SMALL if table.small else _TEXT - 0.6
-        widths = [share * _ACROSS for share in table.wide]
+        widths = _widths(table, size)
         cells = [self._cells(row, widths, size, bold=place in table.bold) for place, row in enumerate(table.rows)]
         heads = self._cells(table.heads, widths, size, bold=True)
         self.room((4 + max(map(len, heads))) * size * _LEADING + 0.3)
@@ -198,3 +199,19 @@ class _Layout:
     ) -> None:
         style = {"fontsize": size, "color": ink, "ha": "right" if right else "left"}
         write(self.pages[-1].figure, x, self.y, text, weight="bold" if bold else "normal", **style)
+
+
+def _widths(table: Table, size: float) -> list[float]:
+    """Return the widths of a table's columns, inches: the shares it asks for, wider where a word would be broken."""
+    asked = [share * _ACROSS for share in table.wide]
+    least = []
+    for place, head in enumerate(table.heads):
+        words = [longest_word(head, size, bold=True)]
+        words += [longest_word(row[place], size, bold=number in table.bold) for number, row in enumerate(table.rows)]
+        least.append(max(words) + _BETWEEN + 1e-6)
+    short = sum(max(need - width, 0.0) for need, width in zip(least, asked, strict=True))
+    spare = sum(max(width - need, 0.0) for need, width in zip(least, asked, strict=True))
+    if short > spare:
+        return asked
+    given = short / spare if spare > 0.0 else 0.0
+    return [need if need >= width else width - given * (width - need) for need, width in zip(least, asked, strict=True)]

@@ -27,6 +27,11 @@ def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list
     return [*lines, line] if line or not lines else lines
 
 
+def longest_word(text: str, size: float, *, bold: bool = False) -> float:
+    """Return the width of the longest word of a text, inches, in letters of `size` points."""
+    return max((_width(word, size, bold) for word in text.split()), default=0.0)
+
+
 def _fits(text: str, size: float, width: float, bold: bool) -> bool:
     return _width(text, size, bold) <= width
 
