@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from .links import Bar, Link
 from .loads import AngleTable, PositionTable, StrokeForce, Viscous
 from .mechanism import Mechanism
 
@@ -18,13 +19,47 @@ _ROUNDING = 1e-12
 def works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may differ from zero for some design.
 
-    It does not without friction, acceleration of the crank, viscous loads, loads that differ between the strokes and
-    loads over crank angle. Of numbers that vary two values each are tried, neither of them special.
+    It does not without friction of what is loaded, acceleration of the crank, viscous loads, loads that differ between
+    the strokes and loads over crank angle. Of numbers that vary two values each are tried, neither of them special.
     """
     if not mechanism.varying:
         return _works(mechanism)
     inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
     return _works(mechanism.fullest) or _works(mechanism.at(inner))
+
+
+def linkage_loaded(machine: Mechanism) -> bool:
+    """Return whether forces act on rod or slider: loads, or weight and inertia of what moves."""
+    driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
+    return (moves(machine) and driven) or any(
+        machine.speed != 0.0 or not isinstance(load, Viscous) for load in machine.loads
+    )
+
+
+def pivot_loaded(machine: Mechanism) -> bool:
+    """Return whether a force acts on the crank pivot: that of the linkage, or weight and inertia of the crank."""
+    driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
+    return linkage_loaded(machine) or (crank_weighs(machine) and driven)
+
+
+def moves(machine: Mechanism) -> bool:
+    """Return whether rod or slider has a mass or an inertia."""
+    return machine.slider_mass > 0.0 or _weighs(machine.rod)
+
+
+def crank_weighs(machine: Mechanism) -> bool:
+    """Return whether the crank, with its counterweight, has a mass or an inertia."""
+    return _weighs(machine.crank) or machine.counterweight.mass > 0.0 or machine.counterweight.inertia > 0.0
+
+
+def _weighs(link: Link) -> bool:
+    return isinstance(link, Bar) or link.mass > 0.0 or bool(link.inertia)
+
+
+def _rubs(machine: Mechanism) -> bool:
+    friction = machine.friction
+    beyond = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
+    return (beyond and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
 
 
 def _works(machine: Mechanism) -> bool:
@@ -38,7 +73,7 @@ def _works(machine: Mechanism) -> bool:
     )
     return (
         machine.acceleration != 0.0
-        or machine.friction.acts
+        or _rubs(machine)
         or _adds_up(pushes)
         or _adds_up(drags)
         or outward != inward

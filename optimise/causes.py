@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..model.links import Bar, Link
-from ..model.loads import Viscous
+from ..model.dissipation import crank_weighs, linkage_loaded, moves, pivot_loaded
 from ..model.mechanism import Mechanism
 from ..model.signals import Signal
 from ..objectives.cycle_average import CycleAverage
@@ -14,7 +13,7 @@ from ..objectives.position_error import POSITION_ERRORS
 from ..objectives.quantity import Quantity
 from ..objectives.self_locking import SELF_LOCKING_MARGIN
 
-_FORCES = (Signal.PIVOT_FORCE, Signal.CRANK_PIN_FORCE, Signal.SLIDER_PIN_FORCE, Signal.GUIDE_FORCE)
+_BEYOND_CRANK = (Signal.CRANK_PIN_FORCE, Signal.SLIDER_PIN_FORCE, Signal.GUIDE_FORCE)
 _SHAKING = (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT)
 _MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
@@ -50,13 +49,9 @@ def zero_because(quantity: Quantity, machines: Iterable[Mechanism]) -> str | Non
 
 def _zero_because(of: Quantity, machine: Mechanism) -> str | None:
     m = machine.fullest
-    moving = m.slider_mass > 0.0 or _weighs(m.rod)
-    turning = _weighs(m.crank) or m.counterweight.mass > 0.0 or m.counterweight.inertia > 0.0
-    pulled = any(m.gravity) or m.acceleration != 0.0
-    driven = pulled or m.speed != 0.0
+    weighs = crank_weighs(m)
     # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
-    loaded = any(m.speed != 0.0 or not isinstance(load, Viscous) for load in m.loads)
-    torque = loaded or (moving and driven) or (turning and pulled)
+    driven = linkage_loaded(m) or (weighs and (any(m.gravity) or m.acceleration != 0.0))
     if not isinstance(of, CyclePeak | CycleAverage):
         return None
     powers = of.signal is Signal.POWER or (isinstance(of, CycleAverage) and of.times_speed)
@@ -64,11 +59,15 @@ def _zero_because(of: Quantity, machine: Mechanism) -> str | None:
         return _SPEED
     if m.speed == m.acceleration == 0.0 and (of.signal is Signal.SLIDER_ACCELERATION or of.signal in _SHAKING):
         return _SPEED
-    if (of.signal is Signal.REFLECTED_INERTIA or of.signal in _SHAKING) and not (moving or turning):
+    if (of.signal is Signal.REFLECTED_INERTIA or of.signal in _SHAKING) and not (weighs or moves(m)):
         return _MASSES
-    if of.signal in (Signal.TORQUE, Signal.POWER) and not torque:
+    if of.signal is Signal.SHAKING_MOMENT and not (moves(m) or m.acceleration != 0.0):
+        return _MASSES  # a crank at constant speed shakes by a force through its pivot
+    if of.signal in _BEYOND_CRANK and not linkage_loaded(m):
         return _LOADS
-    if of.signal in _FORCES and not (torque or (turning and driven)):
+    if of.signal in (Signal.TORQUE, Signal.POWER) and not driven:
+        return _LOADS
+    if of.signal is Signal.PIVOT_FORCE and not pivot_loaded(m):
         return _LOADS
     if isinstance(of, CycleAverage) and of.zero_for(machine):
         return _WORK.format("peak_power" if of.times_speed else "peak_torque or rms_torque")
@@ -79,7 +78,3 @@ def _nominal(quantity: Quantity) -> Quantity:
     """Return the quantity that a robust one is made of."""
     found: Quantity = getattr(quantity, "inner", quantity)
     return found
-
-
-def _weighs(link: Link) -> bool:
-    return isinstance(link, Bar) or link.mass > 0.0 or bool(link.inertia)

@@ -25,13 +25,14 @@ from slidercrank.optimise.zero_objectives import require_ranking
 from tests.optimise.test_zero_objectives import job
 
 DESIGNS = np.array([[0.05, 0.2, 0.03], [0.03, 0.11, -0.02], [0.06, 0.25, 0.01]])
-CAUSES = ("speed", "masses", "gravity", "tolerances", "friction", "viscous load")
+CAUSES = ("speed", "masses", "heavy crank", "gravity", "tolerances", "friction", "viscous load")
 
 
 def machine(*causes: str) -> Mechanism:
     has = dict.fromkeys(CAUSES, False) | dict.fromkeys(causes, True)
     return Mechanism(
         speed=20.0 if has["speed"] else 0.0,
+        crank=RigidLink(mass=0.5 if has["heavy crank"] else 0.0),
         rod=RigidLink(mass=0.8 if has["masses"] else 0.0),
         slider_mass=2.0 if has["masses"] else 0.0,
         gravity=(0.0, -9.81 if has["gravity"] else 0.0),

@@ -52,7 +52,10 @@ def test_a_job_that_is_solved_shows_how_its_front_grows(tmp_path: Path, monkeypa
     with Store(tmp_path / "store.db") as store:
         number = submit(store, tomllib.loads(fronts.JOB)).id
         work(store, drain=True)
-        assert all(0 < len(at["front"]["points"]) <= MOST for at in shown)
+        loading = [at for at in shown if at["stage"] == "loading"]
+        assert loading == shown[: len(loading)]
+        assert all("front" not in at for at in loading)
+        assert all(0 < len(at["front"]["points"]) <= MOST for at in shown[len(loading) :])
         assert shown[-1]["front"]["columns"] == ["time_ratio", "least_transmission_angle_deg"]
         assert all("front" not in event.data for event in store.events(number))
         best = max(row["time_ratio"] for row in store.result(number).designs)  # type: ignore[type-var]
