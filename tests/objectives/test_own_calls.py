@@ -204,7 +204,7 @@ def test_a_fork_that_lives_on_does_not_keep_the_function_of_its_parent_alive(
     tmp_path: Path, worker: Callable[[str], Worker]
 ) -> None:
     worker("place")
-    script = "print(here, os.fork() or 'fork', flush=True)\ntime.sleep(60)\n"
+    script = "other = os.fork()\nos.write(1, f'{here} {other or \"fork\"}\\n'.encode())\ntime.sleep(60)\n"
     with forking(tmp_path, "place", script) as asking:
         assert asking.stdout is not None
         lines = sorted(asking.stdout.readline().split() for _ in range(2))
