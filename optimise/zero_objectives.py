@@ -1,4 +1,4 @@
-"""Refusal of what is zero for every design: objectives, which rounding would rank, and requirements that none meets."""
+"""Zero for every design: refused as an objective and where a rule excludes it; told where a rule says nothing."""
 
 from __future__ import annotations
 
@@ -29,3 +29,14 @@ def require_ranking(problem: Problem) -> None:
                 f"constraints.{constraint.quantity}: {word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol} "
                 f"excludes zero, and it is zero for every design of this job: {reason}"
             )
+
+
+def idle_rules(problem: Problem) -> list[str]:
+    """Return a warning for each constraint on a quantity that is zero for every design, which all of them meet."""
+    machines = [part.mechanism for part in problem.parts()]
+    reasons = {each.quantity: zero_because(problem.quantity(each.quantity), machines) for each in problem.constraints}
+    return [
+        f"constraints.{name} leaves no design out: it is zero for every design of this job; {reason}"
+        for name, reason in reasons.items()
+        if reason
+    ]

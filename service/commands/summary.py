@@ -17,6 +17,7 @@ from ...optimise.elimination import UNKNOWNS, sheets
 from ...optimise.evaluation import constraints_of
 from ...optimise.loaded_stroke import expected_warnings
 from ...optimise.problem import Constraint, Objective, Problem, Range
+from ...optimise.zero_objectives import idle_rules
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
@@ -46,7 +47,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
-        "warnings": expected_warnings(problem),
+        "warnings": [*expected_warnings(problem), *idle_rules(problem)],
         "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
     }
 

@@ -111,6 +111,7 @@ def wanted_of(front: ParetoFront) -> list[Wanted]:
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return what a run found from its front."""
     from ...optimise.loaded_stroke import front_warnings
+    from ...optimise.zero_objectives import idle_rules
 
     found = len(front) > 0
     several = found and len(front.objectives) > 1
@@ -128,7 +129,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
-        warnings=tuple(front_warnings(front)),
+        warnings=(*front_warnings(front), *idle_rules(front.problem)),
     )
 
 

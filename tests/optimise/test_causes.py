@@ -18,10 +18,11 @@ from slidercrank.model.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.optimise.causes import undefined_because
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Variant
 from slidercrank.optimise.solve import solve
-from slidercrank.optimise.zero_objectives import require_ranking
+from slidercrank.optimise.zero_objectives import idle_rules, require_ranking
 from tests.optimise.test_zero_objectives import job
 
 DESIGNS = np.array([[0.05, 0.2, 0.03], [0.03, 0.11, -0.02], [0.06, 0.25, 0.01]])
@@ -128,6 +129,22 @@ def test_a_requirement_that_zero_does_not_meet_is_refused_where_every_design_has
     stated = parse_job(worked)
     with pytest.raises(InputError, match=r"constraints.mean_torque: .* excludes zero"):
         solve(replace(stated, mechanism=replace(stated.mechanism, loads=())))
+
+
+def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> None:
+    idle = 0
+    for causes in ((), ("speed",), ("speed", "masses"), ("speed", "heavy crank"), ("gravity", "masses"), CAUSES):
+        given = machine(*causes)
+        for name in QUANTITIES:
+            if undefined_because(QUANTITIES[name], (given,)):
+                continue
+            told = idle_rules(problem(given, "stroke", Constraint(quantity=name, upper=1e9)))
+            why = refusal(given, name).removeprefix(f"objectives.{name}: ")
+            assert len(told) == bool(why)
+            assert all(sentence.startswith(f"constraints.{name} leaves no design out: ") for sentence in told)
+            assert all(sentence.endswith(why) for sentence in told)
+            idle += len(told)
+    assert idle > 20
 
 
 @pytest.mark.parametrize("bound", [{"max": "0 N m"}, {"min": "-1 N m", "max": "1e-9 N m"}, {"min": "0 N m"}])
