@@ -31,13 +31,12 @@ from tests.service import fronts
 def solve(problem, *, progress, cancelled, **_):
     for number in range(1, 1000):
         progress(Progress("sampling", number, 1000, 100 * number, 10 * number, 0.1, 0.05 * number))
+        while {stuck}:
+            time.sleep(0.02)
         time.sleep(0.02)
         if cancelled():
             from dataclasses import replace
             return replace(fronts.front(designs=3), status="cancelled", message="cancelled: 3 designs")
-        if {stuck}:
-            while True:
-                time.sleep(0.02)
 
 module.solve = solve
 sys.argv = ["slidercrank", *sys.argv[1:]]
