@@ -11,6 +11,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.mechanism import Mechanism
+from slidercrank.service.drawings.dxf import dxf_file
+from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.workers.logs import about, set_up_logs
 
 _log = logging.getLogger("slidercrank.service.workers.worker")
@@ -79,3 +83,9 @@ def test_setting_up_twice_writes_each_record_once(stream: io.StringIO) -> None:
     set_up_logs("text", stream=stream)
     _log.info("once")
     assert stream.getvalue().count("once") == 1
+
+
+def test_files_of_a_design_are_written_without_a_word(stream: io.StringIO) -> None:
+    set_up_logs(stream=stream)
+    assert dxf_file(linkage_drawing(Mechanism(), Linkage(0.04, 0.064, 0.02), name="x"))
+    assert stream.getvalue() == ""
