@@ -16,12 +16,14 @@ from starlette.responses import HTMLResponse
 _STATIC = Path(__file__).parent / "static"
 _STYLE = """
 .locked { max-width: 40rem; padding-top: 3rem; }
-.locked input { width: 20rem; }
+.locked .asked { display: flex; flex-wrap: wrap; gap: .6rem; align-items: center; }
+.locked input { flex: 1 1 14rem; }
 .locked code { overflow-wrap: anywhere; }
 """
 # A view is named after the #, which a browser keeps to itself: it goes along with the form, and the redirect keeps it.
 _SCRIPT = """
 document.documentElement.dataset.scheme = localStorage.getItem("scheme") ?? "auto";
+history.replaceState(null, "", location.pathname + location.hash);  // a token that was wrong does not stay to be read
 document.forms[0].addEventListener("submit", ({ target }) => { target.action = `/${location.hash}`; });
 """
 _WRONG = '<p class="error" role="alert">That was not the token of this service.</p>'

@@ -40,6 +40,10 @@ def test_without_the_token_a_browser_is_told_where_it_is(open_page: Open, store:
     host = urlsplit(page.url).netloc
     expect(page.get_by_role("main")).to_contain_text(f"http://{host}/?token=…")
     expect(page.locator(".masthead .brand")).to_have_css("display", "flex")
+    field, button = page.get_by_label("Token").bounding_box(), page.get_by_role("button").bounding_box()
+    assert field is not None
+    assert button is not None
+    assert button["x"] - (field["x"] + field["width"]) >= 4.0
 
 
 def test_who_gives_the_token_comes_to_the_view_that_was_asked_for(open_page: Open, store: Store) -> None:
@@ -47,6 +51,7 @@ def test_who_gives_the_token_comes_to_the_view_that_was_asked_for(open_page: Ope
     page.get_by_label("Token").fill("wrong")
     page.get_by_role("button", name="Open").click()
     expect(page.get_by_role("alert")).to_have_text("That was not the token of this service.")
+    assert page.url.endswith("/#/help/peak_torque")  # without what was given
     page.get_by_label("Token").fill(TOKEN)
     page.get_by_role("button", name="Open").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("peak torque", ignore_case=True)
