@@ -9,10 +9,10 @@ from time import perf_counter
 
 import numpy as np
 
-from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import screen
-from slidercrank.model.signals import Signal
+from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.signals import Signal
 
 from . import numpy_peer
 from .machines import MECHANISM, Array, random_designs

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 
 Array = NDArray[np.float64]
 

@@ -19,13 +19,13 @@ from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 from pymoo.util.ref_dirs import get_reference_directions
 
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.hypervolume import choose, hypervolume, nondominated, scaling
+from slidercrank.optimise.front.hypervolume import choose, hypervolume, nondominated, scaling
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.registry import METHODS
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from slidercrank.optimise.solve import solve
 
 from .machines import Array

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import screen
-from slidercrank.model.signals import Signal
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.signals import Signal
 
 from .machines import MECHANISM, random_designs
 from .report import Row

@@ -11,12 +11,12 @@ from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.hypervolume import hypervolume, nondominated, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, nondominated, scaling
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.search import explore
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.search import explore
 from slidercrank.optimise.solve import solve
 
 from .machines import Array

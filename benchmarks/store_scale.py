@@ -20,8 +20,8 @@ from typing import Any
 import httpx
 from sqlalchemy import Connection, insert, select, text
 
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.progress import Progress
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.app import create_app
 from slidercrank.service.api.server import spare_imports

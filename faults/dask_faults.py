@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from slidercrank.optimise.engine.cluster import Cluster
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 
 from .dask_cluster import DaskCluster

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from ..model.averages import average_torque
-from ..model.in_line import without_rounding
-from ..model.linkage import Linkage
-from ..model.loaded_stroke import loaded_stroke
-from ..model.mechanism import Mechanism
-from ..model.peaks import find_peaks
-from ..model.signals import Signal
+from ..model.kinematics.in_line import without_rounding
+from ..model.linkage.linkage import Linkage
+from ..model.linkage.loaded_stroke import loaded_stroke
+from ..model.machine.mechanism import Mechanism
+from ..model.signals.averages import average_torque
+from ..model.signals.peaks import find_peaks
+from ..model.signals.signals import Signal
 from .motion_deviation import MotionDeviation
 from .position_error import POSITION_ERRORS
 from .quantity import Array, Quantity

@@ -1,6 +1,6 @@
 """Average torques: root mean square (what heats a motor) and mean (what the work costs) over the cycle."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .quantity import NEWTON_METRE
 

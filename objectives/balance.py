@@ -1,6 +1,6 @@
 """Balance: what the moving masses do to the frame, without gravity and load (`model.inertia`), over the cycle."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
 from .quantity import NEWTON, NEWTON_METRE

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.closed_forms import ClosedForm, evaluate_closed_form
-from ..model.mechanism import Mechanism
-from ..model.numbers import require_width
+from ..model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import require_width
 from .quantity import Array, Pieces, Unit, Values
 
 

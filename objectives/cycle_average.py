@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from ..model.averages import average
-from ..model.dissipation import works_over_a_turn
-from ..model.loads import require_word
-from ..model.mechanism import Mechanism
-from ..model.numbers import number_of
-from ..model.parameters import Raw
-from ..model.signals import Signal
+from ..model.machine.dissipation import works_over_a_turn
+from ..model.machine.loads import require_word
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import number_of
+from ..model.machine.parameters import Raw
+from ..model.signals.averages import average
+from ..model.signals.signals import Signal
 from .quantity import Array, Pieces, Unit, Values
 
 Which = Literal["mean", "rms"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..model.mechanism import Mechanism
-from ..model.peaks import find_peaks
-from ..model.screening import screen, screens
-from ..model.signals import Signal
+from ..model.machine.mechanism import Mechanism
+from ..model.signals.peaks import find_peaks
+from ..model.signals.screening import screen, screens
+from ..model.signals.signals import Signal
 from .quantity import Array, Pieces, Unit, Values
 
 

@@ -1,6 +1,6 @@
 """Joint forces: the greatest reactions at crank pivot, crank pin, slider pin and guide over the cycle."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .quantity import NEWTON
 

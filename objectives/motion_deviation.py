@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.loads import require_word
-from ..model.mechanism import Mechanism
-from ..model.target_motion import Fit, Measure, TargetMotion, fit
-from ..model.target_pieces import fit_pieces
+from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit
+from ..model.kinematics.target_pieces import fit_pieces
+from ..model.machine.loads import require_word
+from ..model.machine.mechanism import Mechanism
 from .quantity import DEGREE, MILLIMETRE, Array, Pieces, Unit, Values
 
 DEVIATIONS: dict[str, tuple[str, Measure]] = {

@@ -1,6 +1,6 @@
 """What sizes a motor beside its torque: greatest and mean power, greatest inertia that it feels."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
 from .quantity import KILOGRAM_SQUARE_METRE, WATT

@@ -1,6 +1,6 @@
 """Peak torque: the greatest size of the drive torque over the cycle, or over one stroke."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .quantity import NEWTON_METRE
 

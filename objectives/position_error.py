@@ -1,6 +1,6 @@
 """Position error: how far tolerances move the slider, greatest over the cycle or over a part of the stroke."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .quantity import MILLIMETRE
 

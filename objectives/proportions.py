@@ -1,6 +1,6 @@
 """Proportions of the linkage: stroke, rod to offset, rod to crank, footprint."""
 
-from ..model.closed_forms import ClosedForm
+from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
 from .quantity import MILLIMETRE, RATIO, SQUARE_METRE
 

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.mechanism import Mechanism
+from ..model.machine.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 

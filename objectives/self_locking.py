@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.mechanism import Mechanism
-from ..model.self_locking import varied_margin
+from ..model.cycle.self_locking import varied_margin
+from ..model.machine.mechanism import Mechanism
 from .quantity import DEGREE, Array, Pieces, Unit, Values
 
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..model import geometry
-from ..model.arithmetic import STEP
-from ..model.linkage import Linkage
-from ..model.mechanism import Mechanism
+from ..model.kernel.arithmetic import STEP
+from ..model.kinematics import geometry
+from ..model.linkage.linkage import Linkage
+from ..model.machine.mechanism import Mechanism
 from ..model.tolerance.sources import limits
 from .position_error import POSITION_ERRORS
 from .quantity import DEGREE, MILLIMETRE, Array, Quantity, Unit

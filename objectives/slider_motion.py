@@ -1,6 +1,6 @@
 """Slider motion: greatest speed and acceleration over the cycle."""
 
-from ..model.signals import Signal
+from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .quantity import METRE_PER_SECOND, METRE_PER_SECOND_SQUARED
 

@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from ..model.errors import InputError
-from ..model.linkage import Linkage
-from ..model.mechanism import Mechanism
+from ..model.linkage.linkage import Linkage
+from ..model.machine.mechanism import Mechanism
 from .quantity import Array, Quantity
 from .registry import quantity
 

@@ -1,6 +1,6 @@
 """Time ratio: how much longer the slower stroke takes than the faster one, at constant crank speed."""
 
-from ..model.closed_forms import ClosedForm
+from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
 from .quantity import RATIO
 

@@ -1,6 +1,6 @@
 """Transmission angle: the least angle between rod and the normal of the slider line over the cycle."""
 
-from ..model.closed_forms import ClosedForm
+from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
 from .quantity import DEGREE
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from ..model.numbers import unit_of
-from ..model.varying import Varying
+from ..model.machine.numbers import unit_of
+from ..model.machine.varying import Varying
 from .quantity import Unit
 
 # How a number in an SI unit is shown: the end of its key, its unit there.

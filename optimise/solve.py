@@ -8,28 +8,29 @@ from functools import partial
 import numpy as np
 
 from ..objectives.own.interruption import interrupted_by
-from .assemble import empty
-from .best import Best, best_of
 from .certificate.infeasible import prove_infeasible
-from .default_search import search_by_default
-from .deliver import as_found, deliver
-from .elimination import Sheet, sheets
 from .engine.engine import Engine
-from .enumeration import enumerate_settled, searched
-from .evaluation import Evaluator
-from .front import ParetoFront
-from .gradients import require_gradients, without_gradient
-from .identity import identity_of
-from .infeasibility import diagnose
-from .ledger import Cancelled, Ledger, Record
+from .feasibility.best import Best, best_of
+from .feasibility.infeasibility import diagnose
+from .front.front import ParetoFront
+from .front.progress import REPEATING, Progress
+from .front.stationarity import Array
+from .methods.auto.auto import search_by_default
+from .methods.auto.deliver import as_found, deliver
+from .methods.auto.so_far import so_far
+from .methods.gradients import require_gradients
 from .methods.registry import require_eliminated, require_fit, search_of
-from .mirror import once
-from .problem import Problem
-from .progress import REPEATING, Progress
-from .search import Archive, Callback, Run, zoom
-from .so_far import so_far
-from .stationarity import Array
-from .zero_objectives import require_ranking
+from .problem.gradients import without_gradient
+from .problem.problem import Problem
+from .problem.zero_objectives import require_ranking
+from .search.assemble import empty
+from .search.checkpoints import Cancelled, Ledger, Record
+from .search.elimination import Sheet, sheets
+from .search.enumeration import enumerate_settled, searched
+from .search.evaluation import Evaluator
+from .search.fingerprint import identity_of
+from .search.mirror import once
+from .search.search import Archive, Callback, Run, zoom
 
 
 def solve(

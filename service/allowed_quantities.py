@@ -15,7 +15,7 @@ from ..model.errors import JobError
 
 if TYPE_CHECKING:
     from ..optimise.engine.engine import Engine
-    from ..optimise.problem import Problem
+    from ..optimise.problem.problem import Problem
 
 LONGEST_CALL = 300.0
 """s, that a call takes at most in a job of the service, whatever limit the job gives it."""
@@ -43,7 +43,7 @@ def parse_allowed(
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     """Return the functions that a job names, by the names of their quantities. Raises `JobError` for what is none."""
     from ..objectives.own.quantity import FUNCTION
-    from ..optimise.units import shown
+    from ..optimise.job.units import shown
 
     parts, found = tables.get("quantity", {}), {}
     write = 'write it like { function = "mymodule:myfunction" }'
@@ -61,7 +61,7 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
-    from ..optimise.units import shown
+    from ..optimise.job.units import shown
 
     here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 __all__ = ["Linkage", "__version__", "load_job", "solve"]
 
 if TYPE_CHECKING:
-    from slidercrank.model.linkage import Linkage
+    from slidercrank.model.linkage.linkage import Linkage
     from slidercrank.optimise.job import load_job
     from slidercrank.optimise.solve import solve
 
     __version__: str
 else:
     # Not shown to type checkers: they would take every misspelt name for a known one.
-    _HOMES = {"Linkage": "model.linkage", "load_job": "optimise.job", "solve": "optimise.solve"}
+    _HOMES = {"Linkage": "model.linkage.linkage", "load_job": "optimise.job", "solve": "optimise.solve"}
 
     def __getattr__(name):
         if name == "__version__":

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..cycle import cycle
+from ..cycle.cycle import cycle
 from ..errors import InputError
-from ..friction import Friction
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..single import single
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.friction import Friction
+from ..machine.mechanism import Mechanism
 from .lumped import lumped, rotating_and_reciprocating
 from .series import series_acceleration, series_torque, tangent_torque
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..linkage import Linkage
+from ..linkage.linkage import Linkage
 
 Array = NDArray[np.float64]
 

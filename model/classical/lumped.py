@@ -12,9 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..errors import InputError
-from ..linkage import Linkage
-from ..links import Bar, Link, RigidLink
-from ..mechanism import Mechanism
+from ..linkage.linkage import Linkage
+from ..machine.links import Bar, Link, RigidLink
+from ..machine.mechanism import Mechanism
 
 
 @dataclass(frozen=True)

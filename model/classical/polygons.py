@@ -19,7 +19,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..linkage import Linkage
+from ..linkage.linkage import Linkage
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..linkage import Linkage
+from ..linkage.linkage import Linkage
 
 
 def series_acceleration(linkage: Linkage, crank_angle: ArrayLike, *, speed: ArrayLike) -> Any:

@@ -29,10 +29,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic import inlined, kernel
-from ..kinematics import Motion
-from ..parameters import design_at
-from ..segments import find_pieces, load_on_slider
+from ..dynamics.segments import find_pieces, load_on_slider
+from ..kernel.arithmetic import inlined, kernel
+from ..kinematics.position import Motion
+from ..machine.parameters import design_at
 
 STATES = 7
 """Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..friction import require_frictionless
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..single import single
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.clearance import Clearance
+from ..machine.friction import require_frictionless
+from ..machine.mechanism import Mechanism
 from .equations import observe
-from .joint import Clearance
 from .phases import FLIGHT, Integrator, Trace
 from .system import build
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..peaks import find_peaks
-from ..signals import Signal
+from ..signals.peaks import find_peaks
+from ..signals.signals import Signal
 from .run import ClearanceRun
 
 Array = NDArray[np.float64]

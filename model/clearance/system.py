@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic import kernel
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..parameters import DESIGN, Loads, Raw, derive, design_at, load_structure, raw_vector
+from ..kernel.arithmetic import kernel
+from ..linkage.linkage import Linkage
+from ..machine.clearance import Clearance
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, Loads, Raw, derive, design_at, load_structure, raw_vector
 from .equations import System
-from .joint import Clearance
 
 
 @kernel

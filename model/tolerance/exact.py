@@ -32,9 +32,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..single import single
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
 from .sources import Array, counted_angles, limit_box
 
 _CELLS = 4  # highest samples around which the greatest deviation is searched further

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..cycle import cycle
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..single import single
+from ..cycle.cycle import cycle
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
 from .sources import Array, limit_box, limits, source_influences
 
 

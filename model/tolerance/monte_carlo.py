@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..linkage import Linkage
-from ..loads import require_word
-from ..mechanism import Mechanism
-from ..single import single
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.loads import require_word
+from ..machine.mechanism import Mechanism
 from .sources import Array, counted_angles, limits, source_influences
 from .spreads import Draw, Spreads
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
 from ..errors import AssemblyError, InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..segments import crank_angle_at, crowded, crowding, uncrowded
-from ..single import single
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 

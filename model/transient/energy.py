@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..arithmetic import analytic
-from ..kinematics import Motion
-from ..parameters import Design
+from ..kernel.arithmetic import analytic
+from ..kinematics.position import Motion
+from ..machine.parameters import Design
 
 
 @analytic

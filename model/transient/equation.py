@@ -21,17 +21,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic import kernel
-from ..dynamics import forces, smooth_load
+from ..dynamics.segments import Cuts, cut_cycle, enter, load_on_slider, within
+from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
-from ..friction import require_frictionless
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
-from ..segments import Cuts, cut_cycle, enter, load_on_slider, within
-from ..signals import Signal, design_motion
-from ..single import single
-from ..watch import watch_of
+from ..kernel.arithmetic import kernel
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.friction import require_frictionless
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
+from ..signals.signals import Signal, design_motion
+from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
 
 Array = NDArray[np.float64]

@@ -20,9 +20,9 @@ from functools import cache
 import numpy as np
 
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from .drive import ConstantTorque, Drive
+from ..linkage.linkage import Linkage
+from ..machine.drive import ConstantTorque, Drive
+from ..machine.mechanism import Mechanism
 from .steady import Runner, SteadyRunning
 
 _WIDEST = 60

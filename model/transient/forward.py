@@ -20,9 +20,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from .drive import Drive, speed_range
+from ..linkage.linkage import Linkage
+from ..machine.drive import Drive, speed_range
+from ..machine.mechanism import Mechanism
 from .equation import NEAREST, TURN, Array, CrankEquation, Stretch
 from .record import Recorder, Transient, Verdict
 

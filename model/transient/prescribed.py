@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..cycle import Cycle, cycle
+from ..cycle.cycle import Cycle, cycle
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
+from ..linkage.linkage import Linkage
+from ..machine.mechanism import Mechanism
 from .equation import TURN, Array
 
 Function = Callable[[Array], ArrayLike]

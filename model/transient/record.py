@@ -7,10 +7,10 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from ..single import single
-from .drive import Drive, speed_range
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.drive import Drive, speed_range
+from ..machine.mechanism import Mechanism
 from .equation import TURN, Array, CrankEquation, Stretch
 
 Verdict = Literal["time is up", "turns done", "steady", "stands still", "beyond the torque table", "cancelled"]

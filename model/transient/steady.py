@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..dissipation import works_over_a_turn
 from ..errors import InputError
-from ..linkage import Linkage
-from ..mechanism import Mechanism
-from .drive import ConstantTorque, Drive, LinearMotor, speed_range
+from ..linkage.linkage import Linkage
+from ..machine.dissipation import works_over_a_turn
+from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
+from ..machine.mechanism import Mechanism
 from .energy_integral import coasting, cut_where_least, graded
 from .equation import TURN, Array, CrankEquation
 from .forward import drive_of

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from ..segments import crowded, crowding, uncrowded
+from ..dynamics.segments import crowded, crowding, uncrowded
 from .equation import TURN, Array, CrankEquation, Terms
 
 _NODES = 16

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arithmetic import STEP
-from ...model.mechanism import Mechanism
+from ...model.kernel.arithmetic import STEP
+from ...model.machine.mechanism import Mechanism
 from .designs import Designs, Peaks
 
 Array = NDArray[np.float64]

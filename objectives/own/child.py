@@ -20,8 +20,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.follow import follow_forces
-from ...model.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.follow import follow_forces
 from .apply import Answer, Function, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 

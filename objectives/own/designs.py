@@ -8,11 +8,11 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model import geometry
-from ...model.arithmetic import magnitude as _magnitude
-from ...model.follow import follow_forces, third_derivative
-from ...model.kinematics import Motion, motion
-from ...model.mechanism import Mechanism
+from ...model.kernel.arithmetic import magnitude as _magnitude
+from ...model.kinematics import geometry
+from ...model.kinematics.position import Motion, motion
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.follow import follow_forces, third_derivative
 
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]

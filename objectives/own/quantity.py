@@ -13,10 +13,10 @@ from typing import Any, Literal, NoReturn, cast, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.batches import turning
+from ...model.cycle.self_locking import locking_margin
 from ...model.errors import InputError
-from ...model.mechanism import Mechanism
-from ...model.self_locking import locking_margin
+from ...model.kernel.batches import turning
+from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Pieces, Quantity, Unit, Values
 from .apply import Answer, Function, Refused, apply
 from .worker import Worker

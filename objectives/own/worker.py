@@ -23,7 +23,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...model.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism
 from .apply import Answer, Array, Refused
 from .child import HEAD, unpacked
 from .interruption import ask, farewell, killed

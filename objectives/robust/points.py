@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 
 _SAME = 0.3  # labels (rad) farther apart are not the same peak; as the polish has it

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.loads import require_word
-from ...model.mechanism import Mechanism
+from ...model.machine.loads import require_word
+from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array, Pieces, Quantity, Unit, Values
 from .points import Around, around, corners, followed, limits_of, star, uncertain

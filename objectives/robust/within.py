@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from .points import Around, around, corners, followed, in_line, limits_of
 

@@ -9,14 +9,14 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arithmetic import magnitude
-from ...model.closed_forms import ClosedForm, closed_form
 from ...model.errors import InputError
+from ...model.kernel.arithmetic import magnitude
+from ...model.kinematics.closed_forms import ClosedForm, closed_form
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
-from ..elimination import UNKNOWNS
-from ..evaluation import Evaluator, constraints_of
-from ..problem import Constraint, Objective, Problem, Range
+from ..problem.problem import Constraint, Objective, Problem, Range
+from ..search.elimination import UNKNOWNS
+from ..search.evaluation import Evaluator, constraints_of
 from .cycle import Curve, best_angles
 from .enclosure import Array, Enclosure, beside, coordinate
 from .limits import Limits

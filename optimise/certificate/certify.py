@@ -20,8 +20,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...model.errors import InputError
-from ..front import ParetoFront
-from ..problem import Problem
+from ..front.front import ParetoFront
+from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .enclosure import Array
 from .search import Search

@@ -13,9 +13,9 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arithmetic import kernel
-from ...model.batches import in_chunks
-from ..hypervolume import REFERENCE, nondominated
+from ...model.kernel.arithmetic import kernel
+from ...model.kernel.batches import in_chunks
+from ..front.hypervolume import REFERENCE, nondominated
 from .enclosure import Array
 
 _EXACT = 4000  # points in three and more dimensions of which the hypervolume takes about a second

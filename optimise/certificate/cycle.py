@@ -14,15 +14,15 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arithmetic import magnitude, root
-from ...model.dynamics import Forces, forces, smooth_load
-from ...model.kinematics import motion
-from ...model.mechanism import Mechanism
-from ...model.parameters import DESIGN, Design, LoadKind, Loads, derive, design_at
-from ...model.peaks import find_peaks
-from ...model.screening import screen, screens
-from ...model.signals import Signal, design_motion, signal
-from ...model.watch import inputs_of, watch_of
+from ...model.dynamics.torque import Forces, forces, smooth_load
+from ...model.kernel.arithmetic import magnitude, root
+from ...model.kinematics.position import motion
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.parameters import DESIGN, Design, LoadKind, Loads, derive, design_at
+from ...model.signals.peaks import find_peaks
+from ...model.signals.screening import screen, screens
+from ...model.signals.signals import Signal, design_motion, signal
+from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
 from .enclosure import UNIT, Array, Enclosure, beside, between
 

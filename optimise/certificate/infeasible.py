@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..elimination import sheets
-from ..evaluation import FEASIBLE, Evaluator
-from ..problem import Problem
+from ..problem.problem import Problem
+from ..search.elimination import sheets
+from ..search.evaluation import FEASIBLE, Evaluator
 from .boxes import Boxes
 from .tree import Tree, pool
 

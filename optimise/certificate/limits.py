@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..evaluation import FEASIBLE
-from ..problem import Constraint
+from ..problem.problem import Constraint
+from ..search.evaluation import FEASIBLE
 from .enclosure import INFLATION, Array, Enclosure
 
 _INSIDE = 1e-9  # relative: by how much a trial design stays off the limits

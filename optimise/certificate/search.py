@@ -10,11 +10,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ...objectives.cycle_peak import CyclePeak
-from ..assemble import span_of
-from ..elimination import sheets
-from ..evaluation import FEASIBLE, Evaluator, constraints_of, minimised
-from ..problem import Problem
-from ..spread import polish
+from ..problem.problem import Problem
+from ..search.assemble import span_of
+from ..search.elimination import sheets
+from ..search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
+from ..search.spread import polish
 from .boxes import Boxes, usable
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, thinned, volume_gap

@@ -16,14 +16,16 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
-from ..convex.section_limits import Material, SectionLimits
-from ..problem import Problem
-from ..units import shown
+from ..problem.problem import Problem
+from ..sizing.section_limits import Material, SectionLimits
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
+from .schema import schema_of
+from .stated import problem_of
 from .target_motion import points_file, with_points
+from .units import shown
 from .varying import with_values
 
 __all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job"]
@@ -88,9 +90,9 @@ def parse_job(
     try:
         stated = job.model_validate(data)
         stated = with_values(stated, values, "values") if values else stated
-        return stated.problem(folder=folder, installed=own.installed)
+        return problem_of(stated, folder=folder, installed=own.installed)
     except ValidationError as error:
-        found = explain(error, _schema() if job is Job else _schema_of(job))
+        found = explain(error, _schema() if job is Job else schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []
@@ -117,25 +119,4 @@ def job_schema() -> dict[str, Any]:
 
 @cache
 def _schema() -> dict[str, Any]:
-    return _schema_of(Job)
-
-
-def _schema_of(job: type[Job]) -> dict[str, Any]:
-    schema = job.model_json_schema(mode="validation")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
-
-
-def _without_null(node: Any) -> Any:
-    """Return a schema without its nulls: a key that is not wanted is left out."""
-    if isinstance(node, list):
-        return [_without_null(item) for item in node]
-    if not isinstance(node, dict):
-        return node
-    kept = {key: _without_null(item) for key, item in node.items()}
-    if kept.get("default", 0) is None or isinstance(kept.get("default"), dict):
-        del kept["default"]
-    choices = [choice for choice in kept.get("anyOf", ()) if choice != {"type": "null"}]
-    if len(choices) == 1 and len(kept["anyOf"]) == 2:
-        del kept["anyOf"]
-        return {**choices[0], **kept}
-    return {**kept, "anyOf": choices} if choices else kept
+    return schema_of(Job)

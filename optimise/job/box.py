@@ -15,13 +15,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...model import geometry
 from ...model.errors import JobError
+from ...model.kinematics import geometry
 from ...objectives.registry import QUANTITIES
-from ..problem import Constraint, Problem, Range
+from ..problem.problem import Constraint, Problem, Range
 
 if TYPE_CHECKING:
-    from ..relaxation import Relaxation
+    from ..feasibility.relaxation import Relaxation
 
 _SLACK = 1.0 + 1e-9
 """What is asked at the very edge is left to the optimiser: rounding must not make it a contradiction."""
@@ -171,8 +171,8 @@ def _nearest(
 
     Where all of them contradict each other even then, those that are kept `alone`.
     """
-    from ..best import best_on_dimensions, rules_on_dimensions
-    from ..relaxation import Relaxation, relaxations
+    from ..feasibility.best import best_on_dimensions, rules_on_dimensions
+    from ..feasibility.relaxation import Relaxation, relaxations
 
     for kept in (rules_on_dimensions(problem), alone):
         for found in relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions):

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from ...model.clearance.joint import Clearance, Joint, Law
 from ...model.errors import InputError
+from ...model.machine.clearance import Clearance, Joint, Law
 from .values import Fraction, Part, PositiveLength, Pressure
 
 

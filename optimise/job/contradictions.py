@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from ...model.errors import JobError
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
-from ..problem import Problem
-from ..zero_objectives import require_ranking
+from ..problem.problem import Problem
+from ..problem.zero_objectives import require_ranking
 from .box import require_reachable
 from .slow_stroke import require_slow_stroke
 

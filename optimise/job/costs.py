@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ...model.errors import InputError
 from ...objectives import kinds
-from ..convex.costs import Cost, Costs
+from ..problem.costs import Cost, Costs
 from .values import AngleTolerance, Fraction, Part, Physical, PositiveLength, PositiveRatio, Radius
 
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]

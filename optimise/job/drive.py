@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from ...model.transient import drive as model
+from ...model.machine import drive as model
 from .kinds import Kinds
 from .values import AngularSpeed, Inertia, Part, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import JobError
-from ..units import shown
 from .messages import key_of
+from .units import shown
 from .unquoted import remedy
 
 LARGEST = 1_000_000

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from ...model.errors import InputError
-from ...model.friction import Friction, Pin
+from ...model.machine.friction import Friction, Pin
 from .values import Fraction, Part, PositiveLength
 
 _MOST = 2.0

@@ -16,11 +16,11 @@ from pydantic import (
     model_validator,
 )
 
-from ...model import loads as model
 from ...model.errors import InputError
-from ...model.loads import Datum, During
-from ..units import shown
+from ...model.machine import loads as model
+from ...model.machine.loads import Datum, During
 from .kinds import Kinds
+from .units import shown
 from .values import Angle, Damping, Force, Length, Part, Resistance, Stiffness
 
 _DURING: Any = Field("cycle", description="when the load acts", examples=["outward stroke"])

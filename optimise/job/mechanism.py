@@ -9,13 +9,13 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from ...model.errors import InputError
-from ...model.links import Bar, Counterweight, Link, RigidLink
-from ...model.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
-from ..units import shown
+from ...model.machine.links import Bar, Counterweight, Link, RigidLink
+from ...model.machine.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
 from .clearance import ClearancePart
 from .drive import DrivePart
 from .friction import FrictionPart
 from .loads import Load
+from .units import shown
 from .values import (
     Angle,
     AngleTolerance,

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from ..units import closest, shown
+from .units import closest, shown
 
 MOST = 8
 """How many problems of one job are listed."""

@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any, cast
 
 from pydantic import AfterValidator, Field, create_model
 
 from ...model.errors import InputError
-from ...model.mechanism import Mechanism
-from ...objectives.motion_deviation import motion_deviations
-from ...objectives.quantity import Quantity
-from ..methods.registry import Name, require_fit
-from ..problem import Problem, Settings
-from ..units import shown
+from ...model.machine.mechanism import Mechanism
+from ..methods.registry import Name
 from .clearance import ClearancePart
-from .contradictions import require_consistent
 from .costs import CostsPart
 from .drive import DrivePart
 from .friction import FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
-from .own import MOST_OWN, Declared, QuantityPart, folders_of, named
-from .quantities import ConstraintsPart, ObjectivesPart, constraints_of, objectives_of, slow_stroke_of, tables
-from .robust import RobustPart, robustly
+from .own import MOST_OWN, Declared, QuantityPart, named
+from .quantities import ConstraintsPart, ObjectivesPart, tables
+from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
-from .target_motion import TargetMotionPart, require_target
+from .target_motion import TargetMotionPart
+from .units import shown
 from .values import Part
 from .variables import ChoicePart, VariablesPart, choice_with
-from .varying import ends_of, variants_of, varying_machine
 
 
 class OptimiserPart(Part):
@@ -183,43 +177,6 @@ class Job(Part):
         return self.mechanism.build(
             self.load, self.tolerances, friction=self.friction, clearance=self.clearance, drive=self.drive
         )
-
-    def problem(self, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
-        """Return the problem that the job states. Raises JobError if it contradicts itself.
-
-        folder: where the modules of its functions lie. installed: quantities of packages that it names.
-        """
-        variables = self.variables
-        require_target(self.target_motion, self.objectives, self.constraints)
-        choices, variants = variants_of(self)
-        problem = Problem(
-            name=self.name,
-            mechanism=varying_machine(self),
-            crank=ends_of(variables.crank),
-            rod=ends_of(variables.rod),
-            offset=ends_of(variables.offset),
-            choices=choices,
-            variants=variants,
-            objectives=tuple(objectives_of(self.objectives)),
-            constraints=tuple(constraints_of(self.constraints)),
-            slow_stroke=slow_stroke_of(self.constraints),
-            costs=None if self.costs is None else self.costs.build(),
-            settings=Settings(
-                method=self.optimiser.method,
-                designs=self.optimiser.designs,
-                samples=self.optimiser.samples,
-                evaluations=self.optimiser.evaluations,
-                seed=self.optimiser.seed,
-            ),
-            own=(
-                *(() if self.target_motion is None else motion_deviations(self.target_motion.build())),
-                *(part.build(name, folders_of(folder)) for name, part in self.quantity.items()),
-                *installed,
-            ),
-        )
-        require_consistent(problem)
-        require_fit(problem)
-        return robustly(problem, self.robust)
 
 
 def job_with(declared: Declared) -> type[Job]:

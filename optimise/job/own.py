@@ -16,8 +16,8 @@ from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, installed, own_quantities
 from ...objectives.quantity import Unit
 from ...objectives.registry import QUANTITIES
-from ..units import kind_for, per_si, shown
 from .quantities import SLOW_STROKE
+from .units import kind_for, per_si, shown
 from .values import Part, Physical
 
 

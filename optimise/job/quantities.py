@@ -19,12 +19,12 @@ from pydantic import (
 )
 
 from ...model.errors import InputError
-from ...model.linkage import SlowStroke
+from ...model.linkage.linkage import SlowStroke
 from ...objectives.kinds import Kind
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.registry import QUANTITIES
-from ..problem import SENSES, Constraint, Objective
-from ..units import closest, kind_of, shown
+from ..problem.problem import SENSES, Constraint, Objective
+from .units import closest, kind_of, shown
 from .values import Part, Physical
 
 

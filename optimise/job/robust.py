@@ -10,8 +10,8 @@ from ...model.errors import InputError, JobError
 from ...model.tolerance.spreads import Shape
 from ...objectives.robust.points import uncertain
 from ...objectives.robust.quantity import SAMPLES, Kind
-from ..problem import Problem
-from ..robust import Robust, robust
+from ..problem.problem import Problem
+from ..problem.robust import Robust, robust
 from .values import Part
 
 

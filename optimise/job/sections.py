@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from ..convex.section_limits import Material, SectionLimits
+from ..sizing.section_limits import Material, SectionLimits
 from .values import Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure
 
 EXAMPLE = {

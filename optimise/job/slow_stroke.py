@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...model.errors import InputError, JobError
-from ..elimination import require_slow_side
-from ..evaluation import LEAST_TIME_RATIO
-from ..problem import Problem, Range
+from ..problem.problem import Problem, Range
+from ..search.elimination import require_slow_side
+from ..search.evaluation import LEAST_TIME_RATIO
 from .box import greatest_within, require_reachable
 
 

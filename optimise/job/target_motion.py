@@ -10,10 +10,10 @@ from typing import Annotated, Any
 from pydantic import Field, WrapValidator, model_validator
 
 from ...model.errors import InputError, JobError
-from ...model.target_motion import Freedom, TargetMotion
+from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
-from ..units import shown
 from .loads import increasing
+from .units import shown
 from .values import Angle, Length, Part
 
 HEADER = ["crank_angle_deg", "position_mm"]

@@ -13,11 +13,11 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
-from ...model.mechanism import Tolerance
+from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds
 from ...objectives.kinds import Kind
-from .. import units
-from ..units import Sign, shown, to_si
+from . import units
+from .units import Sign, shown, to_si
 
 SHORTEST = 1e-9
 """m; a shorter link is a mistaken unit."""

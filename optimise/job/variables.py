@@ -14,9 +14,9 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, create_model, model_validator
 
 from ...model.errors import InputError
-from ..units import shown
 from .file import DEEPEST
 from .quantities import ConstraintsPart
+from .units import shown
 from .values import AnyRange, Part, PositiveRange
 
 ROOTS = ("mechanism", "load", "friction", "tolerances")

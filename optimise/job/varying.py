@@ -11,24 +11,23 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
-from ...model.linkage import SlowStroke
-from ...model.mechanism import Mechanism
-from ...model.numbers import unit_of
-from ...model.varying import Varying
-from ..problem import Constraint, Range, Variant
-from ..units import closest, shown
+from ...model.linkage.linkage import SlowStroke
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.numbers import unit_of
+from ...model.machine.varying import Varying
+from ..problem.problem import Constraint, Range, Variant
 from .messages import explain
+from .model import Job
 from .quantities import constraints_of, slow_stroke_of
+from .schema import schema_of
+from .units import closest, shown
 from .values import Choices, Part, ToleranceOf
 from .variables import ROOTS
-
-if TYPE_CHECKING:
-    from .model import Job
 
 MOST = 200
 """Combinations of choices that are enumerated."""
@@ -218,9 +217,7 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
     try:
         return type(job).model_validate(data)
     except ValidationError as error:
-        from . import job_schema
-
-        sentence = explain(error, job_schema())[0]
+        sentence = explain(error, schema_of(type(job)))[0]
         for path in values:
             sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
         raise JobError(f"{key}: {sentence}") from None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..stationarity import Array
+from ..front.stationarity import Array
 
 Rows = NDArray[np.int64]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..assemble import span_of
-from ..evaluation import Evaluator
-from ..problem import Problem
-from ..search import Archive, Run
+from ..problem.problem import Problem
+from ..search.assemble import span_of
+from ..search.evaluation import Evaluator
+from ..search.search import Archive, Run
 from .local import Local, by_slsqp, by_trust_constr, found_by
 from .registry import budget
 from .scalar import Form, Programme

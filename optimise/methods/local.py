@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation import FEASIBLE
-from ..ledger import floats
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..search.checkpoints import floats
+from ..search.evaluation import FEASIBLE
 from .scalar import Programme
 
 REACH = 1e-6

@@ -12,11 +12,11 @@ from typing import Protocol
 
 import numpy as np
 
-from ..evaluation import FEASIBLE, Evaluator
-from ..ledger import Counts, Numbers, floats, integers
-from ..problem import Problem
-from ..search import Archive, Run
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.checkpoints import Counts, Numbers, floats, integers
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.search import Archive, Run
 from .generation import Brood, Generation
 from .registry import budget
 

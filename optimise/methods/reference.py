@@ -7,7 +7,7 @@ from math import comb
 
 import numpy as np
 
-from ..stationarity import Array
+from ..front.stationarity import Array
 
 
 def simplex(objectives: int, least: int) -> Array:

@@ -1,6 +1,6 @@
 """The names of the methods and where each lives; the module of a method is imported only when the method is used.
 
-    auto                                        the default: sampling, zooming, polish by SQP (`search`, `deliver`)
+    auto                                        the default: sampling, zooming, polish by SQP (`auto`)
     slsqp, trust_constr                         gradient methods from many starts, one objective
     differential_evolution, shgo                global methods, one objective
     minimax                                     sequential convex programming, one objective, all peaks at once
@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Literal, Protocol, cast, get_args
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ..evaluation import Evaluator
-    from ..problem import Problem
-    from ..search import Archive, Run
+    from ..problem.problem import Problem
+    from ..search.evaluation import Evaluator
+    from ..search.search import Archive, Run
 
 Name = Literal[
     "auto",
@@ -59,13 +59,14 @@ class Method:
     """A method that can be asked for.
 
     module: in this package. budget: evaluations where the job sets none. objectives: how many it can take.
-    equalities: whether it copes with an equality that cannot be eliminated.
+    equalities: whether it copes with an equality that cannot be eliminated. gradients: whether it needs them.
     """
 
     module: str
     budget: int
     objectives: Literal["one", "several", "any"]
     equalities: bool = True
+    gradients: bool = True
 
     def takes(self, count: int) -> bool:
         """Whether the method can take this many objectives."""
@@ -75,18 +76,18 @@ class Method:
 METHODS: dict[str, Method] = {
     "slsqp": Method("gradient", 20_000, "one"),
     "trust_constr": Method("gradient", 20_000, "one", equalities=False),
-    "differential_evolution": Method("globally", 50_000, "one", equalities=False),
-    "shgo": Method("globally", 50_000, "one", equalities=False),
-    "minimax": Method("minimax", 50_000, "one"),
+    "differential_evolution": Method("global_search", 50_000, "one", equalities=False),
+    "shgo": Method("global_search", 50_000, "one", equalities=False),
+    "minimax": Method("minimax.minimax", 50_000, "one"),
     "epsilon_constraint": Method("scalarised", 100_000, "several"),
     "chebyshev": Method("scalarised", 100_000, "several"),
     "nbi": Method("scalarised", 100_000, "several"),
-    "nsga2": Method("evolutionary", 20_000, "any"),
-    "nsga3": Method("evolutionary", 20_000, "several"),
-    "tpe": Method("parzen", 1_000, "any"),
-    "cmaes": Method("adaptation", 10_000, "one"),
-    "random": Method("sampling", 20_000, "any"),
-    "sobol": Method("sampling", 20_000, "any"),
+    "nsga2": Method("nsga", 20_000, "any", gradients=False),
+    "nsga3": Method("nsga", 20_000, "several", gradients=False),
+    "tpe": Method("tpe", 1_000, "any", gradients=False),
+    "cmaes": Method("cma_es", 10_000, "one", gradients=False),
+    "random": Method("sampling", 20_000, "any", gradients=False),
+    "sobol": Method("sampling", 20_000, "any", gradients=False),
 }
 """Every method but "auto"."""
 
@@ -100,6 +101,7 @@ def require_known(name: str) -> None:
 def require_fit(problem: Problem) -> None:
     """Raise `InputError` if the problem's method cannot take its number of objectives."""
     name, count = problem.settings.method, len(problem.objectives)
+    require_known(name)
     if name == "auto" or METHODS[name].takes(count):
         return
     fitting = ", ".join(["auto", *(other for other, method in METHODS.items() if method.takes(count))])

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..evaluation import Evaluator
-from ..problem import Problem
-from ..search import Archive, Run
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.evaluation import Evaluator
+from ..search.search import Archive, Run
 from .generation import Brood, Generation, generation_seed
 from .population import evolve
 from .registry import budget

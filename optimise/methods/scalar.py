@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation import Evaluator, Rows
-from ..pieces import alone, greatest
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..search.evaluation import Evaluator, Rows
+from ..search.pieces import alone, greatest
 
 _ABSENT = -1.0  # value of a row that a design does not have: fulfilled, without slope
 _OUT = 10.0  # violation of a point where no linkage turns fully, so that a line search turns back

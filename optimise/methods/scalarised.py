@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import distance_matrix
 
-from ..evaluation import Evaluator
-from ..hypervolume import nondominated, scaling
-from ..problem import Problem
-from ..search import Archive, Run
-from ..stationarity import Array
+from ..front.hypervolume import nondominated, scaling
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.evaluation import Evaluator
+from ..search.search import Archive, Run
 from .gradient import spent
 from .local import by_slsqp, found_by
 from .reference import grid, simplex

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation import FEASIBLE, Evaluator
-from ..problem import Problem
-from ..sampling import apart, first_samples
-from ..search import BANDS, Archive
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.sampling import apart, first_samples
+from ..search.search import BANDS, Archive
 
 SAMPLES = 16384
 """Samples over all sheets."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation import FEASIBLE, Evaluator
-from ..stationarity import Array
+from ..front.stationarity import Array
+from ..search.evaluation import FEASIBLE, Evaluator
 from .generation import History, Rows
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ...model.classical.comparison import Errors
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 _OFFSETS = 5
 

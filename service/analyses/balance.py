@@ -10,8 +10,8 @@ from .lines import Line, show_lines
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 _CURVES = (("shaking_force", "N", "SHAKING_FORCE"), ("shaking_moment", "Nm", "SHAKING_MOMENT"))
 
@@ -24,10 +24,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """
     import numpy as np
 
-    from ...model.averages import average
-    from ...model.links import Counterweight
-    from ...model.peaks import find_peaks
-    from ...model.signals import Signal
+    from ...model.machine.links import Counterweight
+    from ...model.signals.averages import average
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
 
     design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     weight = mechanism.counterweight

@@ -11,8 +11,8 @@ from .start_up import steady_numbers
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 FLUCTUATION = 0.02
 """Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""

@@ -11,8 +11,8 @@ from .lines import Line, plain, show_lines
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
@@ -23,12 +23,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """
     import numpy as np
 
-    from ...model.averages import average_torque
-    from ...model.efficiency import energies
-    from ...model.friction import Friction
-    from ...model.locked_angles import verdict
-    from ...model.peaks import find_peaks
-    from ...model.signals import Signal
+    from ...model.cycle.efficiency import energies
+    from ...model.cycle.locked_angles import verdict
+    from ...model.machine.friction import Friction
+    from ...model.signals.averages import average_torque
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
 
     design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     friction = mechanism.friction

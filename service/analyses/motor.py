@@ -10,8 +10,8 @@ from .lines import Line, plain, show_lines
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 _SAMPLES = 2048
 
@@ -24,10 +24,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     import numpy as np
     from scipy.optimize import minimize_scalar
 
-    from ...model.averages import average, average_torque
-    from ...model.peaks import find_peaks
-    from ...model.shaking import shaking_curves
-    from ...model.signals import Signal
+    from ...model.cycle.shaking import shaking_curves
+    from ...model.signals.averages import average, average_torque
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
 
     design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     torque = find_peaks(mechanism, Signal.TORQUE, design, kept=1)

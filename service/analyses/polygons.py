@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = math.radians(30.0)) -> dict[str, Any]:
     """Return the vertices at one crank angle, rad, by branch and polygon; without a crank speed for 1 rad/s."""
     from ...model.classical.polygons import Polygons, polygons
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Branch
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Branch
 
     branches: tuple[Branch, ...] = ("open", "crossed")
     speed = mechanism.speed or 1.0

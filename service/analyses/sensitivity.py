@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 DIMENSIONS = ("crank", "rod", "offset")
 _SAME = 1e-9  # relative: derivatives that differ by less are equal

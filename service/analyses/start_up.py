@@ -10,8 +10,8 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
     from ...model.transient.record import Transient
     from ...model.transient.steady import SteadyRunning
 
@@ -28,7 +28,7 @@ def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Trans
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
-    from ...model.linkage import Linkage as Own
+    from ...model.linkage.linkage import Linkage as Own
     from ...model.transient.forward import State, simulate
     from ...model.transient.steady import steady_running
 

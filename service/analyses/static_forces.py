@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 _STEP = 30
 
@@ -20,9 +20,9 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
     Without loads of its own and without one given, the load is 1 N towards the crank pivot.
     """
-    from ...model.friction import Friction
-    from ...model.links import Counterweight, RigidLink
-    from ...model.loads import StrokeForce
+    from ...model.machine.friction import Friction
+    from ...model.machine.links import Counterweight, RigidLink
+    from ...model.machine.loads import StrokeForce
 
     constant = -1.0 if load is None and not mechanism.loads else load
     return replace(
@@ -46,10 +46,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     import numpy as np
 
     from ...model.classical.static_forces import static_forces
-    from ...model.cycle import cycle
-    from ...model.linkage import Linkage
-    from ...model.peaks import find_peaks
-    from ...model.signals import Signal
+    from ...model.cycle.cycle import cycle
+    from ...model.linkage.linkage import Linkage
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
 
     machine = massless(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)

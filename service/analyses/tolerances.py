@@ -9,9 +9,9 @@ from ...model.errors import AssemblyError, InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
-    from ...optimise.stationarity import Array
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.front.stationarity import Array
 
 SAMPLES = 20_000
 BINS = 40  # of the histogram
@@ -30,8 +30,8 @@ def numbers(
     """
     import numpy as np
 
-    from ...model.peaks import find_peaks
-    from ...model.signals import Signal
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
     from ...model.tolerance.exact import worst
     from ...model.tolerance.first_order import shares
     from ...model.tolerance.monte_carlo import simulate, summarise, variances, yield_within

@@ -26,8 +26,8 @@ from .stored_fronts import DesignNumber, FrontDep
 from .turns import READING, SIMULATING
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
@@ -123,7 +123,7 @@ def show_curves(
 @router.post("/analyse")
 def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
-    from ...model.linkage import Linkage
+    from ...model.linkage.linkage import Linkage
 
     topics = chosen_topics(asked.show, job=True)
     with READING:

@@ -9,7 +9,7 @@ from ..allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from .job_requests import require_no_file
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 def given_problem(

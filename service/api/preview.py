@@ -14,7 +14,7 @@ from .state import SettingsDep
 from .turns import READING
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
+    from ...model.linkage.linkage import Linkage
     from ..preview.look import Look
 
 router = APIRouter(tags=["jobs"])
@@ -133,7 +133,7 @@ def _in(factor: float, ends: Ends | None) -> Ends | None:
 
 
 def _example(look: Look) -> ExampleModel | None:
-    from ...model.linkage import Linkage
+    from ...model.linkage.linkage import Linkage
 
     if look.stated is None or look.possible is None or look.possible.example is None:
         return None

@@ -125,7 +125,7 @@ def _methods(request: Request) -> list[str]:
 def _sentence(details: Mapping[str, Any]) -> str:
     """Return rule and value of one thing that is wrong in a request."""
     from ...optimise.job.messages import rule_of
-    from ...optimise.units import shown
+    from ...optimise.job.units import shown
 
     where = _place(details["loc"])
     if details["type"] == "missing":

@@ -15,7 +15,7 @@ from .state import SettingsDep
 from .turns import READING
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 router = APIRouter(tags=["jobs"])
 

@@ -20,9 +20,9 @@ from ..store import Job, Store
 from .models import JobNumber, Whole
 
 if TYPE_CHECKING:
-    from ...optimise.front import ParetoFront
-    from ...optimise.problem import Problem
-    from ...optimise.stationarity import Array
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.front.stationarity import Array
+    from ...optimise.problem.problem import Problem
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""

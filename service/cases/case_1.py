@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from ...model.classical.polygons import Polygons, polygons
-from ...model.inverse import crank_motion
-from ...model.linkage import Linkage
-from ...model.mechanism import Branch
+from ...model.linkage.inverse import crank_motion
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Branch
 from .published import Numbers
 
 ANGLE, SPEED, ACCELERATION = math.radians(-30.0), -15.0, -10.0

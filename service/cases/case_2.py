@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from ...model.classical.loop_equations import solve_loop
-from ...model.clearance.joint import Clearance
-from ...model.linkage import Linkage
-from ...model.links import Bar
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.clearance import Clearance
+from ...model.machine.links import Bar
+from ...model.machine.mechanism import Mechanism
 from .published import Numbers
 
 STEEL = Bar(width=0.03, depth=0.02, density=7800.0)

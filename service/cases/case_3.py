@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from ...model.classical.static_forces import static_forces
-from ...model.inverse import crank_angle_at
-from ...model.linkage import Linkage
+from ...model.linkage.inverse import crank_angle_at
+from ...model.linkage.linkage import Linkage
 from .published import Numbers
 
 LINKAGE = Linkage(0.050, 0.150)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...model.linkage import Linkage
+from ...model.linkage.linkage import Linkage
 from .published import Numbers, read_table
 
 LINKAGE = Linkage(1.400, 1.800, -0.050)

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ...model.classical.lumped import rotating_and_reciprocating
 from ...model.classical.series import series_acceleration, series_torque, tangent_torque
-from ...model.linkage import Linkage
-from ...model.links import RigidLink
-from ...model.mechanism import Mechanism
-from ...model.peaks import find_peaks
-from ...model.signals import Signal
+from ...model.linkage.linkage import Linkage
+from ...model.machine.links import RigidLink
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
 from .published import Numbers
 
 CRANK, ROD, SPEED = 0.040, 0.064, 251.0

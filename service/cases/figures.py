@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
-from ...model.linkage import Linkage
+from ...model.linkage.linkage import Linkage
 from ..figures.clearance import draw_clearance_speeds
 from ..figures.panels import Line, Panel, Sheet, draw_sheet
 from ..figures.polygons import both_branches, polygon_sheet

@@ -16,10 +16,10 @@ from .screen import console, give, say, waiting
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
-    from ...optimise.convex.costs import Costs
-    from ...optimise.convex.tolerance_allocation import Allocation
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.costs import Costs
+    from ...optimise.sizing.tolerance_allocation import Allocation
 
 _TITLES = {"crank": "crank", "rod": "rod", "offset": "offset", "crank_angle": "crank angle"}
 
@@ -43,10 +43,10 @@ def allocate(
     At every crank angle of the part of the stroke that [tolerances] counts. What has no cost in [costs] keeps its
     tolerance, and takes its part of the limit; so do the clearances.
     """
-    from ...model.linkage import Linkage
+    from ...model.linkage.linkage import Linkage
     from ...objectives.kinds import LENGTH
-    from ...optimise.convex import tolerance_allocation as convex
     from ...optimise.job import load_job
+    from ...optimise.sizing import tolerance_allocation as convex
 
     problem = load_job(job)
     if problem.costs is None:
@@ -133,7 +133,7 @@ def allocation_numbers(found: Allocation, linkage: Linkage, costs: Costs, before
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return what the tolerances of a mechanism cost, by name; None if one that has a cost is zero."""
     from ...model.tolerance.sources import limits
-    from ...optimise.convex.costs import NAMES
+    from ...optimise.problem.costs import NAMES
 
     reach = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
     if not all(reach[name] > 0.0 for name in costs.given):
@@ -145,8 +145,8 @@ def error_of(found: Allocation, linkage: Linkage, mechanism: Mechanism) -> float
     """Return the greatest first-order error, m, of a mechanism, added up as in an allocation."""
     import numpy as np
 
-    from ...model.peaks import find_peaks
-    from ...model.signals import Signal
+    from ...model.signals.peaks import find_peaks
+    from ...model.signals.signals import Signal
 
     kind = Signal.POSITION_ERROR if found.kind == "worst case" else Signal.POSITION_ERROR_RSS
     design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])

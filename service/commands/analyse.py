@@ -22,9 +22,9 @@ from .screen import console, give, say, waiting
 from .tables import show_design, show_rules
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
-    from ...optimise.problem import Problem
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.problem import Problem
 
 INTERRUPTED = 130
 _NEEDS_MASSES = ("loaded_stroke", "torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
@@ -77,8 +77,8 @@ def analyse(
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
     repeated.
     """
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)

@@ -17,7 +17,7 @@ from .screen import console, give, say, waiting
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.convex.balancing import Balance, RodSpace, Shaking
+    from ...optimise.sizing.counterweight import Balance, RodSpace, Shaking
 
 _LENGTH = "LENGTH"
 
@@ -54,10 +54,10 @@ def balance(
 
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
-    from ...model.linkage import Linkage
+    from ...model.linkage.linkage import Linkage
     from ...objectives.kinds import LENGTH, MASS
-    from ...optimise.convex import balancing
     from ...optimise.job import load_job
+    from ...optimise.sizing import counterweight as balancing
 
     problem = load_job(job)
     lengths = [
@@ -98,7 +98,7 @@ def balance(
 
 
 def _space(radius: float | None, mass: float | None) -> RodSpace | None:
-    from ...optimise.convex.balancing import RodSpace
+    from ...optimise.sizing.counterweight import RodSpace
 
     if radius is None and mass is None:
         return None

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...optimise.certificate.certificate import Certificate, Step
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 NOT_PROVEN = 4
 _SHOWN_NOTES = 8

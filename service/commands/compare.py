@@ -25,7 +25,7 @@ from .tables import print_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.comparison import Comparison
+    from ...optimise.questions.compare import Comparison
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def compare(
 
     The runs must have the same objectives; their constraints and machines may differ.
     """
-    from ...optimise import comparison
+    from ...optimise.questions import compare as comparison
 
     compared = _read(run, runs_place(runs))
     found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)

@@ -165,7 +165,7 @@ def _room(name: str, folder: Path) -> Check:
 
 def _compiled() -> Check:
     """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
-    from ...model.kernel_folder import choose_folder
+    from ...model.kernel.folder import choose_folder
 
     folder, _, refused = choose_folder()
     if not refused:

@@ -24,8 +24,8 @@ from .screen import console, give, say, waiting
 from .tables import print_table
 
 if TYPE_CHECKING:
-    from ...optimise.front import ParetoFront
-    from ...optimise.problem import Constraint, Problem
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.problem.problem import Constraint, Problem
 
 _EXAMPLE = '--where "transmission_angle >= 45 deg"'
 Ends = tuple[float | None, float | None]
@@ -51,8 +51,8 @@ def like(
     It is Pareto-optimal for the run's job with the conditions added, and of those designs the nearest, objectives by
     their range over the run's front. Nothing is saved.
     """
-    from ...optimise.like import distance
-    from ...optimise.like import like as nearest
+    from ...optimise.questions.like import distance
+    from ...optimise.questions.like import like as nearest
 
     folder = find_run(run, runs_place(runs))
     result = read_run(folder)
@@ -82,7 +82,7 @@ def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
     """Return the objectives (n, m) of a run as minimised, SI, and their ranges (m,)."""
     import numpy as np
 
-    from ...optimise.hypervolume import scaling
+    from ...optimise.front.hypervolume import scaling
 
     factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     values = minimised_values(result) / factors
@@ -91,8 +91,8 @@ def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
 
 def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
-    from ...optimise.like import common
-    from ...optimise.problem import Constraint
+    from ...optimise.problem.problem import Constraint
+    from ...optimise.questions.like import common
     from ..designs.requirements import names_of
 
     names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}

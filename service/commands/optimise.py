@@ -26,9 +26,9 @@ from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
-    from ...optimise.front import ParetoFront
-    from ...optimise.problem import Problem
-    from ...optimise.progress import Progress
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.front.progress import Progress
+    from ...optimise.problem.problem import Problem
     from ..store import Claim, Store
 
 NOTHING_FEASIBLE, INTERRUPTED = 3, 130

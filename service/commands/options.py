@@ -10,7 +10,7 @@ from ...model.errors import InputError
 from ...objectives.kinds import System
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 Units = Annotated[
@@ -48,7 +48,7 @@ def speed_option(text: str) -> float:
 
 def value_option(option: str, text: str, kind: Any, *, sign: Any = "any") -> float:
     """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
-    from ...optimise.units import shown, to_si
+    from ...optimise.job.units import shown, to_si
 
     try:
         float(text)

@@ -13,7 +13,7 @@ from ..standing import standing
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.progress import Progress
+    from ...optimise.front.progress import Progress
 
 
 def console() -> Console:

@@ -12,7 +12,7 @@ from .options import length_option
 from .screen import console, give, waiting
 
 if TYPE_CHECKING:
-    from ...optimise.convex.sections import Sections
+    from ...optimise.sizing.sections import Sections
 
 _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
@@ -30,9 +30,9 @@ def sections(
     puts on them, their own mass included. What JOB says of the links' masses is not used. Dimensions that JOB fixes
     need not be repeated.
     """
-    from ...model.linkage import Linkage
-    from ...optimise.convex.sections import size_sections
+    from ...model.linkage.linkage import Linkage
     from ...optimise.job import load_job, load_sections
+    from ...optimise.sizing.sections import size_sections
 
     problem = load_job(job)
     material, limits = load_sections(job)

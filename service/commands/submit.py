@@ -170,7 +170,7 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
     if json:
         yield lambda event: give(f"{_line(event)}\n")
         return
-    from ...optimise.progress import Progress
+    from ...optimise.front.progress import Progress
 
     live, last = error_console().is_terminal, 0.0
     with progress_bar() as bar:

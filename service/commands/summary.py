@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ...model.friction import Friction
-from ...model.links import Bar, Link
-from ...model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
-from ...model.mechanism import Mechanism, Tolerance
-from ...model.varying import Varying
+from ...model.machine.friction import Friction
+from ...model.machine.links import Bar, Link
+from ...model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from ...model.machine.mechanism import Mechanism, Tolerance
+from ...model.machine.varying import Varying
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...optimise.convex.costs import Cost
-from ...optimise.elimination import UNKNOWNS, sheets
-from ...optimise.evaluation import constraints_of
-from ...optimise.loaded_stroke import expected_warnings
-from ...optimise.problem import Constraint, Objective, Problem, Range
-from ...optimise.zero_objectives import idle_rules
+from ...optimise.problem.costs import Cost
+from ...optimise.problem.problem import Constraint, Objective, Problem, Range
+from ...optimise.problem.zero_objectives import idle_rules
+from ...optimise.questions.loaded_stroke import expected_warnings
+from ...optimise.search.elimination import UNKNOWNS, sheets
+from ...optimise.search.evaluation import constraints_of
 
 
 def summarise(problem: Problem) -> dict[str, Any]:

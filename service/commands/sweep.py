@@ -86,7 +86,7 @@ def parse_axis(text: str) -> Axis:
 
     from ...objectives.kinds import ANGULAR_SPEED, LENGTH
     from ...objectives.sweep import Axis, Parameter
-    from ...optimise.units import closest
+    from ...optimise.job.units import closest
 
     known, asked = get_args(Parameter), text.partition("=")[0].strip()
     if "=" in text and asked and asked not in known:

@@ -82,7 +82,7 @@ def print_table(screen: Console, table: Table) -> None:
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
-    from ...optimise.constant import is_constant
+    from ...optimise.front.constant import is_constant
 
     names = list(result.designs[0])
     keys = [find_column(name, names).key for name in DIMENSIONS] + _chosen(names) + [find_column("stroke", names).key]

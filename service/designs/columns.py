@@ -94,7 +94,7 @@ def _meant(name: str, keys: Collection[str]) -> str:
     if len(longer) == 1:
         return longer[0]
 
-    from ...optimise.units import closest
+    from ...optimise.job.units import closest
 
     near = closest(name, [*keys, *meant]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"

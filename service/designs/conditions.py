@@ -82,7 +82,7 @@ def _of_words(column: Column, comparison: str) -> str:
 
 def _number(text: str, column: Column, value: str) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
-    from ...optimise.units import kind_of, to_si
+    from ...optimise.job.units import kind_of, to_si
 
     if column.own_unit or not column.unit:
         try:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ...model.cycle import Cycle
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.cycle.cycle import Cycle
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 LEAST, MOST = 4, 3600
 
@@ -39,7 +39,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
     """
     import numpy as np
 
-    from ...model.cycle import cycle
+    from ...model.cycle.cycle import cycle
 
     if not LEAST <= angles <= MOST:
         raise InputError(f"curves have {LEAST} to {MOST} crank angles; got {angles}; ask for as many")

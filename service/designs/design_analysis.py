@@ -11,8 +11,8 @@ from ..runs.result import Row, rows_of
 from .topics import Topic
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
     from ...objectives.quantity import Quantity
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Constraint
-    from ...optimise.stationarity import Array
+    from ...optimise.front.stationarity import Array
+    from ...optimise.problem.problem import Constraint
     from .stored_designs import StoredDesign
 
 _LENGTHS = ("crank", "rod", "offset")

@@ -11,7 +11,7 @@ from ..runs.result import Row
 from .requirements import MET, ranges_of, requirements_of
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True)

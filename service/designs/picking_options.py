@@ -10,7 +10,7 @@ from ...model.errors import InputError
 from ..runs.result import Result, Wanted
 
 if TYPE_CHECKING:
-    from ...optimise.stationarity import Array
+    from ...optimise.front.stationarity import Array
 
 _TOPSIS = '--topsis "peak_torque=2, transmission_angle=1"'
 _LEXICOGRAPHIC = '--lexicographic "peak_torque: 5 %, transmission_angle"'
@@ -20,7 +20,7 @@ def picked_row(
     result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
 ) -> int | None:
     """Return which of the rows the options choose, None without such an option. Raises `InputError` for two."""
-    from ...optimise import picking
+    from ...optimise.front import picking
 
     asked = [
         name
@@ -90,7 +90,7 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
     from ...objectives.kinds import RATIO
-    from ...optimise.units import kind_for, per_si, to_si
+    from ...optimise.job.units import kind_for, per_si, to_si
 
     try:
         if value.endswith("%"):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from ..runs.result import Row
 
 if TYPE_CHECKING:
-    from ...model.mechanism import Mechanism
-    from ...optimise.problem import Problem, Range
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.problem import Problem, Range
 
 _RPM = 9.549296585513721  # in one rad/s
 MET = 1e-8
@@ -41,7 +41,7 @@ class Requirement:
 
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
-    from ...optimise.evaluation import constraints_of
+    from ...optimise.search.evaluation import constraints_of
 
     found = []
     for constraint in constraints_of(part):

@@ -15,7 +15,7 @@ from ..runs.result import Result, Row, Wanted
 from .columns import key_in
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 def row_in(row: Mapping[str, Any], system: System) -> Row:

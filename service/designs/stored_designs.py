@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...model.errors import RunError
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
-from ...model.varying import Varying
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.varying import Varying
 from ...objectives.varying_column import varying_column
-from ...optimise.problem import Problem, Range, Variant, choice_field
+from ...optimise.problem.problem import Problem, Range, Variant, choice_field
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
-    from ...optimise.front import ParetoFront
+    from ...optimise.front.front import ParetoFront
 
 _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 
@@ -51,7 +51,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     import numpy as np
     import pandas as pd
 
-    from ...optimise.front import ParetoFront
+    from ...optimise.front.front import ParetoFront
     from .picking_options import minimised_values
 
     sizes = _factors(problem.mechanism)

@@ -12,8 +12,8 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 TOPICS = {
     "static_forces": "forces of the loads alone, mechanical advantage",

@@ -9,9 +9,9 @@ from ...model.errors import InputError
 
 if TYPE_CHECKING:
     from ...objectives.kinds import System
-    from ...optimise.elimination import Sheet
-    from ...optimise.front import ParetoFront
-    from ...optimise.stationarity import Array
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.front.stationarity import Array
+    from ...optimise.search.elimination import Sheet
     from .stored_designs import StoredDesign
 
 _NEAR = 1e-9  # relative: how well a point of the unit box must give the design back
@@ -27,11 +27,11 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     """
     import numpy as np
 
-    from ...optimise.elimination import sheets
-    from ...optimise.evaluation import Evaluator
-    from ...optimise.gradients import without_gradient
-    from ...optimise.hypervolume import scaling
-    from ...optimise.polish import polish
+    from ...optimise.front.hypervolume import scaling
+    from ...optimise.problem.gradients import without_gradient
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.evaluation import Evaluator
+    from ...optimise.search.polish import polish
 
     if len(front.objectives) < 2:
         raise InputError("objectives are traded where there are several; got one; add another one to the job")

@@ -6,14 +6,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...model.linkage import Linkage
+from ...model.linkage.linkage import Linkage
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
 from .requirements import outside, requirements_of
 from .stored_designs import StoredDesign
 
 if TYPE_CHECKING:
-    from ...optimise.stationarity import Array
+    from ...optimise.front.stationarity import Array
 
 _SAME = 1e-9  # of an objective's range over the front: a difference below is rounding
 
@@ -61,7 +61,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 def _row(design: StoredDesign) -> Row:
     import numpy as np
 
-    from ...optimise.assemble import table_of
+    from ...optimise.search.assemble import table_of
 
     table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     return rows_of(table.to_dict("list"))[0]
@@ -71,7 +71,7 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
     import numpy as np
 
-    from ...optimise.constant import spread
+    from ...optimise.front.constant import spread
 
     own = minimised_values(replace(result, designs=[row]))[0]
     if not len(minimised) or not np.isfinite(own).all():

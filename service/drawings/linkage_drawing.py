@@ -11,8 +11,8 @@ from .parts import Proportions, Sizes, extent, moving, pins_at, proportions, sce
 from .shapes import Drawing, Label, Line, Point, Shape
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 CRANK_ANGLE = math.radians(60.0)
 """Where a linkage is drawn unless asked otherwise."""

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...model.links import Bar, Link
+from ...model.machine.links import Bar, Link
 from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 _MM = 1e3
 _FEET = 200  # hatching lines of a rail at most

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System
-from ...optimise.front import ParetoFront
-from ...optimise.robust import robust_quantities
+from ...optimise.front.front import ParetoFront
+from ...optimise.problem.robust import robust_quantities
 from .of_front import front_figures
 from .robustness import robustness_figure
 from .sheet import design_sheet

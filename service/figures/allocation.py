@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.first_order import FirstOrder, first_order
 from ...model.tolerance.sources import SOURCES, counted_angles
-from ...optimise.convex.costs import Costs
-from ...optimise.convex.tolerance_allocation import Allocation
+from ...optimise.problem.costs import Costs
+from ...optimise.sizing.tolerance_allocation import Allocation
 from ..commands.allocate import costs_before
 from .style import BLUE, INK, MUTED, SHADE, SMALL, TEXT, TITLE, VERMILION, dress, new_figure, place, save, shown, write
 

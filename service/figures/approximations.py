@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...model.classical.comparison import compare
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ..analyses.approximations import over_offset
 from .panels import Line, Panel, Sheet, draw_sheet
 from .style import save, shown

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.linkage import Linkage
-from ...model.links import Counterweight
-from ...model.mechanism import Mechanism
-from ...model.shaking import shaking_curves
+from ...model.cycle.shaking import shaking_curves
+from ...model.linkage.linkage import Linkage
+from ...model.machine.links import Counterweight
+from ...model.machine.mechanism import Mechanism
 from .over_cycle import Panel, Panels, Series, draw_panels, turn
 
 

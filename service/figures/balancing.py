@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...optimise.convex.balancing import Balance
+from ...optimise.sizing.counterweight import Balance
 from .panels import Line, Panel, Sheet, draw_sheet
 from .style import save, shown
 

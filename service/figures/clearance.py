@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ...model.clearance.run import ClearanceRun, simulate
 from ...model.clearance.statistics import ClearanceSummary, summarise
 from ...model.errors import InputError
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ..analyses.clearance import simulated
 from .style import BLUE, INK, MUTED, SMALL, TEXT, TITLE, VERMILION, dress, limits, new_figure, place, save, shown, write
 

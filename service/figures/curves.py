@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ...model.cycle import cycle
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
-from ...model.peaks import find_peaks
-from ...model.segments import crowding, uncrowded
-from ...model.signals import Signal
+from ...model.cycle.cycle import cycle
+from ...model.dynamics.segments import crowding, uncrowded
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
 from ...objectives.kinds import System, shown_in
 from .drawing import least_transmission_crank_angle
 from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits, shown, with_unit

@@ -11,9 +11,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 from numpy.typing import NDArray
 
-from ...model.linkage import Linkage
-from ...model.links import Bar, Link
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.links import Bar, Link
+from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from .style import BLUE, FRAME, GHOST, INK, LINK, MUTED, SMALL, VERMILION, shown
 

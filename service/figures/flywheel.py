@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...model.transient.flywheel import design_flywheel
 from ...model.transient.steady import Runner, SteadyRunning
 from ..analyses.flywheel import FLUCTUATION

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.cycle import breakpoints, cycle
-from ...model.friction import Friction
-from ...model.linkage import Linkage
-from ...model.locked_angles import verdict
-from ...model.mechanism import Mechanism
+from ...model.cycle.cycle import breakpoints, cycle
+from ...model.cycle.locked_angles import verdict
+from ...model.linkage.linkage import Linkage
+from ...model.machine.friction import Friction
+from ...model.machine.mechanism import Mechanism
 from .over_cycle import Panel, Panels, Series, draw_panels, turn
 
 

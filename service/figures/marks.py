@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
 from ...objectives.varying_column import varying_column
-from ...optimise.constant import is_constant
-from ...optimise.front import ParetoFront
-from ...optimise.problem import Objective
+from ...optimise.front.constant import is_constant
+from ...optimise.front.front import ParetoFront
+from ...optimise.problem.problem import Objective
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
 
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.averages import average, average_torque
-from ...model.cycle import breakpoints, cycle
-from ...model.friction import Friction
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
-from ...model.self_locking import locking_margin
-from ...model.shaking import shaking_curves
-from ...model.signals import Signal
+from ...model.cycle.cycle import breakpoints, cycle
+from ...model.cycle.self_locking import locking_margin
+from ...model.cycle.shaking import shaking_curves
+from ...model.linkage.linkage import Linkage
+from ...model.machine.friction import Friction
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.averages import average, average_torque
+from ...model.signals.signals import Signal
 from .over_cycle import Panel, Panels, Series, draw_panels, turn
 
 

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
 
-from ...model.linkage import Linkage
+from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import System
-from ...optimise.front import ParetoFront
+from ...optimise.front.front import ParetoFront
 from .marks import marks, short_title
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 
 if TYPE_CHECKING:
-    from ...model.mechanism import Mechanism
+    from ...model.machine.mechanism import Mechanism
     from ..designs.stored_designs import StoredDesign
 
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ...objectives.kinds import System
-from ...optimise.front import ParetoFront
+from ...optimise.front.front import ParetoFront
 from .marks import Axis, dimension_axes, marks, objective_axis
 from .style import (
     FRAME,

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ...model.classical.polygons import Polygons, polygons
-from ...model.linkage import Linkage
-from ...model.mechanism import Branch, Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Branch, Mechanism
 from .panels import Line, Panel, Sheet, draw_sheet
 from .style import save, shown
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...optimise.front import ParetoFront
-from ...optimise.robust import robust_quantities
-from ...optimise.robust_cost import robust_cost
+from ...optimise.front.front import ParetoFront
+from ...optimise.problem.robust import robust_quantities
+from ...optimise.questions.price_of_robustness import robust_cost
 from ..runs.result import wanted_of
 from .comparison import Drawn, comparison_matrix
 from .style import unit_text

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...objectives.kinds import System
-from ...optimise.front import ParetoFront
+from ...optimise.front.front import ParetoFront
 from .marks import Axis, Mark, dimension_axes, marks, objective_axis
 from .style import (
     INK,

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ..analyses.start_up import start
 from .style import (
     BLUE,

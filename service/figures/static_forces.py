@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ...model.classical.static_forces import static_forces
-from ...model.cycle import cycle
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.cycle.cycle import cycle
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ..analyses.static_forces import massless
 from .panels import Line, Panel, Sheet, draw_sheet
 from .style import save, shown

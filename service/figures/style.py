@@ -18,7 +18,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from ...optimise.constant import is_constant
+from ...optimise.front.constant import is_constant
 
 DPI = 130
 TITLE, TEXT, SMALL = 11.0, 8.5, 7.5  # points

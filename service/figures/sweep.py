@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
 from ...objectives.sweep import Axis
-from ...optimise.constant import is_constant
+from ...optimise.front.constant import is_constant
 from .style import (
     BLUE,
     INK,

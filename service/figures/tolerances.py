@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...model.cycle import cycle
+from ...model.cycle.cycle import cycle
 from ...model.errors import AssemblyError
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.exact import extremes
 from ...model.tolerance.first_order import shares
 from ...model.tolerance.monte_carlo import simulate, variances

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...model.linkage import Linkage
-from ...model.mechanism import Mechanism
-from ...model.variation import Dimension, Variations, vary
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.variation import Dimension, Variations, vary
+from ...model.machine.mechanism import Mechanism
 from .style import BLUE, FRAME, INK, SMALL, TEXT, TITLE, VERMILION, dress, new_figure, place, save, shown, write
 
 Array = NDArray[np.float64]

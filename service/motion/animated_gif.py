@@ -12,8 +12,8 @@ from ..drawings.parts import extent, moving, pins_at, proportions, scenery, size
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 FRAMES, MILLISECONDS = 60, 60
 """Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""

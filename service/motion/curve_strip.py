@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from html import escape
 
-from ...optimise.constant import is_constant
+from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn
 from ..figures.style import shown, unit_text
 

@@ -19,8 +19,8 @@ from ..figures.style import unit_text
 from .curve_strip import curve_strip
 
 if TYPE_CHECKING:
-    from ...model.linkage import Linkage
-    from ...model.mechanism import Mechanism
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
 
 ANGLES = 360
 _PLAYER = Path(__file__).parent / "player"

@@ -13,7 +13,7 @@ from .sentences import said
 from .stated import geometry, left_out
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 @dataclass(frozen=True)

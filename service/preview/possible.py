@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ...optimise.elimination import Sheet
-    from ...optimise.problem import Constraint, Problem
+    from ...optimise.problem.problem import Constraint, Problem
+    from ...optimise.search.elimination import Sheet
 
     Array = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def possible(problem: Problem) -> Possible:
     """Return what the ranges of a problem of `stated.geometry` allow."""
     import numpy as np
 
-    from ...optimise.evaluation import FEASIBLE
+    from ...optimise.search.evaluation import FEASIBLE
 
     free = replace(problem, constraints=())
     box = _designs(free, _SAMPLES)
@@ -100,8 +100,8 @@ def possible(problem: Problem) -> Possible:
 
 def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with the requirements on the dimensions alone, and the names of the others."""
-    from ...model.mechanism import Mechanism
-    from ...optimise.evaluation import constraints_of
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.search.evaluation import constraints_of
 
     machine = Mechanism(speed=problem.mechanism.speed, branch=problem.mechanism.branch)
     closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
@@ -113,8 +113,8 @@ def _designs(problem: Problem, count: int) -> Array:
     """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
     import numpy as np
 
-    from ...optimise.elimination import sheets
-    from ...optimise.sampling import first_samples
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.sampling import first_samples
 
     parts = []
     for index, sheet in enumerate(sheets(problem)):
@@ -134,9 +134,9 @@ def _screened(problem: Problem) -> tuple[Array, Array]:
     """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
     import numpy as np
 
-    from ...optimise.elimination import sheets
-    from ...optimise.evaluation import Evaluator
-    from ...optimise.sampling import first_samples
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.evaluation import Evaluator
+    from ...optimise.search.sampling import first_samples
 
     end = time.monotonic() + _MOMENT
     designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
@@ -154,9 +154,9 @@ def _screened(problem: Problem) -> tuple[Array, Array]:
 
 def _reach(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
-    from ...optimise.elimination import sheets
-    from ...optimise.evaluation import constraints_of
-    from ...optimise.problem import Constraint
+    from ...optimise.problem.problem import Constraint
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.evaluation import constraints_of
 
     others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
     if name == "transmission_angle":
@@ -171,7 +171,7 @@ def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
     """Return the least and the greatest value on a sheet, sampled, then nearer and nearer around the best."""
     import numpy as np
 
-    from ...optimise.sampling import first_samples, generator
+    from ...optimise.search.sampling import first_samples, generator
 
     points = np.concatenate([first_samples(_SAMPLES, len(sheet.free), 1, index), *_on_edges(problem, sheet)])
     values = _values(problem, name, sheet.dimensions(points)[:, :3])
@@ -203,9 +203,9 @@ def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Arr
     """
     import numpy as np
 
-    from ...optimise.evaluation import FEASIBLE, Evaluator
-    from ...optimise.polish import polish
-    from ...optimise.problem import Objective
+    from ...optimise.problem.problem import Objective
+    from ...optimise.search.evaluation import FEASIBLE, Evaluator
+    from ...optimise.search.polish import polish
 
     wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(wanted,)), sheet)
@@ -221,8 +221,8 @@ def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
     """Yield points of a sheet (n, k) at which a requirement is met just so: extremes lie there, and bands are thin."""
     import numpy as np
 
-    from ...optimise.elimination import UNKNOWNS, sheets
-    from ...optimise.sampling import first_samples
+    from ...optimise.search.elimination import UNKNOWNS, sheets
+    from ...optimise.search.sampling import first_samples
 
     for place, constraint in enumerate(problem.constraints):
         for end in (constraint.lower, constraint.upper):

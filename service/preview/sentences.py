@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from .possible import Ends, Possible
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Constraint, Problem
+    from ...optimise.problem.problem import Constraint, Problem
 
 _REST = "all other requirements on the dimensions"
 
@@ -36,8 +36,8 @@ def said(problem: Problem, found: Possible) -> list[str]:
 
 def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
     """Return in words what can be had in place of a requirement that lies beyond the ends of what is possible."""
-    from ...optimise.constant import is_constant
-    from ...optimise.relaxation import missed, sides
+    from ...optimise.feasibility.relaxation import missed, sides
+    from ...optimise.front.constant import is_constant
 
     found = []
     for relation, _, bound in sides(constraint):

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ...model.mechanism import Mechanism
-    from ...optimise.problem import Constraint, Problem, Range
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.problem import Constraint, Problem, Range
 
 _MOST_POINTS = 100
 """Points of tabulated loads; each is a breakpoint of every curve, and costs its share of every sampled design."""
@@ -22,9 +22,9 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
     the machine are left out without it, those that only a search can afford always.
     """
-    from ...model.mechanism import Mechanism
-    from ...optimise.causes import undefined_because
-    from ...optimise.problem import Objective, Problem
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.causes import undefined_because
+    from ...optimise.problem.problem import Objective, Problem
 
     ranges = _ranges(tables.get("variables"))
     if ranges is None:
@@ -55,7 +55,7 @@ def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
 
 def _with_slow_stroke(problem: Problem, part: object) -> Problem:
     """Return the problem with the slow stroke that a job asks for, if its ranges have one."""
-    from ...optimise.elimination import require_slow_side
+    from ...optimise.search.elimination import require_slow_side
 
     asked = part.get("slow_stroke") if isinstance(part, Mapping) else None
     if asked not in ("outward", "inward"):
@@ -78,9 +78,9 @@ def is_closed(name: str) -> bool:
 
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
-    from ...model.mechanism import Mechanism
+    from ...model.machine.mechanism import Mechanism
     from ...objectives.kinds import ANGULAR_SPEED
-    from ...optimise.units import to_si
+    from ...optimise.job.units import to_si
 
     given = part if isinstance(part, Mapping) else {}
     try:
@@ -91,14 +91,14 @@ def _turning(part: object) -> Mechanism:
 
 
 def _points(machine: Mechanism) -> int:
-    from ...model.loads import AngleTable, PositionTable
+    from ...model.machine.loads import AngleTable, PositionTable
 
     return sum(len(load.forces) for load in machine.loads if isinstance(load, AngleTable | PositionTable))
 
 
 def _ranges(part: object) -> dict[str, Range] | None:
     from ...optimise.job.values import Choices, RangeOf
-    from ...optimise.problem import Range
+    from ...optimise.problem.problem import Range
 
     if not isinstance(part, Mapping):
         return None

@@ -13,8 +13,8 @@ from ..designs.variation import Variation, with_lengths
 from ..runs.result import Result, Row
 
 if TYPE_CHECKING:
-    from ...optimise.front import ParetoFront
-    from ...optimise.problem import Problem
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.problem.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ...optimise.front import ParetoFront
+    from ...optimise.front.front import ParetoFront
 
 Cell = float | str | None
 Row = dict[str, Cell]
@@ -110,8 +110,8 @@ def wanted_of(front: ParetoFront) -> list[Wanted]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return what a run found from its front."""
-    from ...optimise.loaded_stroke import front_warnings
-    from ...optimise.zero_objectives import idle_rules
+    from ...optimise.problem.zero_objectives import idle_rules
+    from ...optimise.questions.loaded_stroke import front_warnings
 
     found = len(front) > 0
     several = found and len(front.objectives) > 1

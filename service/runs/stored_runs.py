@@ -12,7 +12,7 @@ from .result import Result, Row, Wanted, finite, rows_from_csv
 from .run_folder import MARK
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
+    from ...optimise.problem.problem import Problem
 
 
 def read_run(folder: Path) -> Result:

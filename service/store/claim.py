@@ -24,8 +24,8 @@ from .schema import designs, jobs, records, workers
 from .submitting import put_files
 
 if TYPE_CHECKING:
-    from ...optimise.ledger import Record
-    from ...optimise.progress import Progress
+    from ...optimise.front.progress import Progress
+    from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
 _TOLD = 1.0  # s after which it is told that a write has to wait

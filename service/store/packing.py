@@ -13,7 +13,7 @@ from ...model.errors import RunError
 from ..runs.result import Cell, Result, Row, finite
 
 if TYPE_CHECKING:
-    from ...optimise.ledger import Record
+    from ...optimise.search.checkpoints import Record
 
 _LONGEST = 4000
 _FORM = 1
@@ -41,7 +41,7 @@ def unpacked(content: bytes) -> Record:
     """Return the record that `packed` was given. Raises `RunError` if the content is damaged."""
     import numpy as np
 
-    from ...optimise.ledger import Identity, Record
+    from ...optimise.search.checkpoints import Identity, Record
 
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as file:

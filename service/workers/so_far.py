@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ...optimise.problem import Problem
-    from ...optimise.stationarity import Array
+    from ...optimise.front.stationarity import Array
+    from ...optimise.problem.problem import Problem
 
 MOST = 64
 """Designs that are shown: enough for the shape of a front, and some kB at most."""

@@ -28,10 +28,10 @@ from .so_far import front_so_far
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
-    from ...optimise.front import ParetoFront
-    from ...optimise.ledger import Record
-    from ...optimise.progress import Progress
-    from ...optimise.stationarity import Array
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.front.progress import Progress
+    from ...optimise.front.stationarity import Array
+    from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
@@ -246,7 +246,7 @@ def _solve(
 
 def _load(claim: Claim, parts: int) -> None:
     """Tell how much of what a search needs is loaded, beside the numbers and the front that the job had before."""
-    from ...optimise.progress import LOADING, Progress
+    from ...optimise.front.progress import LOADING, Progress
 
     known = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
     front = known.pop("front", None)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.cases import Array
 from tests.model.virtual_work import body
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar, Counterweight, RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 
 Array = NDArray[np.float64]
 

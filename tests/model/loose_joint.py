@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.clearance.joint import Clearance
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.virtual_work import body
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from slidercrank.model.arithmetic import STEP, arcsine, inverse, magnitude, root
+from slidercrank.model.kernel.arithmetic import STEP, arcsine, inverse, magnitude, root
 
 CASES: list[tuple[str, Callable[[Any], Any], float, float, float]] = [
     ("inverse", inverse, 0.3, 1.0 / 0.3, -1.0 / 0.09),

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from slidercrank.model.averages import average, average_torque
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.signals import Signal
 from tests.model.cases import MACHINES, SMOOTH, Array, linkage_of, random_designs, random_machine
 from tests.model.virtual_work import drive_torque
 

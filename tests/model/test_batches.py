@@ -18,8 +18,8 @@ HEAD = """
 
     counted = []
     os.register_at_fork(before=lambda: counted.append(threading.active_count()))
-    from slidercrank.model.batches import in_chunks
-    from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
+    from slidercrank.model.kernel.batches import in_chunks
+    from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 
     rng = np.random.default_rng(1)
     crank, offset = rng.uniform(0.01, 0.1, (2, 5000))

@@ -11,13 +11,13 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.model.clearance import equations
-from slidercrank.model.clearance.joint import Clearance, Joint
 from slidercrank.model.clearance.phases import Integrator
 from slidercrank.model.clearance.system import build
-from slidercrank.model.cycle import cycle
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.clearance import Clearance, Joint
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.loose_joint import accelerations, state_of
 from tests.model.virtual_work import load_force, outward_motion, path, slider_load, stroke_ends

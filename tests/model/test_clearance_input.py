@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from slidercrank.model.clearance.joint import Clearance
 from slidercrank.model.clearance.run import simulate
 from slidercrank.model.errors import AssemblyError, InputError, SlidercrankError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar, RigidLink
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
 SIEVE = Mechanism(speed=10.0 * math.pi, crank=BAR, rod=BAR, slider_mass=1.95, gravity=(0.0, -9.81))

@@ -8,14 +8,14 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from slidercrank.model.clearance.joint import Clearance
 from slidercrank.model.clearance.run import ClearanceProgress, ClearanceRun, simulate
 from slidercrank.model.clearance.statistics import Estimate, summarise
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism
 
 RPM = 2.0 * math.pi / 60.0
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
@@ -127,7 +127,7 @@ def test_the_other_pins_can_be_loose_too(joint: str) -> None:
 
 def test_a_joint_that_is_always_pressed_carries_the_force_of_the_ideal_joint() -> None:
     """A strong steady pull, damped: the journal lies still against its bearing, which carries the load."""
-    from slidercrank.model.cycle import cycle
+    from slidercrank.model.cycle.cycle import cycle
 
     machine = replace(sieve(100.0), loads=(StrokeForce(outward=800.0, inward=800.0), Viscous(coefficient=200.0)))
     clearance = replace(SOFT, radius=2e-4, restitution=0.1, slow_impact=1e-3)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
+from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import Array, random_designs
 
 DESIGNS = random_designs(5000, seed=91)

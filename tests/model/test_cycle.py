@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from tests.model.cases import MACHINES, SMOOTH, TOLERANCES, linkage_of, random_designs
 from tests.model.virtual_work import error_parts, path, slider_load
 

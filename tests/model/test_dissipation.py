@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.averages import average_torque
-from slidercrank.model.dissipation import works_over_a_turn
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.dissipation import works_over_a_turn
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.varying import Varying
+from slidercrank.model.signals.averages import average_torque
 from tests.model.cases import SMOOTH, random_designs
 from tests.model.virtual_work import drive_torque
 

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.averages import average_torque
-from slidercrank.model.cycle import Cycle, cycle
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import Spring, StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.signals import Signal
+from slidercrank.model.cycle.cycle import Cycle, cycle
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time

@@ -13,17 +13,17 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import root
 
-from slidercrank.model.averages import average_torque
-from slidercrank.model.cycle import Cycle, breakpoints, cycle
-from slidercrank.model.efficiency import energies
+from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle
+from slidercrank.model.cycle.efficiency import energies
 from slidercrank.model.errors import InputError
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loads import Spring, StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import screens
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import screens
+from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import SMOOTH, Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time

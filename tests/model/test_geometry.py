@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slidercrank.model import geometry
+from slidercrank.model.kinematics import geometry
 from tests.model.cases import random_designs
 
 DESIGNS = random_designs(1000, seed=21)

@@ -8,15 +8,15 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.averages import average
-from slidercrank.model.cycle import cycle
-from slidercrank.model.friction import Friction
-from slidercrank.model.links import Counterweight, RigidLink
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.shaking import ShakingCurves, shaking_curves
-from slidercrank.model.signals import Signal
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.shaking import ShakingCurves, shaking_curves
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import Counterweight, RigidLink
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.averages import average
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time

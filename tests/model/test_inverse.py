@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.inverse import Solution, crank_angle_at, crank_motion
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch
+from slidercrank.model.linkage.inverse import Solution, crank_angle_at, crank_motion
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array, linkage_of, random_designs
 
 SPEED, ACCELERATION = -7.0, 90.0

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numba import njit, types
 from numba.extending import overload
-from slidercrank.model.kernel_cache import KernelCache
+from slidercrank.model.kernel.cache import KernelCache
 
 def slow(x):
     return 2.0 * x

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model import kernel_folder
-from slidercrank.model.kernel_folder import choose_folder
+from slidercrank.model.kernel import folder as kernel_folder
+from slidercrank.model.kernel.folder import choose_folder
 
 
 @pytest.fixture

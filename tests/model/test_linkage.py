@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array, linkage_of, random_designs
 from tests.model.virtual_work import path
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import linkage_of, random_designs
 from tests.model.contour import distance_to_locking, motion_in_time
 from tests.model.virtual_work import path

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loaded_stroke import MORE, loaded_stroke
-from slidercrank.model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Branch, Mechanism
-from slidercrank.model.varying import Varying
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.linkage.loaded_stroke import MORE, loaded_stroke
+from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.model.machine.varying import Varying
 from tests.model.virtual_work import path, slider_load
 
 DESIGNS = np.array([[0.04, 0.1, 0.03], [0.04, 0.1, -0.03], [0.05, 0.2, 0.1]])

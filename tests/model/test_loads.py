@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)
 INNER, OUTER = (float(end) for end in LINKAGE.dead_centres)

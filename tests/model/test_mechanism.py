@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
 
 
 @pytest.mark.parametrize(

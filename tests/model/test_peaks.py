@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.averages import average_torque
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage import Linkage, crank_from_stroke
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.peaks import KEPT, find_peaks
-from slidercrank.model.screening import screen
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.peaks import KEPT, find_peaks
+from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.signals import Signal
 from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, linkage_of, random_designs
 from tests.model.sweep import ANGLES, greatest
 from tests.model.virtual_work import drive_torque, position_error

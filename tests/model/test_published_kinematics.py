@@ -11,9 +11,9 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.mechanism import Branch
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array
 
 # Exact figures were computed independently in double precision and are given to ten digits.

@@ -13,7 +13,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 
 CRANK, ROD, OFFSET = 1400.0, 1800.0, 50.0
 LINKAGE = Linkage(CRANK, ROD, -OFFSET)  # in mm: every quantity here is a length or an angle

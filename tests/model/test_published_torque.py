@@ -12,11 +12,11 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import screen
-from slidercrank.model.signals import Signal
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.signals import Signal
 from tests.model.virtual_work import path
 
 RECIPROCATING = Mechanism(speed=251.0, slider_mass=1.05)

@@ -7,12 +7,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from slidercrank.model import screening
-from slidercrank.model.loads import Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Branch, Mechanism, Tolerances, Window
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import LANES, Screened, screens
-from slidercrank.model.signals import Signal
+from slidercrank.model.machine.loads import Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerances, Window
+from slidercrank.model.signals import screening
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import LANES, Screened, screens
+from slidercrank.model.signals.signals import Signal
 from tests.model.cases import SMOOTH, STROKES, TABLES, TOLERANCES, Array, random_designs, random_machine
 
 DESIGNS = random_designs(3000, seed=51)

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.segments import crank_angle_at, crowded, crowding, uncrowded
+from slidercrank.model.dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
+from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import random_designs
 
 

@@ -8,18 +8,18 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.averages import average_torque
-from slidercrank.model.cycle import cycle
-from slidercrank.model.efficiency import energies
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.locked_angles import states_at, verdict
+from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.errors import InputError
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.locked_angles import states_at, verdict
-from slidercrank.model.mechanism import Branch, Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.self_locking import locking_margin
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from tests.model.cases import Array, random_designs, random_friction, random_machine
 
 RESISTS, DRIVES = StrokeForce(outward=-100.0, inward=100.0), StrokeForce(outward=100.0, inward=-100.0)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.target_motion import Freedom, Measure, TargetMotion, fit
+from slidercrank.model.kinematics.target_motion import Freedom, Measure, TargetMotion, fit
+from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import Array, random_designs
 
 DESIGNS = random_designs(40, seed=21)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.variation import vary
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.linkage.variation import vary
 
 # J. Gupta, "Offset-Slider Crank Mechanism", course report ME748: crank 140 -> 150 mm, rod 310 -> 320 mm.
 SIEVE = Linkage(0.14, 0.31, 0.06)

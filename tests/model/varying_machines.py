@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.links import Bar, Counterweight, RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Clearances, Mechanism
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Clearances, Mechanism
+from slidercrank.model.machine.varying import Varying
 from tests.model.cases import TOLERANCES, Array, random_designs
 
 

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.links import Bar, Link
-from slidercrank.model.loads import AngleTable, During, Load, PositionTable, Spring, StrokeForce
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.links import Bar, Link
+from slidercrank.model.machine.loads import AngleTable, During, Load, PositionTable, Spring, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 

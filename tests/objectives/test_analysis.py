@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.mechanism import Clearances, Mechanism, Tolerances
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances
+from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, random_designs

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.cycle_average import CycleAverage
 from slidercrank.objectives.quantity import Quantity

@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch, Mechanism
-from slidercrank.model.target_motion import Freedom
+from slidercrank.model.kinematics.target_motion import Freedom
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.motion_deviation import MotionDeviation, motion_deviations
 from tests.model.cases import Array, random_designs

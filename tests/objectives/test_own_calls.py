@@ -14,7 +14,7 @@ import numpy as np
 import psutil
 import pytest
 
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.apply import Refused
 from slidercrank.objectives.own.interruption import interrupted_by
 from slidercrank.objectives.own.worker import Worker
@@ -132,7 +132,7 @@ def test_a_function_does_not_outlive_a_killed_process(tmp_path: Path, worker: Ca
     worker("forks")
     code = (
         "import numpy as np\n"
-        "from slidercrank.model.mechanism import Mechanism\n"
+        "from slidercrank.model.machine.mechanism import Mechanism\n"
         "from slidercrank.objectives.own.worker import Worker\n"
         f"Worker('loops:forks', [{str(tmp_path)!r}], 1e5)(Mechanism(), np.array([[0.03, 0.1, 0.01]]), None)\n"
     )
@@ -149,7 +149,7 @@ def test_a_function_does_not_outlive_a_killed_process(tmp_path: Path, worker: Ca
 FORKING = """
 import gc, multiprocessing, os, signal, sys, threading, time
 import numpy as np
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.worker import Worker
 
 signal.signal(signal.SIGALRM, lambda *_: os.killpg(0, signal.SIGKILL))  # a hang ends by itself, with its children

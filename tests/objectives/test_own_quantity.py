@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
-from slidercrank.model.friction import Friction
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.designs import Designs, magnitude
 from slidercrank.objectives.own.quantity import Gradient, OwnQuantity
 from slidercrank.objectives.quantity import Unit

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, random_designs

@@ -8,8 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Tolerance, Tolerances
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Tolerance, Tolerances
 from slidercrank.model.tolerance.sources import limits
 from slidercrank.model.tolerance.spreads import Spreads, spread
 from slidercrank.objectives.quantity import Quantity

@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch, Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.sensitivity import DIMENSIONS, sensitivity

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.sweep import Axis, sweep
 from tests.model.cases import SMOOTH

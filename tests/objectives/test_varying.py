@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.cycle_peak import CyclePeak, screen_peaks

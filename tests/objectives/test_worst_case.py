@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.points import limits_of
 from slidercrank.objectives.robust.quantity import RobustQuantity, Side

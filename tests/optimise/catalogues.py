@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.optimise.problem import Objective, Problem
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.problem.problem import Objective, Problem
 
 Array = NDArray[np.float64]
 Table = dict[str, Any]

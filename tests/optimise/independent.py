@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem import Constraint, Problem
+from slidercrank.optimise.problem.problem import Constraint, Problem
 
 Array = NDArray[np.float64]
 

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Sense, Settings
+from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Sense, Settings
 from slidercrank.optimise.solve import solve
 
 JOBS = ("feeder", "sieve", "support")

@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.friction import Friction
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import Viscous
-from slidercrank.model.mechanism import Mechanism, Tolerances
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import Viscous
+from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
-from slidercrank.optimise.causes import undefined_because
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Variant
+from slidercrank.optimise.problem.causes import undefined_because
+from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Variant
+from slidercrank.optimise.problem.zero_objectives import idle_rules, require_ranking
 from slidercrank.optimise.solve import solve
-from slidercrank.optimise.zero_objectives import idle_rules, require_ranking
 from tests.optimise.test_zero_objectives import job
 
 DESIGNS = np.array([[0.05, 0.2, 0.03], [0.03, 0.11, -0.02], [0.06, 0.25, 0.01]])

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.optimise.assemble import table_of
-from slidercrank.optimise.constant import SAME, is_constant, spread
-from slidercrank.optimise.evaluation import constraints_of
-from slidercrank.optimise.hypervolume import hypervolume, scaling, unheard
-from slidercrank.optimise.picking import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.front.constant import SAME, is_constant, spread
+from slidercrank.optimise.front.hypervolume import hypervolume, scaling, unheard
+from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.search.assemble import table_of
+from slidercrank.optimise.search.evaluation import constraints_of
 from tests.optimise.problems import problem
 
 PAGE = Path(__file__).parents[2] / "service" / "page" / "static" / "lib" / "constant.js"

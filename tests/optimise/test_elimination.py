@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from slidercrank.optimise.elimination import UNKNOWNS, Sheet, sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.problem import Problem, Sense
+from slidercrank.optimise.problem.problem import Problem, Sense
+from slidercrank.optimise.search.elimination import UNKNOWNS, Sheet, sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import CLOSED, Array
 from tests.optimise.problems import Bounds, Ends, degrees, problem

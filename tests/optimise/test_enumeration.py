@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.ledger import Record
 from slidercrank.optimise.methods.registry import METHODS
-from slidercrank.optimise.problem import Problem, Variant
-from slidercrank.optimise.search import Archive
+from slidercrank.optimise.problem.problem import Problem, Variant
+from slidercrank.optimise.search.checkpoints import Record
+from slidercrank.optimise.search.search import Archive
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.friction import Friction
-from slidercrank.model.loads import AngleTable, StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import (
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.loads import AngleTable, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import (
     FEASIBLE,
     LEAST_TRANSMISSION_ANGLE,
     Evaluator,
@@ -20,7 +21,6 @@ from slidercrank.optimise.evaluation import (
     constraints_of,
     minimised,
 )
-from slidercrank.optimise.problem import Constraint, Objective, Problem
 from tests.optimise.independent import Array, excess, objectives, value
 from tests.optimise.problems import Bounds, degrees, problem
 

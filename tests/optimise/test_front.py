@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Problem, Sense
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.problem.problem import Problem, Sense
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem, shipped_front

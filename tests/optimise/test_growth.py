@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.optimise.growth import Growth
-from slidercrank.optimise.hypervolume import REFERENCE, nondominated
-from slidercrank.optimise.ledger import Record
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.progress import Progress
-from slidercrank.optimise.search import Archive, Run
+from slidercrank.optimise.front.hypervolume import REFERENCE, nondominated
+from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.checkpoints import Record
+from slidercrank.optimise.search.growth import Growth
+from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 
 from .problems import JOBS, Bounds, degrees, problem, shipped

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.hypervolume import REFERENCE, choose, hypervolume, nondominated, scaling
+from slidercrank.optimise.front.hypervolume import REFERENCE, choose, hypervolume, nondominated, scaling
 
 UNIT = (np.zeros(3), np.ones(3))
 

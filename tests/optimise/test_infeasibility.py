@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.relaxation import Relaxation
+from slidercrank.optimise.feasibility.relaxation import Relaxation
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 from tests.optimise.test_known_optima import best_transmission_angle, excess_angle

@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import JobError
-from slidercrank.model.linkage import Linkage, crank_from_stroke
-from slidercrank.model.links import Bar, Counterweight, RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Branch, Tolerance, Window
+from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
-from slidercrank.optimise.problem import Constraint, Objective, Range, Settings
+from slidercrank.optimise.job.stated import problem_of
+from slidercrank.optimise.problem.problem import Constraint, Objective, Range, Settings
 
 RUNS = Path(__file__).parents[2] / "runs"
 SHIPPED = ["feeder", "sieve", "support"]
@@ -125,8 +126,8 @@ def test_a_shipped_job_means_the_same_as_json(name: str, tmp_path: Path) -> None
 def test_a_job_that_was_read_is_a_job_again(name: str) -> None:
     job = Job.model_validate(tomllib.loads((RUNS / f"{name}.toml").read_text(encoding="utf-8")))
     again = Job.model_validate(json.loads(job.model_dump_json(exclude_none=True)))
-    assert again.problem() == job.problem()
-    assert Job.model_validate(job.model_dump(exclude_none=True)).problem() == job.problem()
+    assert problem_of(again) == problem_of(job)
+    assert problem_of(Job.model_validate(job.model_dump(exclude_none=True))) == problem_of(job)
 
 
 def test_figures_in_the_comments_of_the_shipped_jobs_are_right() -> None:

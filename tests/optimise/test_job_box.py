@@ -9,9 +9,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from slidercrank.model import geometry
+from slidercrank.model.kinematics import geometry
 from slidercrank.optimise.job.box import Box, greatest_time_ratio
-from slidercrank.optimise.problem import Range
+from slidercrank.optimise.problem.problem import Range
 
 ANY = Range(lower=0.0, upper=1.0)
 SIZES = st.floats(0.01, 1.0)

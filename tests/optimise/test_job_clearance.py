@@ -4,9 +4,10 @@ from typing import Any
 
 import pytest
 
-from slidercrank.model.clearance.joint import Clearance
 from slidercrank.model.errors import JobError
+from slidercrank.model.machine.clearance import Clearance
 from slidercrank.optimise.job import Job, parse_job
+from slidercrank.optimise.job.stated import problem_of
 
 SMALL: dict[str, Any] = {
     "name": "Small",
@@ -41,7 +42,7 @@ def test_a_clearance_is_read_in_si_and_steel_unless_said_otherwise() -> None:
 
 def test_a_clearance_survives_writing_and_reading() -> None:
     job = Job.model_validate(SMALL | {"clearance": LOOSE})
-    assert Job.model_validate(job.model_dump(mode="json")).problem() == job.problem()
+    assert problem_of(Job.model_validate(job.model_dump(mode="json"))) == problem_of(job)
 
 
 def test_ideal_joints_are_what_designs_are_sized_with() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.mechanism import Clearances
+from slidercrank.model.machine.mechanism import Clearances
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.commands.summary import summarise
 

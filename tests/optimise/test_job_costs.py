@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.optimise.convex.costs import Cost, Costs
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.costs import Cost, Costs
 
 SMALL: dict[str, Any] = {
     "name": "Small",

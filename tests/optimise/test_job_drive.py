@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
 from slidercrank.optimise.job import parse_job
 
 SMALL: dict[str, Any] = {

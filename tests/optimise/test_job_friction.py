@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.friction import Friction, Pin
+from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
 from slidercrank.optimise.job import Job, parse_job
-from slidercrank.optimise.problem import Constraint, Objective, Problem
+from slidercrank.optimise.job.stated import problem_of
+from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
 from slidercrank.service.commands.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
@@ -36,7 +37,7 @@ def test_friction_is_read_in_si() -> None:
 
 def test_a_job_with_friction_that_was_read_is_a_job_again() -> None:
     read = Job.model_validate({**FEEDER, "friction": TABLE})
-    assert Job.model_validate(read.model_dump(exclude_none=True)).problem() == read.problem()
+    assert problem_of(Job.model_validate(read.model_dump(exclude_none=True))) == problem_of(read)
 
 
 @pytest.mark.parametrize(

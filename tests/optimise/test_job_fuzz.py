@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, parse_job
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
 
 RUNS = Path(__file__).parents[2] / "runs"
 SHIPPED = sorted(RUNS.glob("*.toml"))

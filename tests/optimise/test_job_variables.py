@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.links import Bar
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.varying_column import varying_column
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem import Constraint, Problem, Range
+from slidercrank.optimise.problem.problem import Constraint, Problem, Range
 
 JOB = """
 name = "Variables"

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.optimise.problem import Problem, Sense
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.problem.problem import Problem, Sense
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array, footprint, stroke, time_ratio, transmission_angle
 from tests.optimise.problems import Bounds, degrees, problem

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import ForeignRecords
-from slidercrank.optimise import identity, ledger
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.identity import identity_of
-from slidercrank.optimise.ledger import Cancelled, Identity, Ledger, Numbers, Record
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.methods import starts
 from slidercrank.optimise.methods.registry import METHODS, NAMES
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.progress import Progress
-from slidercrank.optimise.robust import Robust, robust
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.search import checkpoints as ledger
+from slidercrank.optimise.search import fingerprint as identity
+from slidercrank.optimise.search.checkpoints import Cancelled, Identity, Ledger, Numbers, Record
+from slidercrank.optimise.search.fingerprint import identity_of
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, shipped
 

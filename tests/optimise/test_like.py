@@ -11,10 +11,10 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.hypervolume import scaling
-from slidercrank.optimise.like import Ends, distance, extended
-from slidercrank.optimise.problem import Constraint, Sense, Settings
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.hypervolume import scaling
+from slidercrank.optimise.problem.problem import Constraint, Sense, Settings
+from slidercrank.optimise.questions.like import Ends, distance, extended, like_design
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem
 
@@ -41,7 +41,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
     torque, constraints, ranges = CASES[case]
     given = front(torque)
     row = len(given) // 2
-    found = given.like(row, *constraints, ranges=ranges)
+    found = like_design(given, row, *constraints, ranges=ranges)
     span = scaling(given.values)[1]
     assert len(found) == 1
     assert found.designs["residual"][0] <= 1e-6
@@ -85,7 +85,7 @@ def test_conditions_join_those_of_the_problem() -> None:
 
 def test_what_contradicts_the_problem_outright_is_said() -> None:
     given = front(False)
-    found = given.like(3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
+    found = like_design(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
     assert (found.status, len(found)) == ("infeasible", 0)
     assert "stroke at least 250 mm, where exactly 200 mm is asked already" in found.message
     assert (
@@ -95,7 +95,7 @@ def test_what_contradicts_the_problem_outright_is_said() -> None:
 
 def test_what_no_design_can_meet_is_diagnosed() -> None:
     """A crank of 150 mm makes a stroke of 300 mm or more."""
-    found = front(False).like(3, ranges={"crank": (0.15, None)})
+    found = like_design(front(False), 3, ranges={"crank": (0.15, None)})
     assert (found.status, len(found)) == ("infeasible", 0)
     assert "stroke exactly 200 mm is asked" in found.message
 
@@ -103,8 +103,8 @@ def test_what_no_design_can_meet_is_diagnosed() -> None:
 def test_what_asks_for_nothing_new_is_refused() -> None:
     given = front(False)
     with pytest.raises(InputError, match="say what is to be different"):
-        given.like(0)
+        like_design(given, 0)
     with pytest.raises(InputError, match="already meets what is added"):
-        given.like(0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
+        like_design(given, 0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
     with pytest.raises(InputError, match="crank, rod or offset; got 'speed'"):
-        given.like(0, ranges={"speed": (1.0, None)})
+        like_design(given, 0, ranges={"speed": (1.0, None)})

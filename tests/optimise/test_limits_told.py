@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model import geometry
 from slidercrank.model.errors import JobError
+from slidercrank.model.kinematics import geometry
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise import solve as solving
 from slidercrank.optimise.certificate.infeasible import prove_infeasible

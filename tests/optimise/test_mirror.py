@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.friction import Friction
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.mirror import once
-from slidercrank.optimise.pile import Pile
-from slidercrank.optimise.polish import Polished
-from slidercrank.optimise.problem import Problem, Variant
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.problem.problem import Problem, Variant
+from slidercrank.optimise.search.candidates import Pile
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
+from slidercrank.optimise.search.mirror import once
+from slidercrank.optimise.search.polish import Polished
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem

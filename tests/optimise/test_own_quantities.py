@@ -17,7 +17,8 @@ from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.objectives.quantity import Unit
 from slidercrank.optimise.job import files_beside, load_job, parse_job
-from slidercrank.optimise.problem import Constraint, Objective
+from slidercrank.optimise.problem.problem import Constraint, Objective
+from slidercrank.optimise.questions.like import like_design
 from slidercrank.optimise.solve import solve
 
 PAGE = Path(__file__).parents[2] / "docs" / "own-quantities.md"
@@ -277,4 +278,4 @@ def test_a_design_like_another_needs_gradients() -> None:
         replace(base, own=(ROUNDED,), objectives=(Objective(quantity="mine", sense="minimise"), *base.objectives))
     )
     with pytest.raises(InputError, match=r"a design like another needs the gradient .* got mine .*; set gradient ="):
-        front.like(0, ranges={"crank": (0.055, None)})
+        like_design(front, 0, ranges={"crank": (0.055, None)})

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.evaluation import Rows
-from slidercrank.optimise.polish import polish
+from slidercrank.optimise.search.evaluation import Rows
+from slidercrank.optimise.search.polish import polish
 
 Array = NDArray[np.float64]
 Function = Callable[[Any, Any], Any]

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.target_motion import TargetMotion
+from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.average_torque import RMS_TORQUE
 from slidercrank.objectives.motion_deviation import MotionDeviation
 from slidercrank.objectives.quantity import MILLIMETRE
-from slidercrank.optimise.picking import closeness
-from slidercrank.optimise.problem import Constraint, Objective, Range, Settings, Variant
+from slidercrank.optimise.front.picking import closeness
+from slidercrank.optimise.problem.problem import Constraint, Objective, Range, Settings, Variant
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import problem
 

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.mechanism import Tolerance, Tolerances
+from slidercrank.model.machine.mechanism import Tolerance, Tolerances
 from slidercrank.objectives.robust.quantity import RobustQuantity
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import job_schema, parse_job
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.robust import Robust, nominal, realised, robust, robust_quantities, sampling_error
-from slidercrank.optimise.robust_cost import robust_cost
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.robust import Robust, nominal, robust, robust_quantities
+from slidercrank.optimise.questions.price_of_robustness import robust_cost
+from slidercrank.optimise.questions.realised import realised, sampling_error
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, degrees, problem
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.sampling import FACES, around, first_samples, generator
+from slidercrank.optimise.search.sampling import FACES, around, first_samples, generator
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
 from tests.optimise.independent import (
     CLOSED,
     Array,

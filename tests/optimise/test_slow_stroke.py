@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import LEAST_TIME_RATIO, constraints_of
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.loaded_stroke import expected_warnings, front_warnings
-from slidercrank.optimise.problem import Variant
-from slidercrank.optimise.sampling import first_samples
+from slidercrank.optimise.problem.problem import Variant
+from slidercrank.optimise.questions.loaded_stroke import expected_warnings, front_warnings
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import LEAST_TIME_RATIO, constraints_of
+from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {

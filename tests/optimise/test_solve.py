@@ -10,12 +10,12 @@ import sys
 import numpy as np
 import pytest
 
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem import Sense
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.problem.problem import Sense
 from slidercrank.optimise.solve import solve
 
 from .problems import MACHINE, RUNS, Bounds, degrees, problem, shipped_front

@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.optimise import ledger, search
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.hypervolume import choose
-from slidercrank.optimise.ledger import Record
-from slidercrank.optimise.progress import REPEATING, Progress
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.hypervolume import choose
+from slidercrank.optimise.front.progress import REPEATING, Progress
+from slidercrank.optimise.search import checkpoints as ledger
+from slidercrank.optimise.search import search
+from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
 from .problems import Bounds, degrees, problem

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.stationarity import multipliers, strict_multipliers
+from slidercrank.optimise.front.stationarity import multipliers, strict_multipliers
 
 Array = NDArray[np.float64]
 cp: Any = cvxpy  # its own types know neither `sum` nor `norm`

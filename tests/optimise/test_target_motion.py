@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.solve import solve
 

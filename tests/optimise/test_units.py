@@ -11,8 +11,8 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives import kinds
 from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise import units
-from slidercrank.optimise.units import closest, kind_of, shown, to_si
+from slidercrank.optimise.job import units
+from slidercrank.optimise.job.units import closest, kind_of, shown, to_si
 
 GOOD = [
     ("80 mm", kinds.LENGTH, 0.08),

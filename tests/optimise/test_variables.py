@@ -11,15 +11,15 @@ import pytest
 from scipy.optimize import minimize
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.links import Counterweight, RigidLink
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.links import Counterweight, RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.hypervolume import hypervolume, nondominated
-from slidercrank.optimise.problem import Constraint, Problem, Range, Variant
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.hypervolume import hypervolume, nondominated
+from slidercrank.optimise.problem.problem import Constraint, Problem, Range, Variant
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, degrees, problem
 
@@ -235,8 +235,8 @@ def test_impossible_variables_are_refused(path: str, lower: float, upper: float,
 
 
 def test_a_machine_with_varying_numbers_is_not_taken_for_one_machine() -> None:
-    from slidercrank.model.cycle import cycle
-    from slidercrank.model.linkage import Linkage
+    from slidercrank.model.cycle.cycle import cycle
+    from slidercrank.model.linkage.linkage import Linkage
 
     machine = vary(MACHINE, slider_mass=(1.0, 2.0))
     with pytest.raises(InputError, match="slider_mass varies"):

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.in_line import without_rounding
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.kinematics.in_line import without_rounding
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem import Objective, Problem, Variant
+from slidercrank.optimise.problem.problem import Objective, Problem, Variant
+from slidercrank.optimise.problem.zero_objectives import require_ranking
 from slidercrank.optimise.solve import solve
-from slidercrank.optimise.zero_objectives import require_ranking
 
 JOB: dict[str, Any] = {
     "name": "idle",

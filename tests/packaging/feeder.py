@@ -6,20 +6,20 @@ import math
 
 import numpy as np
 
-from slidercrank.model import geometry
-from slidercrank.model.averages import average, average_torque
 from slidercrank.model.classical.static_forces import static_forces
-from slidercrank.model.cycle import cycle
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.inverse import crank_angle_at
-from slidercrank.model.kinematics import motion
-from slidercrank.model.linkage import Linkage, crank_from_stroke
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.self_locking import locking_margin
-from slidercrank.model.shaking import shaking_curves
-from slidercrank.model.signals import Signal
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.self_locking import locking_margin
+from slidercrank.model.cycle.shaking import shaking_curves
+from slidercrank.model.kinematics import geometry
+from slidercrank.model.kinematics.position import motion
+from slidercrank.model.linkage.inverse import crank_angle_at
+from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact import extremes
 from slidercrank.model.tolerance.first_order import first_order
 

@@ -9,9 +9,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.loaded_stroke import expected_warnings
+from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 from tests.packaging.feeder import numbers
 
@@ -83,7 +83,7 @@ def test_every_model_module_with_a_formula_is_named_by_the_theory(theory: str, r
         for file in (root / "model").rglob("*.py")
         if re.search("^@analytic$", file.read_text(encoding="utf-8"), re.MULTILINE)
     }
-    assert "model/kinematics.py" in modules
+    assert "model/kinematics/position.py" in modules
     linked = {target.removeprefix("../") for target in LINK.findall(theory)}
     assert modules - linked == set(), "derive its equations in docs/theory.md"
 

@@ -14,7 +14,7 @@ from tests.packaging.test_layout import ORDER
 
 USE = """
 import numpy as np
-from slidercrank.model.closed_forms import ClosedForm, evaluate_closed_form
+from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 import slidercrank
 stroke = evaluate_closed_form(ClosedForm.STROKE, np.array([[0.1, 0.3, 0.0]]))[0]
 print(slidercrank.__file__, round(float(stroke[0]), 12))

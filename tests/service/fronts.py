@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Constraint, Objective, Problem, Range, Sense
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Sense
 
 FOUR = ("time_ratio", "peak_torque", "transmission_angle", "position_error")
 _SENSES: dict[str, Sense] = {"time_ratio": "maximise", "transmission_angle": "maximise"}

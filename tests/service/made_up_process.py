@@ -18,8 +18,8 @@ import time
 
 import numpy as np
 
-from slidercrank.optimise.ledger import Identity, Record
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.search.checkpoints import Identity, Record
 from slidercrank.service.runs.result import Result, Wanted
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.workers import pulse as pulses

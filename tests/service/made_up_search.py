@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.problem.problem import Problem
 from tests.service.store.contents import search_record
 
 ROUNDS = 3

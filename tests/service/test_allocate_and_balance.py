@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Counterweight
-from slidercrank.model.mechanism import Window
-from slidercrank.model.shaking import shaking_curves
+from slidercrank.model.cycle.shaking import shaking_curves
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.mechanism import Window
 from slidercrank.model.tolerance.first_order import first_order
-from slidercrank.optimise.convex.balancing import RodSpace, balance
-from slidercrank.optimise.convex.error_rows import Kind
-from slidercrank.optimise.convex.tolerance_allocation import allocate
 from slidercrank.optimise.job import load_job
+from slidercrank.optimise.sizing.counterweight import RodSpace, balance
+from slidercrank.optimise.sizing.error_rows import Kind
+from slidercrank.optimise.sizing.tolerance_allocation import allocate
 from slidercrank.service.figures.allocation import allocation_curves, allocation_figure
 from slidercrank.service.figures.balancing import balancing_sheet
 from slidercrank.service.figures.panels import draw_sheet

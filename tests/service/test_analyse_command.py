@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import load_job

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.clearance.joint import Clearance
+from slidercrank.model.machine.clearance import Clearance
 from slidercrank.service.cases import case_2, figures
 from slidercrank.service.cases.collect import collect
 from slidercrank.service.cases.figures import draw_cases

@@ -13,9 +13,9 @@ import pytest
 from slidercrank.model.classical.comparison import TORQUE, compare
 from slidercrank.model.classical.polygons import polygons
 from slidercrank.model.classical.static_forces import static_forces
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.analyses import approximations as approximations_analysis
 from slidercrank.service.analyses import polygons as polygons_analysis
 from slidercrank.service.analyses import static_forces as static_analysis

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from slidercrank.model.clearance.joint import Clearance
 from slidercrank.model.clearance.run import ClearanceRun
 from slidercrank.model.clearance.statistics import summarise
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.analyses.clearance import numbers, show, simulated
 from slidercrank.service.figures.clearance import draw_clearance, draw_clearance_speeds, loose_curves, speed_runs
 

@@ -24,7 +24,7 @@ ROOT = Path(fronts.__file__).parents[2]
 SLOW = """
 import sys, time
 import slidercrank.optimise.solve as module
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.service.cli import main
 from tests.service import fronts
 

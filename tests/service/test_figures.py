@@ -14,13 +14,13 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from slidercrank.model.cycle import cycle
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism, Tolerances
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Objective
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.problem.problem import Objective
 from slidercrank.service.figures import draw_front
 from slidercrank.service.figures.curves import Curves, cycle_curves
 from slidercrank.service.figures.marks import marks, short_title

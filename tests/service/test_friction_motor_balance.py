@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from slidercrank.model.cycle import cycle
-from slidercrank.model.friction import Friction, Pin
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Counterweight, RigidLink
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.shaking import shaking_curves
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.shaking import shaking_curves
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.links import Counterweight, RigidLink
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.service.analyses import balance, friction, motor
 from slidercrank.service.figures.balance import balance_curves, draw_balance

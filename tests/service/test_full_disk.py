@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from sqlalchemy import text
 
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database, Full
 from slidercrank.service.submission import submit

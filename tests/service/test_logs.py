@@ -11,8 +11,8 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.workers.logs import about, set_up_logs

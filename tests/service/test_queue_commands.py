@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.service.commands.submit import events_until_end
 from slidercrank.service.job_record import job_record
 from slidercrank.service.store import Limits, Store

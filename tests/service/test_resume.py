@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import read_job
-from slidercrank.optimise.ledger import Record
+from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.runs.run_folder import MARK, RunFolder

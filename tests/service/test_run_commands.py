@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.optimise.picking import Priority
+from slidercrank.optimise.front.picking import Priority
 from slidercrank.service.runs.result import Result, result_of, rows_from_csv
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts

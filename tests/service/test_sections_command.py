@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.optimise.convex.sections import size_sections
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, load_sections
+from slidercrank.optimise.sizing.sections import size_sections
 from tests.service.conftest import Command
 
 JOB = """

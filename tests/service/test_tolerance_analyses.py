@@ -17,10 +17,10 @@ from matplotlib.image import imread
 from rich.console import Console
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Clearances, Mechanism, Tolerance, Tolerances
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances

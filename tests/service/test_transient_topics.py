@@ -13,11 +13,11 @@ import pytest
 from rich.console import Console
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
 from slidercrank.service.analyses import flywheel, start_up

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import ForeignRecords, InputError, JobError, StoreError
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.problem.problem import Problem
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.submission import submit
 from slidercrank.service.workers.pulse import Pulse

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.problem.problem import Problem
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.submission import submit
 from slidercrank.service.workers.engines import EngineOptions

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.solve import solve
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.store import Store

@@ -11,11 +11,11 @@ import pytest
 from slidercrank.model.classical.comparison import TORQUE, compare, errors_over_offset
 from slidercrank.model.classical.lumped import lumped, mass_properties, rotating_and_reciprocating, share_at_crank_pin
 from slidercrank.model.classical.series import series_acceleration, series_torque, tangent_torque
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_machine
 
 THETA = np.linspace(0.0, 2.0 * math.pi, 73)

@@ -9,8 +9,8 @@ import pytest
 
 from slidercrank.model.classical.polygons import Polygons, polygons
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import linkage_of, random_designs
 
 

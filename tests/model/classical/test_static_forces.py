@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from slidercrank.model.classical.static_forces import static_forces
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Branch, Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Branch, Mechanism
 from tests.model.cases import linkage_of, random_designs
 
 THETA = np.linspace(0.1, 6.3, 50)

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances
 from tests.model.cases import linkage_of, random_designs
 
 SUPPORT = Linkage(1.4, 1.8, -0.05)

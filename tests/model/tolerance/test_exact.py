@@ -11,10 +11,10 @@ import pytest
 from scipy.optimize import minimize
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order
 from slidercrank.model.tolerance.sources import counted_angles, limit_box

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Clearances, Mechanism, Tolerance
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.screening import screen, screens
-from slidercrank.model.signals import Signal
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.screening import screen, screens
+from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.first_order import first_order, remainder
 from slidercrank.model.tolerance.sources import limits
 from tests.model.cases import SMOOTH, random_designs

@@ -11,8 +11,8 @@ import pytest
 from scipy import stats
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Clearances, Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variances, yield_within

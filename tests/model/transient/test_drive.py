@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor, Motor, TorqueTable, speed_range
+from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, Motor, TorqueTable, speed_range
 
 LINE = LinearMotor(stall_torque=8.0, no_load_speed=200.0)
 TABLE = TorqueTable(speeds=(-5.0, 0.0, 50.0, 90.0), torques=(7.0, 6.0, 9.0, 0.0))

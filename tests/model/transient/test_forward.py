@@ -12,13 +12,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar, Counterweight, RigidLink
-from slidercrank.model.loads import Spring, StrokeForce
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.forward import Progress, State, simulate
 from tests.model.cases import MACHINES, SMOOTH, STROKES, TABLES
 from tests.model.virtual_work import drive_torque

@@ -12,10 +12,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import StrokeForce, Viscous
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.steady import Runner, SteadyRunning, constant_torque_running
 from tests.model.cases import Array
 from tests.model.transient.test_flywheel import Energies, random_machine

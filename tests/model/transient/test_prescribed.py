@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.transient.drive import Drive, LinearMotor
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.drive import Drive, LinearMotor
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.forward import simulate
 from slidercrank.model.transient.prescribed import SpeedOverAngle, SpeedOverTime, over_angle, over_time
 from tests.model.cases import MACHINES, SMOOTH, STROKES

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.loads import Viscous
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.transient.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads import Viscous
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import State, simulate
 from slidercrank.model.transient.steady import SteadyRunning, constant_torque_running, steady_running

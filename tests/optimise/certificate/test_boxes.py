@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.friction import Friction
-from slidercrank.model.links import Counterweight, RigidLink
-from slidercrank.model.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
-from slidercrank.model.mechanism import Clearances, Mechanism, Tolerances, Window
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import Counterweight, RigidLink
+from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from tests.optimise.problems import JOBS, MACHINE, Bounds, degrees, problem, shipped
 
 CLOSED = ("time_ratio", "transmission_angle", "stroke", "rod_to_offset", "rod_to_crank", "footprint")

@@ -12,11 +12,11 @@ from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify, certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
 from slidercrank.optimise.certificate.enclosure import Array
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.hypervolume import hypervolume
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.hypervolume import hypervolume
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import degrees, problem, shipped_front
 

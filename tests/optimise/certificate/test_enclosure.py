@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model import geometry
-from slidercrank.model.arithmetic import magnitude, root
+from slidercrank.model.kernel.arithmetic import magnitude, root
+from slidercrank.model.kinematics import geometry
 from slidercrank.optimise.certificate.cycle import interpolated
 from slidercrank.optimise.certificate.enclosure import Array, Enclosure, coordinate
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.varying import Varying
+from slidercrank.model.machine.varying import Varying
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.infeasible import prove_infeasible
 from slidercrank.optimise.solve import solve

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
 from tests.model.cases import random_designs, random_machine
 from tests.optimise.problems import Bounds, problem
 

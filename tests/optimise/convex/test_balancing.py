@@ -11,13 +11,13 @@ import pytest
 import scipy.optimize
 from numpy.typing import NDArray
 
+from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import RigidLink
-from slidercrank.model.mechanism import Mechanism
-from slidercrank.model.shaking import shaking_curves
-from slidercrank.optimise.convex.balancing import Balance, Measure, RodSpace, balance
-from slidercrank.optimise.convex.shaking_rows import rows, with_masses
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.sizing.counterweight import Balance, Measure, RodSpace, balance
+from slidercrank.optimise.sizing.shaking_rows import rows, with_masses
 from tests.model.cases import linkage_of, random_designs, random_machine
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.convex.minimax import MinimaxResult, minimise_peak
-from slidercrank.optimise.convex.scp import Descent, residual_of
-from slidercrank.optimise.problem import Problem, Settings
+from slidercrank.optimise.methods.minimax.minimax import MinimaxResult, minimise_peak
+from slidercrank.optimise.methods.minimax.scp import Descent, residual_of
+from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.solve import solve
 from tests.optimise.convex.random_problems import random_problem
 from tests.optimise.independent import feasible

@@ -11,19 +11,19 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import minimize
 
-from slidercrank.model.cycle import cycle
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
-from slidercrank.model.friction import Friction
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.links import Bar
-from slidercrank.model.loads import StrokeForce
-from slidercrank.model.mechanism import Branch, Mechanism
-from slidercrank.model.peaks import find_peaks
-from slidercrank.model.signals import Signal
-from slidercrank.optimise.convex.limit_states import rod_loads
-from slidercrank.optimise.convex.section_limits import Material, SectionLimits
-from slidercrank.optimise.convex.section_loads import joint_loads, whip_of
-from slidercrank.optimise.convex.sections import Sections, size_sections
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
+from slidercrank.optimise.sizing.limit_states import rod_loads
+from slidercrank.optimise.sizing.section_limits import Material, SectionLimits
+from slidercrank.optimise.sizing.section_loads import joint_loads, whip_of
+from slidercrank.optimise.sizing.sections import Sections, size_sections
 
 STEEL = Material(
     density=7850.0,

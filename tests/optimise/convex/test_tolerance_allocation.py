@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.tolerance.first_order import first_order
 from slidercrank.model.tolerance.sources import counted_angles
-from slidercrank.optimise.convex.costs import NAMES, Cost, Costs
-from slidercrank.optimise.convex.error_rows import Kind
-from slidercrank.optimise.convex.tolerance_allocation import Allocation, allocate
+from slidercrank.optimise.problem.costs import NAMES, Cost, Costs
+from slidercrank.optimise.sizing.error_rows import Kind
+from slidercrank.optimise.sizing.tolerance_allocation import Allocation, allocate
 from tests.model.cases import linkage_of, random_designs
 
 Array = NDArray[np.float64]

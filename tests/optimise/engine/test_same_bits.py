@@ -12,18 +12,19 @@ import pytest
 from slidercrank.model.tolerance.spreads import Shape
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import Kind, RobustQuantity, Side
-from slidercrank.optimise.elimination import sheets
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.engine.processes import Processes
-from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.judging import exactly, joined, quickly
-from slidercrank.optimise.polish import polish
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.robust import Robust, realised, robust
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.questions.realised import realised
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
+from slidercrank.optimise.search.judging import exactly, joined, quickly
+from slidercrank.optimise.search.polish import polish
 from slidercrank.optimise.solve import solve
-from slidercrank.optimise.stationarity import Array
 from tests.optimise.engine import work
 from tests.optimise.problems import problem, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
 
 
 def asking(given: Problem, method: str, **settings: int) -> Problem:

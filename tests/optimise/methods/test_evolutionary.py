@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from slidercrank.optimise.hypervolume import hypervolume, scaling
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import degrees, problem, shipped, shipped_front
 

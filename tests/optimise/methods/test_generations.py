@@ -10,16 +10,17 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.methods import evolutionary, population
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.stationarity import Array
+from slidercrank.optimise.methods import nsga as evolutionary
+from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.generation import Brood, Generation, generation_seed
 from slidercrank.optimise.methods.registry import METHODS
-from slidercrank.optimise.problem import Problem
-from slidercrank.optimise.search import Run
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.search import Run
 from slidercrank.optimise.solve import solve
-from slidercrank.optimise.stationarity import Array
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
 ABLE = ("nsga2", "nsga3", "tpe", "cmaes", "random", "sobol")

@@ -11,12 +11,12 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import Evaluator
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.methods.registry import METHODS, NAMES, budget
-from slidercrank.optimise.problem import Problem, Settings
-from slidercrank.optimise.progress import Progress
-from slidercrank.optimise.search import Archive, Run
+from slidercrank.optimise.problem.problem import Problem, Settings
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
+from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem

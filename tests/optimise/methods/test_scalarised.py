@@ -8,13 +8,13 @@ from math import comb
 import numpy as np
 import pytest
 
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.front import ParetoFront
-from slidercrank.optimise.hypervolume import hypervolume, scaling
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.hypervolume import hypervolume, scaling
 from slidercrank.optimise.methods.reference import grid, simplex
 from slidercrank.optimise.methods.scalar import Form, Programme
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import dominated, excess, value
 from tests.optimise.methods.asking import asking

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.elimination import sheets
-from slidercrank.optimise.evaluation import Evaluator
-from slidercrank.optimise.front import ParetoFront
+from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.methods.local import by_slsqp
 from slidercrank.optimise.methods.scalar import Form, Programme
 from slidercrank.optimise.methods.starts import samples
-from slidercrank.optimise.problem import Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import excess, value
 from tests.optimise.methods.asking import asking

@@ -14,10 +14,10 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.model.errors import RunError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import job_schema, load_job, parse_job
-from slidercrank.optimise.problem import choice_field
+from slidercrank.optimise.problem.problem import choice_field
 from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.designs.cycle_table import cycle_table

@@ -12,7 +12,7 @@ from typing import Any
 import httpx
 import pytest
 
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job.file import MOST
 from tests.service.api.serving import refused
 

@@ -22,8 +22,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.layers import LAYERS
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
@@ -262,7 +262,8 @@ def test_the_same_design_gives_the_same_svg() -> None:
 def test_dxf_is_written_where_the_home_folder_cannot_be(tmp_path: Path) -> None:
     """As in a service that may write nothing but its own folder: ezdxf keeps a list of the fonts at home."""
     script = (
-        "import math; from slidercrank.model.linkage import Linkage; from slidercrank.model.mechanism import Mechanism;"
+        "from slidercrank.model.linkage.linkage import Linkage;"
+        "from slidercrank.model.machine.mechanism import Mechanism;"
         "from slidercrank.service.drawings.dxf import dxf_file;"
         "from slidercrank.service.drawings.linkage_drawing import linkage_drawing;"
         "print(len(dxf_file(linkage_drawing(Mechanism(), Linkage(0.04, 0.064, 0.02), name='x'))))"

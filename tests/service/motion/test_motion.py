@@ -14,8 +14,8 @@ import pytest
 from PIL import Image
 
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.mechanism import Mechanism
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.motion.animated_gif import FRAMES, MILLISECONDS, animated_gif
 from slidercrank.service.motion.player_page import player_page

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from slidercrank.model.linkage import Linkage
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.service.analyses.tolerances import numbers
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved

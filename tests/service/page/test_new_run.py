@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.units import kind_for, to_si
+from slidercrank.optimise.job.units import kind_for, to_si
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible

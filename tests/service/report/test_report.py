@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from matplotlib.text import Text
 
-from slidercrank.optimise.problem import Range
+from slidercrank.optimise.problem.problem import Range
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table

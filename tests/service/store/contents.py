@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from sqlalchemy import select, update
 
-from slidercrank.optimise.ledger import Identity, Record
-from slidercrank.optimise.progress import Progress
+from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.search.checkpoints import Identity, Record
 from slidercrank.service.runs.result import Result, Row, Wanted
 from slidercrank.service.store import Claim, Job, Store
 from slidercrank.service.store.clock import now

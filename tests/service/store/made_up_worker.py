@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from slidercrank.model.errors import LeaseLost, StoreError
-from slidercrank.optimise.ledger import Record
+from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.service.runs.result import Row
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.workers.worker import worker_name

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from slidercrank.model.errors import InputError, LeaseLost, RunError
-from slidercrank.optimise.progress import REPEATING
+from slidercrank.optimise.front.progress import REPEATING
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.store import Artefact, Claim, Store
 from tests.service.store.contents import (

@@ -57,7 +57,7 @@ export function text(value, unit = "", digits = 5) {
 
 /**
  * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
- * asked for: what optimise/safe_side.py does for sentences, in the unit that is shown.
+ * asked for: what optimise/feasibility/safe_side.py does for sentences, in the unit that is shown.
  */
 export function limitText(value, unit, side, digits = 5) {
   const shown = inShown(value, unit);

@@ -1,0 +1,156 @@
+"""Every curve of one design over the cycle: what figures, tables and tests read."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..dynamics.contact import cut_contacts, rubs, sides_of
+from ..dynamics.rubbing import joint_forces
+from ..dynamics.segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
+from ..errors import InputError
+from ..kernel.arithmetic import kernel
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
+from ..signals.position_error import influences, root_sum_square, worst_case
+from ..signals.signals import Signal, design_motion
+from ..signals.watch import watch_of
+from .self_locking import locking_margin
+
+Array = NDArray[np.float64]
+
+_COLUMNS = 15
+_SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Curves of one design, each (n,), SI and radians; forces as components along x and y.
+
+    load: on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
+    pivot: force of the frame on the crank; crank_pin: of the crank on the rod; slider_pin: of the rod on the slider;
+    guide: of the guide on the slider, along +y.
+    """
+
+    crank_angle: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    transmission_angle: Array
+    load: Array
+    torque: Array
+    pivot_x: Array
+    pivot_y: Array
+    crank_pin_x: Array
+    crank_pin_y: Array
+    slider_pin_x: Array
+    slider_pin_y: Array
+    guide: Array
+    position_error: Array
+    position_error_rss: Array
+
+
+@kernel
+def _curves(
+    raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any, rubbing: Any
+) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    for i in range(angles.shape[0]):
+        theta = angles[i]
+        block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
+        d = design_at(block, 0)
+        sine, cosine = math.sin(theta), math.cos(theta)
+        _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+        m = design_motion(sine, cosine, d)
+        load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
+        sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+        f = joint_forces(sine, cosine, m, d, load, sides)
+        j = influences(sine, cosine, m, d.l)
+        out[0, i] = m.x
+        out[1, i] = m.x_1 * d.speed
+        out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
+        out[3, i] = math.atan2(abs(m.along), abs(m.across))
+        out[4, i] = load
+        out[5, i] = f.torque
+        out[6, i] = f.pivot_x
+        out[7, i] = f.pivot_y
+        out[8, i] = f.crank_pin_x
+        out[9, i] = f.crank_pin_y
+        out[10, i] = f.slider_pin_x
+        out[11, i] = f.slider_pin_y
+        out[12, i] = f.guide
+        out[13, i] = worst_case(j, d)
+        out[14, i] = root_sum_square(j, d)
+
+
+def cycle(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    crank_angle: ArrayLike,
+    *,
+    speed: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+) -> Cycle:
+    """Return all curves of one fully turning linkage at crank angles (n,), rad.
+
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; the mechanism's if None.
+    Where a load or friction jumps (exactly on a dead centre, or where the rod turns back) the value on one side is
+    given: at a dead centre that of the inward stroke; where the speed is zero, that of counter-clockwise motion. Torque
+    and forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
+    for arrays of linkages and for a linkage on another branch than the mechanism's.
+    """
+    linkage = single(mechanism, linkage)
+    angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
+    speeds, accelerations = (
+        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
+        for given, own in ((speed, mechanism.speed), (acceleration, mechanism.acceleration))
+    )
+    if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
+        raise InputError("crank angles, speeds and accelerations must be finite")
+    raw = raw_vector(mechanism)
+    raw[:3] = linkage.crank, linkage.rod, linkage.offset
+    out = np.empty((_COLUMNS, len(angles)))
+    watch = Watch(0, 0.0, 1.0, False)
+    _curves(raw, load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
+    return Cycle(angles, *out)
+
+
+@kernel
+def _breakpoints(raw: Any, loads: Any, watch: Any, out: Any, rubbing: Any) -> Any:
+    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    d = design_at(block, 0)
+    cuts = work_space(loads.at.shape[0])
+    count = cut_cycle(d, block, 0, loads, watch, cuts)
+    if rubbing is not None:
+        count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
+    out[:count] = cuts.angle[:count]
+    return count
+
+
+def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the crank angles (k,) in [0, 2 pi), rad, at which torque and forces of one linkage may jump or kink.
+
+    At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
+    """
+    linkage = single(mechanism, linkage)
+    raw, loads = raw_vector(mechanism), load_structure(mechanism)
+    raw[:3] = linkage.crank, linkage.rod, linkage.offset
+    margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])
+    if not margin > 0.0:
+        raise InputError(
+            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
+            "lengthen the rod, or reduce the offset or the friction"
+        )
+    out = np.empty(ROOM + 2 * len(loads.at))
+    count = _breakpoints(raw, loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
+    return out[:count]

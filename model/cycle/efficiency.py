@@ -1,0 +1,130 @@
+"""Where the work of a cycle goes: load, friction of each joint, kinetic energy.
+
+Per turn, with dt = dtheta / w at constant speed:
+
+- input: integral of T over the turn, in the direction of turning;
+- useful: work done against the load, minus the integral of F dx (F, x positive outward);
+- friction heat: mu |N| |dx| in the guide, rho |F| times the relative turning in the pins: |phi'| in the slider pin,
+  1 - phi' in the crank pin, 1 in the crank pivot;
+- stored: what the crank's acceleration, if there is one, puts into kinetic energy. Springs and gravity give back in a
+  turn what they take.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.segments import crowded, crowding, uncrowded
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..signals.averages import average
+from ..signals.signals import Signal
+from .cycle import breakpoints, cycle
+
+Array = NDArray[np.float64]
+
+_NODES, _TAIL, _ROUNDS = 16, 3, 40
+_RESOLVED = 1e-12  # what may be left of the last Legendre coefficients of a panel
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Energies:
+    """Energies of one turn, J. useful: work done against the load, negative if the load drives.
+
+    throughput: integral of |F dx|, by which it can be told whether the useful work is more than rounding.
+    """
+
+    input: float
+    useful: float
+    stored: float
+    guide_heat: float
+    crank_pivot_heat: float
+    crank_pin_heat: float
+    slider_pin_heat: float
+    throughput: float
+
+    @property
+    def heat(self) -> float:
+        """Friction heat of all joints, J."""
+        return self.guide_heat + self.crank_pivot_heat + self.crank_pin_heat + self.slider_pin_heat
+
+    @property
+    def efficiency(self) -> float | None:
+        """Useful work over useful work and friction heat; None if the load takes no net work."""
+        if self.useful <= _ROUNDING * self.throughput:
+            return None
+        return self.useful / (self.useful + self.heat)
+
+
+def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
+    """Return the energies of one turn of one linkage.
+
+    Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
+    """
+    linkage = single(mechanism, linkage)
+    cuts = breakpoints(mechanism, linkage)
+    dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+    kappa = crowding(*map(float, dimensions[0]))
+    turn = 1.0 if mechanism.speed >= 0.0 else -1.0
+    friction = mechanism.friction
+
+    def rates(tau: Array) -> Array:
+        """Return all integrands (k, n) over the crowded angle."""
+        theta = np.array([uncrowded(angle, kappa) for angle in tau])
+        weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2)
+        curves = cycle(mechanism, linkage, theta)
+        motion = linkage.at(theta, speed=1.0)
+        work = -linkage.sign * curves.load * motion.slider_velocity
+        swing = motion.rod_velocity
+        found: Array = weight * np.stack(
+            [
+                turn * curves.torque,
+                turn * work,
+                friction.guide * np.abs(curves.guide * motion.slider_velocity),
+                friction.crank_pivot.circle * np.hypot(curves.pivot_x, curves.pivot_y),
+                friction.crank_pin.circle * np.hypot(curves.crank_pin_x, curves.crank_pin_y) * (1.0 - swing),
+                friction.slider_pin.circle * np.hypot(curves.slider_pin_x, curves.slider_pin_y) * np.abs(swing),
+                np.abs(work),
+            ]
+        )
+        return found
+
+    edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + 2.0 * np.pi)]
+    given, useful, guide, pivot, crank_pin, slider_pin, throughput = _integral(rates, np.array(edges))
+    inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
+    stored = turn * 2.0 * np.pi * mechanism.acceleration * float(inertia)
+    return Energies(given, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)
+
+
+def _integral(rates: Callable[[Array], Array], edges: Array) -> list[float]:
+    """Return integrals by Gauss-Legendre panels between edges, halved until the last Legendre coefficients die out."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    orders = np.arange(_NODES - _TAIL, _NODES)
+    basis = np.polynomial.legendre.legvander(nodes, _NODES - 1)[:, orders]
+    tail = (orders + 0.5)[:, None] * (weights[:, None] * basis).T
+    panels = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in pairwise(edges)])
+    ends = np.concatenate([np.linspace(a, b, 9)[1:] for a, b in pairwise(edges)])
+    total: Array | None = None
+    scale: Any = 0.0
+    for left in range(_ROUNDS, 0, -1):
+        half = 0.5 * (ends - panels)
+        at = (0.5 * (ends + panels))[:, None] + half[:, None] * nodes
+        values = rates(at.ravel()).reshape(-1, *at.shape)
+        scale = np.maximum(scale, np.abs(values).max(axis=(1, 2)))
+        rough = (np.abs(values @ tail.T) > _RESOLVED * scale[:, None, None]).any(axis=(0, 2)) & (left > 1)
+        found = (values @ weights * half)[:, ~rough].sum(axis=1)
+        total = found if total is None else total + found
+        if not rough.any():
+            break
+        middle = 0.5 * (panels + ends)[rough]
+        panels, ends = np.concatenate([panels[rough], middle]), np.concatenate([middle, ends[rough]])
+    assert total is not None
+    return [float(value) for value in total]

@@ -1,0 +1,163 @@
+"""At which crank angles friction locks a linkage, and whether its loads let it move there (`self_locking`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from ..dynamics.torque import Balance, balance
+from ..kinematics.position import motion
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.friction import Friction
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
+from .cycle import cycle
+from .self_locking import locking_margin
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 256  # of a quarter or so of the cycle
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether friction locks a linkage. margin: rad, -inf if the pins alone lock it.
+
+    locked: crank angles (from, to), rad, where it locks or may jam, the second up to a turn ahead of the first.
+    holds: the part of `locked` angles, 0 to 1, where this machine's loads let no torque drive it; elsewhere in them it
+    may jam. None if nothing is locked.
+    """
+
+    margin: float
+    locked: tuple[tuple[float, float], ...]
+    holds: float | None
+
+    @property
+    def locks(self) -> bool:
+        """Whether there are locked angles."""
+        return not self.margin > 0.0
+
+
+def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
+    """Return whether friction locks one fully turning linkage, and where."""
+    linkage = single(mechanism, linkage)
+    margin = float(locking_margin(mechanism.friction, np.array([_dimensions(linkage)]))[0][0])
+    if margin > 0.0:
+        return Verdict(margin, (), None)
+    cuts = sorted({0.5 * np.pi, 1.5 * np.pi, *map(float, linkage.dead_centre_angles)})
+    spans: list[tuple[float, float]] = []
+    for a, b in pairwise([*cuts, cuts[0] + 2.0 * np.pi]):
+        spans += _spans(mechanism.friction, linkage, a, b)
+    joined = _joined(spans)
+    inside = np.concatenate([np.linspace(a, b, 66)[1:-1] for a, b in joined]) if joined else np.empty(0)
+    if not len(inside):
+        return Verdict(margin, joined, None)
+    states = states_at(mechanism, linkage, inside)
+    return Verdict(margin, joined, float(np.mean(states == "locks")))
+
+
+def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
+    """Return for crank angles (n,), rad, of one linkage whether it "drives", "locks" or "may jam" under its loads."""
+    linkage = single(mechanism, linkage)
+    angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    design = _design(mechanism, linkage)
+    loads = cycle(mechanism, linkage, angles).load
+    found = []
+    for theta, load, excess in zip(angles, loads, _excess(mechanism.friction, linkage, angles), strict=True):
+        if excess > 0.0:
+            found.append("drives")
+        else:
+            found.append("may jam" if _balances(design, float(theta), float(load)) else "locks")
+    return np.array(found, dtype=np.str_)
+
+
+def _dimensions(linkage: Linkage) -> tuple[float, float, float]:
+    return float(linkage.crank), float(linkage.rod), float(linkage.offset)
+
+
+def _design(mechanism: Mechanism, linkage: Linkage) -> Design:
+    raw, loads = raw_vector(mechanism)[:, None], load_structure(mechanism)
+    raw[:3, 0] = _dimensions(linkage)
+    block = np.empty((DESIGN + 2 * len(loads.kind), 1))
+    derive(raw, loads.kind, loads.datum, block)
+    found: Design = design_at(block, 0)
+    return found
+
+
+def _excess(friction: Friction, linkage: Linkage, theta: Any, inside: Any = None) -> Any:
+    """Return |along| - |D| at crank angles, with the signs of the angles `inside` the segment."""
+    inside = theta if inside is None else inside
+    arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    m, signs = (motion(np.sin(angle), np.cos(angle), *arguments) for angle in (theta, inside))
+    q = np.sqrt(1.0 + friction.guide**2)
+    pins = q * (friction.slider_pin.circle * np.sign(signs.rod_1) - friction.crank_pin.circle)
+    return np.abs(m.along) - np.abs(pins - friction.guide * m.across * np.sign(signs.x_1))
+
+
+def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tuple[float, float]]:
+    """Return where within a segment |D| >= |along|."""
+    middle = a + 0.382 * (b - a)
+
+    def excess(theta: Any) -> Any:
+        return _excess(friction, linkage, theta, middle)
+
+    theta = a + (b - a) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _SAMPLES)))
+    values = excess(theta)
+    edges = [a]
+    for left, right, f, g in zip(theta[:-1], theta[1:], values[:-1], values[1:], strict=True):
+        if f * g < 0.0:
+            edges.append(float(brentq(excess, left, right, xtol=1e-14)))
+    edges.append(b)
+    return [(p, q) for p, q in pairwise(edges) if excess(0.5 * (p + q)) <= 0.0]
+
+
+def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Return spans in ascending order with those that touch made one, also across the end of the turn."""
+    joined: list[tuple[float, float]] = []
+    for a, b in spans:
+        if joined and a - joined[-1][1] < 1e-12:
+            joined[-1] = (joined[-1][0], b)
+        else:
+            joined.append((a, b))
+    if len(joined) > 1 and joined[0][0] + 2.0 * np.pi - joined[-1][1] < 1e-12:
+        joined[-1] = (joined[-1][0], joined[0][1] + 2.0 * np.pi)
+        del joined[0]
+    return tuple(joined)
+
+
+def _balances(d: Design, theta: float, load: float) -> bool:
+    """Return whether h has a root where its two ends point the same way: whether it comes to the other side of zero."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
+    b: Balance = balance(sine, cosine, m, d, load)
+    turn = 1.0 if d.speed >= 0.0 else -1.0
+    slide, swing = np.sign(m.x_1 * turn), np.sign(m.rod_1 * turn)
+    weight = d.slider_mass * d.gravity_y
+
+    def h(y: Any) -> Any:
+        bx = b.pull + d.guide_friction * slide * np.abs(y + weight)
+        pins = d.slider_pin_circle * swing * np.hypot(bx, y)
+        pins = pins - d.crank_pin_circle * turn * np.hypot(bx + b.rod_x, y + b.rod_y)
+        return m.along * y - m.across * bx + b.moment + pins
+
+    size = abs(b.pull) + abs(weight) + abs(b.moment * m.per_along) + np.hypot(b.rod_x, b.rod_y)
+    if size == 0.0:
+        return True  # nothing acts: all forces are zero
+    reach = 1e6 * size
+    upward = 1.0 if h(reach) > 0.0 else -1.0
+    steps = np.concatenate([[0.0], np.geomspace(1e-9 * size, reach, 400)])
+    for side in (-1.0, 1.0):
+        values = upward * h(-weight + side * steps)
+        at = int(np.argmin(values))
+        if values[at] <= 0.0:
+            return True
+        ends = steps[max(at - 1, 0)], steps[min(at + 1, len(steps) - 1)]
+        if minimize_scalar(lambda u, s=side: upward * h(-weight + s * u), bounds=ends, method="bounded").fun <= 0.0:
+            return True
+    return False

@@ -1,0 +1,104 @@
+"""Self-locking: where friction lets no crank torque, however great, drive the slider as prescribed.
+
+From `rubbing`: the force balance of the rod is one equation h(y) = 0, whose slope tends to along + D and along - D
+for y -> +-infinity, with
+
+    D = q (rho_B sgn(phi' w) - rho_A sgn(w)) - mu across sgn(x' w),        q = sqrt(1 + mu^2).
+
+Where |D| < |along| both slopes have one sign and there is a solution for every load. Where |D| >= |along| both ends of
+h point the same way, and the number of solutions is even: none for loads that resist (the linkage *locks*: the harder
+the crank pushes, the more the guide holds), two or more for loads that drive it (it *may jam*: the prescribed motion
+and a wedged state both balance, and which one comes about the forces do not tell). The condition knows no load and no
+mass; turning the other way changes the sign of D alone. Without pins it says that the transmission angle is below
+arctan(mu).
+
+|D| is greatest, and |along| least, where the crank is normal to the slider line and points away from it,
+sin(theta) = -sgn(e); there l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is
+therefore exactly
+
+    least transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import STEP
+from ..kinematics.geometry import least_transmission_angle
+from ..machine.friction import Friction
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import number_of, require_width
+from ..machine.parameters import Raw
+
+Array = NDArray[np.float64]
+
+
+def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
+    """Return the self-locking margin, rad, of designs (n, 3): crank, rod, offset, m, each turning fully.
+
+    It does not depend on loads and masses: zero or less means that the linkage locks or may jam somewhere (see module).
+    -inf where the friction circles' sum is the rod or more.
+    """
+    return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
+
+
+def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
+    """Return the self-locking margin like `locking_margin`, of designs (n, 3 + k) of a machine, which may vary."""
+    designs = np.asarray(designs, dtype=np.float64)
+    require_width(mechanism, designs)
+    friction = mechanism.friction
+    guide, circles = friction.guide, friction.crank_pin.circle + friction.slider_pin.circle
+    if not mechanism.varying:
+        return _margin(designs, guide, circles, gradients)[:2]
+    given = (
+        (Raw.GUIDE_FRICTION, guide),
+        (Raw.CRANK_PIN_RADIUS, friction.crank_pin.radius),
+        (Raw.CRANK_PIN_FRICTION, friction.crank_pin.coefficient),
+        (Raw.SLIDER_PIN_RADIUS, friction.slider_pin.radius),
+        (Raw.SLIDER_PIN_FRICTION, friction.slider_pin.coefficient),
+    )
+    (mu, mu_slope), *pins = (number_of(mechanism, slot, designs, otherwise=value) for slot, value in given)
+    (a, a_slope), (b, b_slope), (c, c_slope), (d, d_slope) = pins
+    sums = a * b + c * d
+    slopes = a[:, None] * b_slope + b[:, None] * a_slope + c[:, None] * d_slope + d[:, None] * c_slope
+    values, found, rates = _margin(designs[:, :3], mu, sums, gradients)
+    if found is None or rates is None:
+        return values, None
+    found = np.pad(found, ((0, 0), (0, len(mechanism.varying))))
+    return values, found + rates[:, :1] * mu_slope + rates[:, 1:] * slopes
+
+
+def _margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[Array, Array | None, Array | None]:
+    """Return margin (n,), its gradients (n, 3) and its derivatives by guide and circles (n, 2)."""
+    r, l, a = designs[:, 0], designs[:, 1], np.abs(designs[:, 2])
+    turns = circles < l
+    safe = np.where(turns, l, 2.0 * circles + 1.0)
+
+    def margin(r: Any, l: Any, l_safe: Any, a: Any, guide: Any, circles: Any) -> Any:
+        return least_transmission_angle(r, l, a) - np.arctan(guide) - np.arcsin(circles / l_safe)
+
+    values = np.where(turns, margin(r, l, safe, a, guide, circles), -np.inf)
+    if not gradients:
+        return values, None, None
+    step = STEP * 1j
+    sign = np.where(designs[:, 2] < 0.0, -1.0, 1.0)
+    slopes = np.stack(
+        [
+            margin(r + step, l, safe, a, guide, circles).imag,
+            margin(r, l + step, safe + step, a, guide, circles).imag,
+            sign * margin(r, l, safe, a + step, guide, circles).imag,
+        ],
+        axis=1,
+    )
+    rates = np.stack(
+        [
+            margin(r, l, safe, a, guide + step, circles).imag,
+            margin(r, l, safe, a, guide, circles + step).imag,
+        ],
+        axis=1,
+    )
+    known = turns[:, None]
+    return values, np.where(known, slopes / STEP, 0.0), np.where(known, rates / STEP, 0.0)

@@ -1,0 +1,48 @@
+"""Curves of what the moving masses do by themselves: shaking force, shaking moment, reflected inertia (`inertia`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..dynamics.inertia import reflected_inertia, shaking
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..signals.signals import design_motion
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ShakingCurves:
+    """Curves of one design, each (n,), SI and radians: on the frame, without gravity and load.
+
+    force_x, force_y: N. moment: about the crank pivot, N m, counter-clockwise. reflected_inertia: kg m^2.
+    """
+
+    crank_angle: Array
+    force_x: Array
+    force_y: Array
+    moment: Array
+    reflected_inertia: Array
+
+
+def shaking_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> ShakingCurves:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad."""
+    linkage = single(mechanism, linkage)
+    theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    structure = load_structure(Mechanism())
+    raw = raw_vector(mechanism)[: len(raw_vector(Mechanism())), None]
+    raw[:3, 0] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    block = np.empty((DESIGN, 1))
+    derive(raw, structure.kind, structure.datum, block)
+    d = design_at(block, 0)
+    sine, cosine = np.sin(theta), np.cos(theta)
+    m = design_motion(sine, cosine, d)
+    x, y, moment = (np.broadcast_to(part, theta.shape) for part in shaking(sine, cosine, m, d))
+    inertia = np.broadcast_to(reflected_inertia(sine, cosine, m, d), theta.shape)
+    return ShakingCurves(theta, x, y, moment, inertia)

@@ -1,0 +1,142 @@
+"""The cycle of a machine with friction: signs of the sliding in each segment, where the guide's force changes sides.
+
+Friction turns over with the slider (dead centres), with the rod (where the crank is normal to the slider line) and with
+the guide's force. The first two are cuts of `segments.cut_cycle`; the third is found here, a kink of every curve.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..kernel.arithmetic import STEP, inlined
+from ..kinematics.position import motion
+from ..machine.mechanism import Mechanism
+from .rubbing import Sides, touch
+from .segments import Cuts, Watch, add_cut, crowded, crowding, cut_shift, enter, load_on_slider, uncrowded, within
+
+CONTACT = 5
+"""Code of a cut where the guide's force changes sides."""
+_SAMPLES = 192
+_BISECTIONS = 60
+_TURN = 2.0 * math.pi
+
+
+def rubs(mechanism: Mechanism) -> Any:
+    """Return the flag that selects kernels with friction: True, or None, for which friction is not even compiled."""
+    return True if mechanism.fullest.friction.acts else None
+
+
+@inlined
+def _touch(
+    theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, turn: Any, swing: Any
+) -> Any:
+    sine, cosine = math.sin(theta), math.cos(theta)
+    m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
+    load = load_on_slider(m, d, block, j, theta, outward, loads, piece, shift)
+    return touch(sine, cosine, m, d, load, turn, swing)
+
+
+@inlined
+def sides_of(
+    inside: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
+) -> Any:
+    """Return the `Sides` of the segment, entered before, around the crank angle `inside`; None without friction."""
+    if rubbing is None:
+        return None
+    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
+    turn = 1.0 if d.speed >= 0.0 else -1.0
+    slide = d.branch.real * (1.0 if outward else -1.0)
+    swing = 1.0 if m.rod_1 * turn > 0.0 else -1.0
+    guide = _touch(inside, d, block, j, outward, loads, piece, shift, turn, swing)
+    return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0)
+
+
+@inlined
+def cut_contacts(
+    d: Any, block: Any, j: Any, loads: Any, watch: Watch, cuts: Cuts, count: int, piece: Any, shift: Any
+) -> int:
+    """Add the cuts where the guide's force changes sides to the `count` cuts there are; return how many there are then.
+
+    Found between neighbouring samples: two changes within one spacing, where the force is next to nothing, are passed
+    over; the curves follow the one side there, off by no more than the friction of that force.
+    """
+    kappa = crowding(d.r, d.l, d.e)
+    start = cuts.angle[:count].copy()
+    n = count
+    for s in range(count):
+        a = start[s]
+        b = start[s + 1] if s + 1 < count else start[0] + _TURN
+        if b - a < 1e-12:
+            continue
+        _, outward = enter(d, block, j, within(a, b), loads, watch, piece, shift)
+        sides = sides_of(within(a, b), d, block, j, outward, loads, piece, shift, True)
+        low, high = crowded(a, kappa), crowded(b, kappa)
+        points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
+        left, before = a, 0.0
+        for i in range(points + 1):
+            theta = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
+            now = _touch(theta, d, block, j, outward, loads, piece, shift, sides.turn, sides.swing)
+            if i > 0 and now * before < 0.0 and n < cuts.angle.shape[0] - 2:
+                p, q, f = left, theta, before
+                for _ in range(_BISECTIONS):
+                    middle = 0.5 * (p + q)
+                    if middle <= p or middle >= q:
+                        break
+                    g = _touch(middle, d, block, j, outward, loads, piece, shift, sides.turn, sides.swing)
+                    if g * f > 0.0:
+                        p = middle
+                    else:
+                        q = middle
+                at = 0.5 * (p + q)
+                if at - a > 1e-12 and b - at > 1e-12:
+                    n = add_cut(cuts, n, at, CONTACT, 0.0, -1)
+            left, before = theta, now
+    return n
+
+
+@inlined
+def contact_shift(
+    z: Any,
+    stepped: Any,
+    d: Any,
+    block: Any,
+    j: Any,
+    theta: Any,
+    outward: Any,
+    loads: Any,
+    piece: Any,
+    shift: Any,
+    sides: Any,
+) -> float:
+    """Return the imaginary part of such a cut's angle when the design `z` carries an imaginary step; `d` is without."""
+    moved = _touch(theta, z, stepped, j, outward, loads, piece, shift, sides.turn, sides.swing).imag
+    sine, cosine = math.sin(theta), math.cos(theta)
+    s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
+    m = motion(s, c, d.r, d.l, d.e, d.branch)
+    load = load_on_slider(m, d, block, j, complex(theta, STEP), outward, loads, piece, shift)
+    rise = touch(s, c, m, d, load, sides.turn, sides.swing).imag / STEP
+    return float(-moved / rise)
+
+
+@inlined
+def shift_of(
+    z: Any,
+    stepped: Any,
+    d: Any,
+    block: Any,
+    theta: Any,
+    cuts: Cuts,
+    i: Any,
+    outward: Any,
+    loads: Any,
+    piece: Any,
+    shift: Any,
+    sides: Any,
+) -> float:
+    """Return the imaginary part of any cut's angle, in the segment entered before; `sides` None without friction."""
+    if sides is None:
+        return cut_shift(z, stepped, 0, theta, cuts, i)
+    if cuts.code[i] == CONTACT:
+        return contact_shift(z, stepped, d, block, 0, theta, outward, loads, piece, shift, sides)
+    return cut_shift(z, stepped, 0, theta, cuts, i)

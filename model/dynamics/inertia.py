@@ -1,0 +1,54 @@
+"""What the moving masses do by themselves: reflected inertia, shaking force and shaking moment.
+
+With A the crank pin, S the rod's first moment about it, C that of the crank (counterweight included) about the pivot:
+
+    J = I_O + m_rod r^2 + 2 phi' (A . S) + phi'^2 I_A + m_s x'^2
+
+so that J w^2 / 2 is the kinetic energy. The shaking force is minus the rate of change of the linkage's momentum, the
+resultant of all inertia forces; the shaking moment is minus the rate of change of its angular momentum about the crank
+pivot. They are what the machine does to its frame through pivot, guide and motor (the reaction of the drive torque
+counts: the motor stands on the frame) beyond gravity and load, which are left out: the one is constant or balanced by
+the foundation at rest, the other is usually closed within the machine. Friction is internal and changes neither.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..kernel.arithmetic import analytic
+from ..kinematics.position import Motion
+from ..machine.parameters import Design
+
+
+@analytic
+def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
+    """Return the inertia that the whole linkage presents at the crank, kg m^2."""
+    sx = d.rod_along * m.along - d.rod_across * m.across
+    sy = d.rod_along * m.across + d.rod_across * m.along
+    rod = d.rod_mass * d.r * d.r + 2.0 * m.rod_1 * d.r * (cosine * sx + sine * sy) + m.rod_1 * m.rod_1 * d.rod_inertia
+    return d.crank_inertia + rod + d.slider_mass * m.x_1 * m.x_1
+
+
+@analytic
+def shaking(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
+    """Return shaking force along x and y, N, and shaking moment about the crank pivot, N m, on the frame.
+
+    Counter-clockwise moments are positive. Force -[m a]: of the crank C_tt, of the rod m_rod a_A + S_tt, of the slider
+    m_s a_B. Moment -[r x m a]: I_O alpha, A x (m_rod a_A + S_tt) + S x a_A + I_A phi_tt, and -e m_s a_B.
+    """
+    w2, alpha = d.speed * d.speed, d.acceleration
+    rod_w2 = m.rod_1 * m.rod_1 * w2
+    rod_a = m.rod_2 * w2 + m.rod_1 * alpha
+    pin_x, pin_y = -d.r * (cosine * w2 + sine * alpha), -d.r * (sine * w2 - cosine * alpha)
+    sx = d.rod_along * m.along - d.rod_across * m.across
+    sy = d.rod_along * m.across + d.rod_across * m.along
+    cx = d.crank_along * cosine - d.crank_across * sine
+    cy = d.crank_along * sine + d.crank_across * cosine
+    rod_x = d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a
+    rod_y = d.rod_mass * pin_y - sy * rod_w2 + sx * rod_a
+    slider = d.slider_mass * (m.x_2 * w2 + m.x_1 * alpha)
+    x = -cx * w2 - cy * alpha + rod_x + slider
+    y = -cy * w2 + cx * alpha + rod_y
+    moment = d.crank_inertia * alpha + d.r * (cosine * rod_y - sine * rod_x)
+    moment = moment + sx * pin_y - sy * pin_x + d.rod_inertia * rod_a - d.e * slider
+    return -x, -y, -moment

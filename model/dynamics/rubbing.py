@@ -1,0 +1,136 @@
+"""Inverse dynamics with Coulomb friction, solved consistently in all four joints.
+
+Friction adds to the equations of `dynamics` (mu: the guide's coefficient, rho: radius of a pin's friction circle, w the
+crank speed):
+
+- slider: B_x = pull + mu |N| sgn(x' w), N = -(B_y + W), W = m_s G_y;
+- rod, moments about the crank pin: along B_y - across B_x + moment - rho_A sgn(w) |A| + rho_B sgn(phi' w) |B| = 0;
+- crank, moments about the pivot: T gains sgn(w) (rho_A |A| + rho_O |P|).
+
+In the crank pin the rod turns by (phi' - 1) w, and |phi'| < 1 where l > r + |e|: it never turns the other way.
+
+With B_x eliminated, and A - B known, the moment balance is one equation h(y) = 0 for y = B_y. Where y > -W or y < -W
+its slope is along -+ mu across, plus at most (rho_A + rho_B) sqrt(1 + mu^2) in size, since d|A|/dy and d|B|/dy are at
+most |(mu, 1)|. Hence, with q = sqrt(1 + mu^2),
+
+    |along| > mu |across| + q (rho_A + rho_B)                                                             (*)
+
+makes h monotone: there is one solution, and it lies on the side of -W that the sign of h(-W) tells. Divided by l q, (*)
+says that the transmission angle exceeds arctan(mu) + asin((rho_A + rho_B) / l). Where it fails nothing is returned.
+
+On the known side h is smooth. Every slope between two points lies within the bounds above, so a point gives a bracket
+of the root; Newton's iteration, halving the bracket where it would leave it, converges. One step more, in the
+arithmetic of the design, carries an imaginary part along: implicit function theorem.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from ..kernel.arithmetic import analytic, inlined, inverse, root
+from ..kinematics.position import Motion
+from ..machine.parameters import Design
+from .torque import Forces, balance, forces, joined
+
+_ITERATIONS = 100
+_SETTLED = 1e-15
+
+
+class Sides(NamedTuple):
+    """Signs, each +1 or -1, that stay the same within a segment of the cycle.
+
+    turn: of the crank speed (+1 at rest). slide: of the slider's velocity along x. swing: of the rod's angular
+    velocity. press: of B_y + W, minus that of the guide's force.
+    """
+
+    turn: float
+    slide: float
+    swing: float
+    press: float
+
+
+@analytic
+def drives(along: Any, across: Any, d: Design) -> Any:
+    """Return by how much condition (*) is met, m: more than zero where the forces are determined, whatever the load."""
+    mu = d.guide_friction
+    return abs(along) - mu * abs(across) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
+
+
+@analytic
+def always_drives(d: Design) -> Any:
+    """Return `drives` where it is least over the cycle: sin(theta) = -sgn(e)."""
+    reach = d.r + abs(d.e)
+    return drives(root(d.l * d.l - reach * reach), reach, d)
+
+
+@analytic
+def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, turn: Any, swing: Any) -> Any:
+    """Return h(-W) times the branch: it has the sign of the guide's force, and is smooth between other breakpoints."""
+    b = balance(sine, cosine, m, d, load)
+    y = -d.slider_mass * d.gravity_y
+    ax, ay = b.pull + b.rod_x, y + b.rod_y
+    pins = d.slider_pin_circle * swing * root(b.pull * b.pull + y * y)
+    pins = pins - d.crank_pin_circle * turn * root(ax * ax + ay * ay)
+    return d.branch.real * (m.along * y - m.across * b.pull + b.moment + pins)
+
+
+@inlined
+def _moment(y: Any, slope: Any, rest: Any, mu: Any, pull: Any, rod_x: Any, rod_y: Any, p: Any, q: Any) -> Any:
+    """Return h(y) and h'(y); `pull` is B_x at y = 0."""
+    bx = pull + mu * y
+    ax, ay = bx + rod_x, y + rod_y
+    a, b = root(ax * ax + ay * ay), root(bx * bx + y * y)
+    by_a = (mu * ax + ay) * inverse(a) if a.real > 0.0 else 0.0 * a
+    by_b = (mu * bx + y) * inverse(b) if b.real > 0.0 else 0.0 * b
+    return slope * y + rest + p * a + q * b, slope + p * by_a + q * by_b
+
+
+@inlined
+def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: Sides) -> Forces:
+    """Return drive torque and reactions with friction; all NaN where they are not determined."""
+    b = balance(sine, cosine, m, d, load)
+    weight = d.slider_mass * d.gravity_y
+    mu = d.guide_friction * (s.slide * s.press)
+    slope = m.along - m.across * mu
+    pull = b.pull + mu * weight
+    rest = b.moment - m.across * pull
+    p, q = -d.crank_pin_circle * s.turn, d.slider_pin_circle * s.swing
+    least = drives(m.along.real, m.across.real, d)
+    y = math.nan
+    if least.real > 0.0:
+        steep, still = slope.real, rest.real
+        y = -still / steep
+        if p.real != 0.0 or q.real != 0.0:
+            sign = 1.0 if steep > 0.0 else -1.0
+            low, high = -math.inf, math.inf
+            for _ in range(_ITERATIONS):
+                h, rate = _moment(y, steep, still, mu.real, pull.real, b.rod_x.real, b.rod_y.real, p.real, q.real)
+                if h * sign > 0.0:
+                    high = y
+                    low = max(low, y - h * sign / least.real)
+                else:
+                    low = y
+                    high = min(high, y - h * sign / least.real)
+                new = y - h / rate
+                if not low <= new <= high:
+                    new = 0.5 * (low + high)
+                step = abs(new - y)
+                y = new
+                if step <= _SETTLED * (abs(y) + abs(pull.real)):
+                    break
+    h, rate = _moment(y, slope, rest, mu, pull, b.rod_x, b.rod_y, p, q)
+    by = y - h * inverse(rate)
+    f = joined(sine, cosine, d, b, pull + mu * by, by)
+    pin = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+    pivot = root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
+    torque = f.torque + s.turn * (d.crank_pin_circle * pin + d.crank_pivot_circle * pivot)
+    return Forces(torque, f.pivot_x, f.pivot_y, f.crank_pin_x, f.crank_pin_y, f.slider_pin_x, f.slider_pin_y, f.guide)
+
+
+@inlined
+def joint_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
+    """Return drive torque and reactions, with friction if `sides` (None without) are given."""
+    if sides is None:
+        return forces(sine, cosine, m, d, load)
+    return rubbing_forces(sine, cosine, m, d, load, sides)

@@ -1,0 +1,245 @@
+"""The cycle cut into segments on which every curve is smooth.
+
+Loads that change at a dead centre, tables with knots, and a position error that counts only over a part of the stroke
+make the curves piecewise: smooth between *breakpoints*, with a kink or a jump on them. Within a segment the stroke and
+the piece of every table are fixed, so the curve there is an analytic function of crank angle and design.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import analytic, inlined
+from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
+from ..kinematics.position import motion
+from ..machine.parameters import DESIGN, Design, LoadKind, Loads
+from .torque import smooth_load
+
+_POSITION_TABLE, _ANGLE_TABLE = int(LoadKind.POSITION_TABLE), int(LoadKind.ANGLE_TABLE)
+_OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
+_TURN = 2.0 * math.pi
+_STILL = 1e-13
+"""|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
+ROOM = 40
+"""Breakpoints there is room for, beside two for each knot: 8 at most, and those that friction makes."""
+
+
+class Watch(NamedTuple):
+    """Which part of the cycle counts, and what is a breakpoint.
+
+    strokes: 0 the cycle, 1 the outward stroke, 2 the inward stroke. start, end: fractions of the stroke from the inner
+    dead centre. split: whether a load or friction changes at the dead centres. swing: whether friction changes where
+    the rod turns back, the crank normal to the slider line.
+    """
+
+    strokes: int
+    start: float
+    end: float
+    split: bool
+    swing: bool = False
+
+
+class Cuts(NamedTuple):
+    """Work space of one design's breakpoints: angle, what it is, its number (knot or fraction) and its load."""
+
+    angle: NDArray[np.float64]
+    code: NDArray[np.int64]
+    number: NDArray[np.float64]
+    load: NDArray[np.int64]
+
+
+@analytic
+def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> float:
+    """Return one of the two crank angles for slider position x.
+
+    atan2(e, x) -+ acos((r^2 + d^2 - l^2) / (2 r d)) with d^2 = x^2 + e^2: law of cosines.
+    """
+    d = math.sqrt(x * x + e * e)
+    ratio = (r * r + x * x + e * e - l * l) / (2.0 * r * d)
+    half = math.acos(min(1.0, max(-1.0, ratio)))
+    return math.atan2(e, x) + (half if second else -half)
+
+
+@inlined
+def work_space(knots: int) -> Cuts:
+    """Return room for the breakpoints of a design whose tables have so many knots in all."""
+    room = ROOM + 2 * knots
+    return Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+
+
+@inlined
+def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: int) -> int:
+    """Insert a breakpoint into the first `n`, in ascending order; return how many there are then."""
+    wrapped = angle - _TURN * math.floor(angle / _TURN)
+    i = n
+    while i > 0 and cuts.angle[i - 1] > wrapped:
+        cuts.angle[i] = cuts.angle[i - 1]
+        cuts.code[i] = cuts.code[i - 1]
+        cuts.number[i] = cuts.number[i - 1]
+        cuts.load[i] = cuts.load[i - 1]
+        i -= 1
+    cuts.angle[i], cuts.code[i], cuts.number[i], cuts.load[i] = wrapped, code, number, load
+    return n + 1
+
+
+@inlined
+def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: Cuts) -> int:
+    """Fill `cuts` with the breakpoints of a design in ascending crank angle; return how many (at least one)."""
+    n = 0
+    if watch.split or watch.strokes != 0:
+        a, b = outer_crank_angle(d.r, d.l, d.e), inner_crank_angle(d.r, d.l, d.e)
+        # The crossed branch is the mirror image about the y axis: theta -> pi - theta.
+        n = add_cut(cuts, n, a if d.branch > 0.0 else math.pi - a, _OUTER, 0.0, -1)
+        n = add_cut(cuts, n, b if d.branch > 0.0 else math.pi - b, _INNER, 0.0, -1)
+    if watch.swing:
+        n = add_cut(cuts, n, 0.5 * math.pi, _FIXED, 0.0, -1)
+        n = add_cut(cuts, n, 1.5 * math.pi, _FIXED, 0.0, -1)
+    for fraction in (watch.start, watch.end):
+        if 0.0 < fraction < 1.0:
+            x = d.branch * (d.inner + fraction * (d.outer - d.inner))
+            for second in (False, True):
+                n = add_cut(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
+    # A knot on a dead centre is no breakpoint. There the slider stands still, so that a force continuous over position
+    # has no kink over crank angle, while the crank angle of the knot has no derivative.
+    margin = 1e-12 * (d.outer - d.inner)
+    for k in range(loads.kind.shape[0]):
+        for i in range(loads.start[k], loads.start[k + 1]):
+            at = loads.at[i]
+            if loads.kind[k] == _ANGLE_TABLE:
+                if i + 1 < loads.start[k + 1]:
+                    n = add_cut(cuts, n, at, _FIXED, at, k)
+            else:
+                x = block[DESIGN + 2 * k + 1, j] + block[DESIGN + 2 * k, j] * at
+                if d.inner + margin < x < d.outer - margin:
+                    for second in (False, True):
+                        n = add_cut(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
+    if n == 0:
+        n = add_cut(cuts, n, 0.0, _FIXED, 0.0, -1)
+    return n
+
+
+@inlined
+def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> float:
+    """Return the imaginary part of breakpoint i's angle when the design carries an imaginary step."""
+    code = cuts.code[i]
+    if code == _FIXED:
+        return 0.0
+    sign = d.branch.real
+    if code == _OUTER:
+        return float(sign * outer_crank_angle(d.r, d.l, d.e).imag)
+    if code == _INNER:
+        return float(sign * inner_crank_angle(d.r, d.l, d.e).imag)
+    if code == _FRACTION:
+        target = (d.inner + cuts.number[i] * (d.outer - d.inner)).imag
+    else:
+        row = DESIGN + 2 * cuts.load[i]
+        target = (block[row + 1, j] + block[row, j] * cuts.number[i]).imag
+    # Implicit function theorem on x(theta, design) = target.
+    m = motion(math.sin(theta), math.cos(theta), d.r, d.l, d.e, d.branch)
+    return float((sign * target - m.x.imag) / m.x_1.real)
+
+
+@analytic
+def within(a: float, b: float) -> float:
+    """Return a crank angle in (a, b) that tells the segment's stroke and table pieces.
+
+    Not its middle: without offset that is a dead centre, where rounding decides on which side of an end of the stroke,
+    or of a knot there, the slider is.
+    """
+    return a + 0.382 * (b - a)
+
+
+@inlined
+def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
+    """Fix the piece of every table at a crank angle and a distance x of the slider from the crank pivot."""
+    for k in range(loads.kind.shape[0]):
+        first, last = loads.start[k], loads.start[k + 1]
+        if first == last:
+            continue
+        if loads.kind[k] == _ANGLE_TABLE:
+            shift[k] = -_TURN * math.floor((theta - loads.at[first]) / _TURN)
+            at = theta + shift[k]
+        else:
+            at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
+        i = first
+        while i < last and loads.at[i] < at:
+            i += 1
+        piece[k] = i
+
+
+@inlined
+def enter(
+    d: Design, block: Any, j: int, inside: float, loads: Loads, watch: Watch, piece: Any, shift: Any
+) -> tuple[bool, bool]:
+    """Fix the table pieces of the segment that the crank angle `inside` lies in; return (counts, outward).
+
+    Within rounding of a dead centre, where the sign of x' is luck, the stroke is the inward one.
+    """
+    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
+    x = d.branch * m.x
+    outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > _STILL * d.r
+    fraction = (x - d.inner) / (d.outer - d.inner)
+    counts = watch.strokes == 0 or (watch.strokes == 1) == outward
+    # Only at ends that are cuts: a dead centre in the middle lies a rounding error outside 0 to 1.
+    if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
+        counts = False
+    find_pieces(d, block, j, inside, x, loads, piece, shift)
+    return counts, outward
+
+
+@inlined
+def load_on_slider(
+    m: Any, d: Any, block: Any, j: int, theta: Any, outward: bool, loads: Loads, piece: Any, shift: Any
+) -> Any:
+    """Return the load on the slider, N outward, in a segment entered before."""
+    force = smooth_load(m, d, d.outward_force if outward else d.inward_force)
+    for k in range(loads.kind.shape[0]):
+        first, last = loads.start[k], loads.start[k + 1]
+        if first == last:
+            continue
+        factor = loads.factor[k, 0] if outward else loads.factor[k, 1]
+        i = piece[k]
+        if i == first:
+            force = force + factor * loads.force[first]
+        elif i == last:
+            force = force + factor * loads.force[last - 1]
+        else:
+            slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
+            if loads.kind[k] == _ANGLE_TABLE:
+                force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
+            else:
+                at = block[DESIGN + 2 * k, j] * (d.branch * m.x - block[DESIGN + 2 * k + 1, j])
+                force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))
+    return force
+
+
+@analytic
+def crowding(r: float, l: float, e: float) -> float:
+    """Return kappa of the crowded angle tau with tan(theta - pi/2) = kappa tan(tau).
+
+    The curves are singular at theta = +-pi/2 + i w with cosh(w) = (l - |e|) / r, closer to the real axis the nearer the
+    linkage is to locking. The map opens the strip of analyticity around both to the half-width atanh(kappa) on either
+    side when kappa^2 = tanh(w) = sqrt(1 - (r / (l - |e|))^2), the best balance of near and far. Equidistant tau then
+    resolve every linkage with the same number of angles.
+    """
+    q = r / (l - abs(e))
+    return math.sqrt(math.sqrt(max(1.0 - q * q, 1e-12)))
+
+
+@analytic
+def crowded(theta: float, kappa: float) -> float:
+    """Return tau of a crank angle, in the same half-turn as theta - pi/2."""
+    psi = theta - 0.5 * math.pi
+    turn = math.atan2(math.sin(psi), kappa * math.cos(psi)) - psi
+    return psi + turn - _TURN * math.floor(turn / _TURN + 0.5)
+
+
+@analytic
+def uncrowded(tau: float, kappa: float) -> float:
+    """Return the crank angle of tau; inverse of `crowded`."""
+    turn = math.atan2(kappa * math.sin(tau), math.cos(tau)) - tau
+    return 0.5 * math.pi + tau + turn - _TURN * math.floor(turn / _TURN + 0.5)

@@ -1,0 +1,100 @@
+"""Inverse dynamics: drive torque and joint reactions of the rigid linkage at prescribed crank motion.
+
+Newton-Euler, body by body, slider to crank. With G gravity, S and C the first moments of rod and crank (mass times
+vector from the link's origin to its mass centre), A the crank pin, B the slider pin:
+
+- slider: B_x = m_s (a_x - G_x) - F, and the guide carries N = -B_y - m_s G_y;
+- rod, moments about the crank pin: along B_y - across B_x = -(I_A phi_tt + S x (a_A - G));
+- rod, forces: A = B + m_rod (a_A - G) + S_tt;
+- crank, moments about the pivot: T = I_O alpha - C x G + r_OA x A; forces: P = A + C_tt - m_crank G.
+
+Friction adds to these equations: `rubbing`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..kernel.arithmetic import analytic
+from ..kinematics.position import Motion
+from ..machine.parameters import Design
+
+
+class Forces(NamedTuple):
+    """Drive torque on the crank (N m, counter-clockwise) and joint forces (N).
+
+    pivot: of the frame on the crank. crank_pin: of the crank on the rod. slider_pin: of the rod on the slider.
+    guide: of the guide on the slider, along +y.
+    """
+
+    torque: Any
+    pivot_x: Any
+    pivot_y: Any
+    crank_pin_x: Any
+    crank_pin_y: Any
+    slider_pin_x: Any
+    slider_pin_y: Any
+    guide: Any
+
+
+@analytic
+def smooth_load(m: Motion, d: Design, stroke_force: Any) -> Any:
+    """Return the load on the slider, N outward: the stroke force, the springs and the viscous resistance."""
+    return stroke_force + d.spring_force - d.stiffness * d.branch * m.x - d.viscous * d.branch * m.x_1 * d.speed
+
+
+class Balance(NamedTuple):
+    """What the equations of motion leave before the slider pin's force is known, N and N m.
+
+    pull: B_x without friction in the guide. moment: I_A phi_tt + S x (a_A - G) of the rod. rod_x, rod_y: A - B.
+    crank_x, crank_y: P - A. couple: the torque without the crank pin's share.
+    """
+
+    pull: Any
+    moment: Any
+    rod_x: Any
+    rod_y: Any
+    crank_x: Any
+    crank_y: Any
+    couple: Any
+
+
+@analytic
+def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
+    """Return the `Balance` for a load on the slider (N, outward)."""
+    w2 = d.speed * d.speed
+    gx, gy = d.gravity_x, d.gravity_y
+    rod_w2 = m.rod_1 * m.rod_1 * w2
+    rod_a = m.rod_2 * w2 + m.rod_1 * d.acceleration
+    pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - gx
+    pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - gy
+    sx = d.rod_along * m.along - d.rod_across * m.across
+    sy = d.rod_along * m.across + d.rod_across * m.along
+    cx = d.crank_along * cosine - d.crank_across * sine
+    cy = d.crank_along * sine + d.crank_across * cosine
+    return Balance(
+        d.slider_mass * (m.x_2 * w2 + m.x_1 * d.acceleration - gx) - d.branch * load,
+        d.rod_inertia * rod_a + sx * pin_y - sy * pin_x,
+        d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a,
+        d.rod_mass * pin_y - sy * rod_w2 + sx * rod_a,
+        -cx * w2 - cy * d.acceleration - d.crank_mass * gx,
+        -cy * w2 + cx * d.acceleration - d.crank_mass * gy,
+        d.crank_inertia * d.acceleration - (cx * gy - cy * gx),
+    )
+
+
+@analytic
+def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
+    """Return drive torque and reactions for the slider pin's force; the torque without friction in the pins."""
+    ax = bx + b.rod_x
+    ay = by + b.rod_y
+    torque = b.couple + d.r * (cosine * ay - sine * ax)
+    return Forces(torque, ax + b.crank_x, ay + b.crank_y, ax, ay, bx, by, -by - d.slider_mass * d.gravity_y)
+
+
+@analytic
+def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
+    """Return drive torque and reactions without friction for a load on the slider (N, outward)."""
+    b = balance(sine, cosine, m, d, load)
+    by = m.tangent * b.pull - b.moment * m.per_along
+    return joined(sine, cosine, d, b, b.pull, by)

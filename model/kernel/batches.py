@@ -1,0 +1,69 @@
+"""Batches of designs on all cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import AssemblyError
+
+
+def turning(designs: ArrayLike) -> NDArray[np.float64]:
+    """Return designs (n, 3 + k), crank, rod, offset, m, and more, as a contiguous array; every one must turn fully.
+
+    Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.
+    """
+    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    turns = (designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (designs[:, 0] > 0.0)
+    if not turns.all():
+        row = int(np.flatnonzero(~turns)[0])
+        crank, rod, offset = 1e3 * designs[row, :3]
+        raise AssemblyError(
+            "rod must exceed crank + |offset|, and the crank zero, for full rotation; "
+            f"got rod {rod:g} mm, crank {crank:g} mm, offset {offset:g} mm in design {row}; leave such designs out"
+        )
+    return designs
+
+
+@lru_cache(maxsize=1)
+def threads() -> ThreadPoolExecutor:
+    """Return the pool that kernels (which release the interpreter lock) share."""
+    return ThreadPoolExecutor(max_workers=os.cpu_count() or 1, thread_name_prefix="slidercrank")
+
+
+_handing_out = Lock()  # held while chunks are handed to the pool, and while this process forks
+
+
+def _end_threads() -> None:
+    """End the pool once its chunks are done: a fork copies the pool but none of its threads."""
+    _handing_out.acquire()
+    if threads.cache_info().currsize:
+        threads().shutdown()
+        threads.cache_clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release)
+
+
+def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -> None:
+    """Call work(begin, end) for consecutive chunks of range(count), on all cores when there are several.
+
+    Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.
+    """
+    if count <= size:
+        if count:
+            work(0, count)
+        return
+    bounds = range(0, count, size)
+    with _handing_out:
+        done = threads().map(lambda begin: work(begin, min(begin + size, count)), bounds)
+    for _ in done:
+        pass

@@ -1,0 +1,122 @@
+"""The folder of compiled kernels.
+
+It belongs to one state of the sources that are compiled: its name has their digest, so that no kernel in it is ever
+stale. numba alone would compare a kernel with the file that it stands in, not with the formulas compiled into it. None
+is kept beside the sources: there they would outlive the software, and keep its empty folders importable.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import logging
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+_log = logging.getLogger(__name__)
+
+_SOURCES = Path(__file__).parents[1]  # what is compiled into a kernel of another file stands in this package
+_EARLIER = 2
+"""States of the sources whose kernels stay, so that going back to one of them compiles nothing."""
+_REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
+
+
+class Chosen(NamedTuple):
+    """Where kernels are kept: the folder if there is one, whether it was just made, and why places were refused."""
+
+    folder: Path | None
+    new: bool
+    refused: str
+
+
+@cache
+def kernel_folder() -> Path | None:
+    """Return the folder of kernels of this process, None where no place can be written.
+
+    What was refused is logged when the folder is made, or else in every process.
+    """
+    folder, new, refused = choose_folder()
+    if folder is None:
+        _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
+    elif new and refused:
+        _log.warning(
+            f"slidercrank keeps compiled kernels in {folder.parent}: {refused}; to keep them longer, {_REMEDY}"
+        )
+    return folder
+
+
+def choose_folder() -> Chosen:
+    """Return the folder in the first place that can be written, made if need be.
+
+    Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
+    """
+    digest = hashlib.sha256()
+    for file in sorted(_SOURCES.rglob("*.py")):
+        digest.update(f"{file.relative_to(_SOURCES)}\0".encode() + file.read_bytes() + b"\0")
+    installation = hashlib.sha256(os.fsencode(_SOURCES)).hexdigest()[:12]
+    refused: list[str] = []
+    for place in _places():
+        folder = place / f"{installation}-{digest.hexdigest()[:16]}"
+        new = not folder.is_dir()
+        reason = _refusal(folder)
+        if reason is None:
+            if new:
+                _forget(installation, folder)
+            return Chosen(folder, new, "; ".join(refused))
+        refused.append(f"{place} {reason}")
+    return Chosen(None, False, "; ".join(refused))
+
+
+def _places() -> Iterator[Path]:
+    """Yield the places where the folder may be."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        yield Path(given).absolute() / "slidercrank"
+    from platformdirs import user_cache_path
+
+    with contextlib.suppress(RuntimeError):  # of later releases, for a user without a home; earlier ones keep its "~"
+        user = user_cache_path("slidercrank", appauthor=False)
+        if user.is_absolute():
+            yield user
+    if hasattr(os, "getuid"):  # elsewhere the folder for temporary files is the user's own
+        yield _temporary() / f"slidercrank-{os.getuid()}"
+
+
+def _temporary() -> Path:
+    try:
+        return Path(tempfile.gettempdir())
+    except OSError:
+        return Path("/tmp")
+
+
+def _refusal(folder: Path) -> str | None:
+    """Return why kernels cannot be kept in a folder: it cannot be written, or strangers could put theirs there."""
+    place = folder.parent
+    try:
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if place.parent == _temporary() and not _private(place):
+            return "is not a folder that this user alone can write"
+        folder.mkdir(exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return None
+    except OSError as error:
+        return f"cannot be written ({error.strerror or error})"
+
+
+def _private(place: Path) -> bool:
+    found = place.lstat()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
+
+
+def _forget(installation: str, folder: Path) -> None:
+    """Delete the folders of an installation's earlier sources but the last few."""
+    with contextlib.suppress(OSError):
+        found = [other for other in folder.parent.glob(f"{installation}-*") if other != folder]
+        for other in sorted(found, key=lambda other: other.stat().st_mtime)[:-_EARLIER]:
+            shutil.rmtree(other, ignore_errors=True)

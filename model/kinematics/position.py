@@ -1,0 +1,72 @@
+r"""Position, velocity and acceleration of every point of the linkage: the notation of the whole project.
+
+                       A  crank pin
+                      / \
+              crank r/   \  connecting rod l
+                    /     \
+          theta    /       \
+        ----------O---------\------------------> x      O  crank pivot, the origin
+                             \  phi
+        - - - - - - - - - - - B - - - slider - - -      slider line y = e (offset, signed)
+
+The crank angle `theta` is counted counter-clockwise from +x, the rod angle `phi` of A -> B likewise:
+
+    r sin(theta) + l sin(phi) = e,        x = r cos(theta) + l cos(phi).
+
+The open branch has cos(phi) > 0 (slider to the right), the crossed branch cos(phi) < 0. `branch` is +1 or -1.
+Away from the crank pivot is *outward*. A positive speed turns the crank counter-clockwise. SI units and radians.
+
+Primes are derivatives with respect to the crank angle: velocity = x' w, acceleration = x'' w^2 + x' alpha.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..kernel.arithmetic import analytic, inverse, root
+
+
+class Motion(NamedTuple):
+    """The linkage at one crank angle, per unit of crank angle.
+
+    along, across: components l cos(phi), l sin(phi) of the rod vector A -> B, m. per_along: 1 / along.
+    tangent: tan(phi).
+    rod_1, rod_2: phi' and phi''.
+    x, x_1, x_2: slider position, m, with its first and second derivative, m/rad and m/rad^2.
+    """
+
+    along: Any
+    across: Any
+    per_along: Any
+    tangent: Any
+    rod_1: Any
+    rod_2: Any
+    x: Any
+    x_1: Any
+    x_2: Any
+
+
+@analytic
+def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motion:
+    """Return the `Motion` for sine and cosine of the crank angle, crank r, rod l, offset e (m) and branch (+1, -1).
+
+    Differentiating the two loop equations once and twice gives
+    phi' = -r cos(theta) / (l cos(phi)),  phi'' = (r sin(theta) + l sin(phi) phi'^2) / (l cos(phi)),
+    x' = -r sin(theta) - l sin(phi) phi',  x'' = -r cos(theta) - l cos(phi) phi'^2 - l sin(phi) phi''.
+    Requires l > |e - r sin(theta)| (the linkage can be assembled at this angle).
+    """
+    across = e - r * sine
+    return motion_of(sine, cosine, r, across, branch * root(l * l - across * across))
+
+
+@analytic
+def motion_of(sine: Any, cosine: Any, r: Any, across: Any, along: Any) -> Motion:
+    """Return the `Motion` for sine and cosine of the crank angle, crank r and the components of the rod vector, m."""
+    per_along = inverse(along)
+    tangent = across * per_along
+    rod_1 = -r * cosine * per_along
+    rod_2 = r * sine * per_along + rod_1 * rod_1 * tangent
+    x = r * cosine + along
+    x_1 = -r * sine - across * rod_1
+    x_2 = -r * cosine - along * rod_1 * rod_1 - across * rod_2
+    return Motion(along, across, per_along, tangent, rod_1, rod_2, x, x_1, x_2)

@@ -1,0 +1,273 @@
+"""How far the slider's motion is from a wanted one, given as points (crank angle, position).
+
+With x the slider's distance from the crank pivot along its line and (theta_i, t_i) the points, the deviations are
+
+    d_i = x(theta_i + phase) + shift - t_i,
+
+and count by their greatest size or by their root mean square over the points. Phase and shift are zero, or chosen for
+the least deviation where they are free: a crank keyed to its shaft at another angle, a tool clamped elsewhere on the
+slider. The best shift is exact (mid-range, mean). The best phase is found all around: of the greatest deviation by
+branch and bound, of the root mean square, which is smooth, from the best stretches of a grid.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kernel.arithmetic import inlined, kernel
+from ..kernel.batches import in_chunks, turning
+from .position import motion
+
+Array = NDArray[np.float64]
+Freedom = Literal["fixed", "free"]
+Measure = Literal["greatest", "rms"]
+
+_PHASES = 96  # of the grid
+_HALVINGS = 14  # of its cells: 4e-6 rad
+_STRETCHES = 3  # of the grid that are searched on
+_SECTIONS = 60  # from two spacings of the grid to rounding
+_NEWTON = 4
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetMotion:
+    """A wanted slider motion.
+
+    crank_angles: rad, increasing, within one turn. positions: of the slider, m, outward from the crank pivot.
+    phase: whether the crank may sit on its shaft at any angle. shift: whether positions may count from anywhere.
+    """
+
+    crank_angles: tuple[float, ...]
+    positions: tuple[float, ...]
+    phase: Freedom = "fixed"
+    shift: Freedom = "fixed"
+
+    def __post_init__(self) -> None:
+        for name in ("phase", "shift"):
+            if getattr(self, name) not in ("fixed", "free"):
+                raise InputError(f"{name} of a target motion must be 'fixed' or 'free'; got {getattr(self, name)!r}")
+        angles, positions = self.crank_angles, self.positions
+        if len(angles) != len(positions) or len(angles) < 3:
+            raise InputError(
+                "a target motion needs as many positions as crank angles, three at least; "
+                f"got {len(angles)} crank angles and {len(positions)} positions"
+            )
+        if not all(math.isfinite(value) for value in (*angles, *positions)):
+            raise InputError("crank angles and positions of a target motion must be finite throughout")
+        for before, after in itertools.pairwise(angles):
+            if after <= before:
+                raise InputError(
+                    f"crank angles of a target motion must increase; got {after:g} after {before:g} rad; sort the table"
+                )
+        if angles[-1] - angles[0] >= _TURN:
+            raise InputError(
+                "crank angles of a target motion must span less than one turn, 360 deg; "
+                f"got {math.degrees(angles[-1] - angles[0]):g} deg; leave out the points that come again"
+            )
+
+
+class Fit(NamedTuple):
+    """The least deviation of n designs: (n,), m, with the phase, rad, in [-pi, pi) and the shift, m, that give it."""
+
+    values: Array
+    phase: Array
+    shift: Array
+
+
+@inlined
+def _measure(
+    phase: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any
+) -> tuple[float, float]:
+    """Return the deviation at a phase and the shift that makes it least, zero where fixed; `d` gets each point's."""
+    sines, cosines, at = points
+    n = at.shape[0]
+    # Of sums of angles: no sine or cosine within the loop.
+    p, q = r * math.sin(phase), r * math.cos(phase)
+    high, low, total = -math.inf, math.inf, 0.0
+    for i in range(n):
+        across = e - (sines[i] * q + cosines[i] * p)
+        d[i] = b * (cosines[i] * q - sines[i] * p) + math.sqrt(l * l - across * across) - at[i]
+        high, low, total = max(high, d[i]), min(low, d[i]), total + d[i]
+    if rms:
+        mean = total / n if shifts else 0.0
+        total = 0.0
+        for i in range(n):
+            total += (d[i] - mean) * (d[i] - mean)
+        return math.sqrt(total / n), -mean
+    if shifts:
+        return 0.5 * (high - low), -0.5 * (high + low)
+    return max(high, -low), 0.0
+
+
+@inlined
+def _newton(phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+    """Return Newton's step of the phase for the mean square of `d`, the deviations there; zero where not convex."""
+    sines, cosines, at = points
+    n = at.shape[0]
+    p, q = math.sin(phase), math.cos(phase)
+    mean = one = 0.0
+    slope, bend = np.empty(n), np.empty(n)
+    for i in range(n):
+        m = motion(sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p, r, l, e, b)
+        slope[i], bend[i] = b * m.x_1, b * m.x_2
+        mean, one = mean + d[i] / n, one + slope[i] / n
+    if not shifts:
+        mean = one = 0.0
+    first = second = 0.0
+    for i in range(n):
+        first += (d[i] - mean) * slope[i]
+        second += (slope[i] - one) * (slope[i] - one) + (d[i] - mean) * bend[i]
+    return float(-first / second) if second > 0.0 else 0.0
+
+
+@inlined
+def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+    """Return the phase of the least deviation between two phases, by golden section."""
+    p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    at_p = at_q = 0.0
+    left = True
+    for step in range(_SECTIONS):
+        value, _ = _measure(p if left else q, rms, shifts, r, l, e, b, points, d)
+        if left:
+            at_p = value
+        else:
+            at_q = value
+        if step == 0:
+            left = False
+        elif at_p <= at_q:
+            high, q, at_q = q, p, at_p
+            p, left = high - _GOLDEN * (high - low), True
+        else:
+            low, p, at_p = p, q, at_q
+            q, left = low + _GOLDEN * (high - low), False
+    return float(0.5 * (low + high))
+
+
+@inlined
+def _bound(
+    phase: Any, half: Any, bend: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any
+) -> Any:
+    """Return the greatest deviation at a phase, and what it cannot fall below within `half` of it.
+
+    With the shift free what all deviations have in common does not count, neither of their slopes.
+    """
+    sines, cosines, at = points
+    p, q = r * math.sin(phase), r * math.cos(phase)
+    high = low = -math.inf
+    common = rising = falling = 0.0
+    for i in range(at.shape[0]):
+        up, forth = sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p
+        across = e - up
+        along = math.sqrt(l * l - across * across)
+        d[i], slope[i] = b * forth + along - at[i], across * forth / along - b * up
+        if d[i] > high:
+            high, rising = d[i], slope[i]
+        if -d[i] > low:
+            low, falling = -d[i], slope[i]
+    if shifts:
+        common = 0.5 * (rising + falling)
+    high_least = low_least = -math.inf
+    for i in range(at.shape[0]):
+        loss = half * abs(slope[i] - common)
+        high_least, low_least = max(high_least, d[i] - loss), max(low_least, -d[i] - loss)
+    rest = 0.5 * bend * half * half
+    if shifts:
+        return 0.5 * (high + low), 0.5 * (high_least + low_least) - rest
+    return max(high, low), max(high_least, low_least) - rest
+
+
+@inlined
+def _branch_and_bound(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, cells: Any, d: Any) -> float:
+    """Return the phase of the least greatest deviation.
+
+    A deviation bends by no more than the slider's greatest acceleration per turn, so that cells of the phase whose
+    bound exceeds the best value so far can be left out; the others are halved until what is in one is as good as
+    convex.
+    """
+    slope = np.empty(d.shape[0])
+    bend, half = 0.0, math.pi / _PHASES
+    for j in range(_PHASES):
+        theta = 2.0 * half * j
+        bend = max(bend, abs(motion(math.sin(theta), math.cos(theta), r, l, e, b).x_2))
+        cells[0, j] = theta
+    bend *= 1.1  # between the samples
+    count, best, at_best = _PHASES, math.inf, 0.0
+    for _ in range(_HALVINGS):
+        for j in range(count):
+            value, cells[1, j] = _bound(cells[0, j], half, bend, shifts, r, l, e, b, points, d, slope)
+            if value < best:
+                best, at_best = value, cells[0, j]
+        kept = 0
+        for j in range(count):
+            if cells[1, j] <= best and 2 * kept + 1 < cells.shape[1]:
+                cells[2, kept] = cells[0, j]
+                kept += 1
+        half *= 0.5
+        for j in range(kept):
+            cells[0, 2 * j], cells[0, 2 * j + 1] = cells[2, j] - half, cells[2, j] + half
+        count = 2 * kept
+    return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, shifts, r, l, e, b, points, d)
+
+
+@inlined
+def _least_square(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+    """Return the phase of the least root mean square deviation: the best of the grid's best stretches."""
+    grid = np.empty(_PHASES)
+    for j in range(_PHASES):
+        grid[j], _ = _measure(_TURN * j / _PHASES, True, shifts, r, l, e, b, points, d)
+    found, least, done = 0.0, math.inf, 0
+    for j in np.argsort(grid, kind="mergesort"):
+        if done == _STRETCHES:
+            break
+        if grid[j] > grid[j - 1] or grid[j] > grid[(j + 1) % _PHASES]:
+            continue
+        done += 1
+        low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
+        phase = _section(low, high, True, shifts, r, l, e, b, points, d)
+        for turn in range(_NEWTON + 1):
+            value, _ = _measure(phase, True, shifts, r, l, e, b, points, d)
+            step = _newton(phase, shifts, r, l, e, b, points, d)
+            if abs(step) > 1e-5 or turn == _NEWTON:  # golden section is not off by more where the square is convex
+                break
+            phase += step
+        if value < least:
+            found, least = phase, value
+    return found
+
+
+@kernel
+def _fit(designs: Any, b: Any, angles: Any, at: Any, rms: Any, turns: Any, shifts: Any, out: Any) -> Any:
+    d, cells, points = np.empty(at.shape[0]), np.empty((3, 4 * _PHASES)), (np.sin(angles), np.cos(angles), at)
+    for row in range(designs.shape[0]):
+        r, l, e = designs[row, 0], designs[row, 1], designs[row, 2]
+        phase = 0.0
+        if turns and rms:
+            phase = _least_square(shifts, r, l, e, b, points, d)
+        elif turns:
+            phase = _branch_and_bound(shifts, r, l, e, b, points, cells, d)
+        out[row, 0], out[row, 2] = _measure(phase, rms, shifts, r, l, e, b, points, d)
+        out[row, 1] = phase
+
+
+def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
+    """Return the least deviation for designs (n, 3): crank, rod, offset, m, each turning fully; branch +1 or -1."""
+    designs = turning(designs)
+    angles, at = np.array(target.crank_angles), np.array(target.positions)
+    free = target.phase == "free", target.shift == "free"
+    out = np.empty((len(designs), 3))
+    in_chunks(
+        len(designs),
+        lambda begin, end: _fit(
+            designs[begin:end], branch, angles, at, measure == "rms", free[0], free[1], out[begin:end]
+        ),
+    )
+    return Fit(out[:, 0], np.mod(out[:, 1] + math.pi, _TURN) - math.pi, out[:, 2])

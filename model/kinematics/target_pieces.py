@@ -1,0 +1,181 @@
+"""The deviation from a wanted motion (`target_motion`) as the greatest of smooth pieces, with exact gradients.
+
+Derivatives are at fixed phase and shift (envelope theorem). The least of the greatest over the phase lies where the
+highest deviation turns, or where a rising and a falling one, a_m and a_n with slopes b_m < 0 < b_n, cross; there
+
+    lambda_m a_m + lambda_n a_n,    lambda_m = b_n / (b_n - b_m),    lambda_n = -b_m / (b_n - b_m),
+
+is to first order the value whichever way the design moves, so that the deviation is locally the greatest of such pairs
+(duality of the linear programme in the phase).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import STEP
+from ..kernel.batches import turning
+from .position import motion
+from .target_motion import Measure, TargetMotion, fit
+
+Array = NDArray[np.float64]
+
+_PEAKS = 6  # local peaks over the points, of either sign, that make pieces
+_BESIDE = 3  # the highest of the other points
+_CROSSED = 8  # candidates that are paired where the phase is free
+_PIECES = 10
+_SETTLED = 1e-6  # rad; a deviation that turns within it of the phase turns there, but for rounding
+_MIX = 0.5 * (math.sqrt(5.0) - 1.0)  # any irrational: labels of pairs that are not the same hardly coincide
+
+
+class FitPieces(NamedTuple):
+    """The deviation as the greatest of smooth pieces, highest first: (n, k), gradients (n, k, 3), labels (n, k)."""
+
+    values: Array
+    gradients: Array
+    labels: Array
+
+
+def _points(target: TargetMotion, branch: float, phase: Array, designs: NDArray[Any]) -> Any:
+    """Return the `Motion` at the points, each array (n, points), for real or complex designs (n, 3)."""
+    theta = np.array(target.crank_angles) + phase[:, None]
+    r, l, e = (designs[:, v, None] for v in range(3))
+    return motion(np.sin(theta), np.cos(theta), r, l, e, branch)
+
+
+def _slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
+    """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex step."""
+    found = np.empty((len(designs), len(target.positions), 3))
+    for v in range(3):
+        stepped = designs.astype(np.complex128)
+        stepped[:, v] += STEP * 1j
+        found[:, :, v] = branch * _points(target, branch, phase, stepped).x.imag / STEP
+    return found
+
+
+def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
+    """Return the least deviation of designs (n, 3) as the greatest of smooth pieces.
+
+    One piece for the root mean square; its gradient is zero where it is nothing but rounding.
+    """
+    designs = turning(designs)
+    found = fit(target, branch, measure, designs)
+    if measure == "rms":
+        d = branch * _points(target, branch, found.phase, designs).x - np.array(target.positions)
+        d = d + found.shift[:, None]
+        slopes = _slopes(target, branch, found.phase, designs)
+        # With the shift free the deviations have no mean, so that those of the derivatives need not be taken off.
+        noise = found.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
+        per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, found.values * d.shape[1]))
+        gradients = np.einsum("ni,niv->nv", d, slopes) * per[:, None]
+        return FitPieces(found.values[:, None], gradients[:, None], np.zeros((len(designs), 1)))
+    phase = found.phase.copy()
+    sides = _Sides.at(target, branch, phase, designs)
+    if target.phase == "free":
+        # Golden section places the turn of a smooth deviation to the root of rounding only: one step of Newton's.
+        step = sides.settling()
+        if np.any(step != 0.0):
+            phase = phase + step
+            sides = _Sides.at(target, branch, phase, designs)
+        sides = sides.crossed()
+    return sides.highest(_PIECES)
+
+
+class _Sides(NamedTuple):
+    """Candidates (n, m) for the greatest deviation at a phase, -inf where there are fewer.
+
+    values, slope, bend: with the derivatives by the phase. gradients: (n, m, 3). labels: as in `FitPieces`.
+    """
+
+    values: Array
+    slope: Array
+    bend: Array
+    gradients: Array
+    labels: Array
+
+    @classmethod
+    def at(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
+        """Return the local peaks over the points of both signs; with the shift free, half the sums of two of them."""
+        m = _points(target, branch, phase, designs)
+        d = branch * m.x - np.array(target.positions)
+        slopes = _slopes(target, branch, phase, designs)
+        angles = np.broadcast_to(np.array(target.crank_angles), d.shape)
+        curves = (branch * m.x_1, branch * m.x_2)
+        over, under = (_peaks(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))
+        if target.shift == "fixed":
+            return cls(*(np.concatenate(pair, axis=1) for pair in zip(over, under, strict=True)))
+        n = len(d)
+        values, slope, bend = (
+            (0.5 * (getattr(over, name)[:, :, None] + getattr(under, name)[:, None, :])).reshape(n, -1)
+            for name in ("values", "slope", "bend")
+        )
+        gradients = 0.5 * (over.gradients[:, :, None] + under.gradients[:, None, :])
+        labels = over.labels[:, :, None] + _MIX * under.labels[:, None, :]
+        return cls(values, slope, bend, gradients.reshape(n, -1, 3), labels.reshape(n, -1))
+
+    def settling(self) -> Array:
+        """Return Newton's step (n,) of the phase for designs whose highest deviation turns by itself, else zero."""
+        top = np.argmax(self.values, axis=1)[:, None]
+        value, slope, bend = (
+            np.take_along_axis(getattr(self, name), top, axis=1)[:, 0] for name in ("values", "slope", "bend")
+        )
+        alone = np.abs(slope) < _SETTLED * bend
+        step = np.where(alone, -slope / np.where(alone, bend, 1.0), 0.0)
+        with np.errstate(invalid="ignore"):
+            others = np.where(np.isfinite(self.values), self.values + self.slope * step[:, None], -np.inf)
+        np.put_along_axis(others, top, -np.inf, axis=1)
+        return np.where(others.max(axis=1) < value, step, 0.0)
+
+    def crossed(self) -> _Sides:
+        """Return the pairs of a falling and a rising deviation, and the highest one where it turns by itself."""
+        few = self._first(_CROSSED)
+        n, k = few.values.shape
+        turning = (np.abs(few.slope) < _SETTLED * few.bend) & (np.arange(k) == 0)
+        falling, rising = (few.slope < 0.0) & ~turning, (few.slope > 0.0) & ~turning
+        finite = np.isfinite(few.values)
+        both = (falling & finite)[:, :, None] & (rising & finite)[:, None, :]
+        apart = few.slope[:, None, :] - few.slope[:, :, None]
+        share = np.where(both, few.slope[:, None, :] / np.where(both, apart, 1.0), 0.0)  # of the falling one
+        known = np.where(finite, few.values, 0.0)
+        values = np.where(both, share * known[:, :, None] + (1.0 - share) * known[:, None, :], -np.inf).reshape(n, -1)
+        gradients = share[..., None] * few.gradients[:, :, None] + (1.0 - share[..., None]) * few.gradients[:, None, :]
+        labels = few.labels[:, :, None] + 0.5 * _MIX * few.labels[:, None, :]
+        alone = turning | (~both.any(axis=(1, 2))[:, None] & (np.arange(k) == 0))
+        none = np.zeros((n, k + k * k))
+        return _Sides(
+            np.concatenate([np.where(alone, few.values, -np.inf), values], axis=1),
+            none,
+            none,
+            np.concatenate([few.gradients, gradients.reshape(n, -1, 3)], axis=1),
+            np.concatenate([few.labels, labels.reshape(n, -1)], axis=1),
+        )
+
+    def highest(self, count: int) -> FitPieces:
+        """Return the highest candidates, highest first."""
+        few = self._first(count)
+        return FitPieces(few.values, np.where(np.isfinite(few.values)[..., None], few.gradients, 0.0), few.labels)
+
+    def _first(self, count: int) -> _Sides:
+        order = np.argsort(-self.values, axis=1, kind="stable")[:, :count]
+        values, slope, bend, labels = (
+            np.take_along_axis(getattr(self, name), order, axis=1) for name in ("values", "slope", "bend", "labels")
+        )
+        return _Sides(values, slope, bend, np.take_along_axis(self.gradients, order[..., None], axis=1), labels)
+
+
+def _peaks(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
+    """Return the highest deviations times a sign: local peaks over the points, and others, which may tie with them."""
+    values = sign * d
+    beside = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
+    peaks = (values >= beside[:, :-2]) & (values >= beside[:, 2:])
+    labels = angles + (0.0 if sign > 0.0 else 0.5 * math.pi)
+    curves = sign * slope, sign * bend, sign * slopes, labels
+    parts = (
+        _Sides(np.where(peaks, values, -np.inf), *curves)._first(_PEAKS),
+        _Sides(np.where(peaks, -np.inf, values), *curves)._first(_BESIDE),
+    )
+    return _Sides(*(np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)))

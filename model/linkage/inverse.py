@@ -1,0 +1,150 @@
+"""Crank motion from slider motion: angle, speed and acceleration of the crank that move the slider as given.
+
+Crank pivot O, crank pin A and slider pin B are a triangle with the sides r, l and d = sqrt(x^2 + e^2). Mirroring A at
+the line O-B gives the second crank angle for the same slider position:
+
+    theta = atan2(e, x) -+ beta,   tan(beta) = sqrt((r + l + d)(r + l - d)(d + l - r)(d - l + r)) / (r^2 + d^2 - l^2).
+
+Where the crank turns counter-clockwise, the slider moves outward on the upper sign and inward on the lower one: these
+are the two *solutions*. The law of cosines is taken with the tangent: an arc cosine loses half of the digits near the
+dead centres.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import AssemblyError, InputError
+from ..kinematics.position import motion
+from ..machine.loads import require_word
+from .linkage import Linkage
+
+Array = NDArray[np.float64]
+Solution = Literal["outward", "inward"]
+
+_ROUNDING = 1e-14
+"""Share of crank + rod within which a position is taken for a dead centre.
+
+Rounding of the position, 1e-16 of it, turns the crank there by its square root, some 1e-8 rad; at 1e-14 the angle from
+the dead centre, some 1e-7 rad, is known to a tenth at best.
+"""
+
+
+@dataclass(frozen=True)
+class CrankMotion:
+    """Crank angle in [0, 2 pi), rad, with speed, rad/s, and acceleration, rad/s^2; arrays of the broadcast shape."""
+
+    crank_angle: Array
+    speed: Array
+    acceleration: Array
+
+
+def crank_angle_at(linkage: Linkage, slider_position: ArrayLike, *, solution: Solution) -> Array:
+    """Return the crank angle, rad in [0, 2 pi), for slider positions, m, signed as x; broadcasts with the dimensions.
+
+    solution: "outward" or "inward", which way the slider goes there when the crank turns counter-clockwise. At a dead
+    centre both coincide.
+
+    Linkages that do not turn fully are accepted: each solution is that of the linkage's own branch. Raises
+    `AssemblyError` for a position out of reach, and for one that the solution reaches on the other branch only.
+    """
+    x, dimensions, d = _triangle(linkage, slider_position)
+    r, l, e = dimensions
+    require_word("solution", solution, Solution)
+    product = (r + l + d) * (r + l - d) * (d + l - r) * (d - l + r)
+    half = np.arctan2(np.sqrt(np.maximum(product, 0.0)), r * r + d * d - l * l)
+    theta = np.arctan2(e, x) + (half if solution == "inward" else -half)
+    # Zero where the rod is normal to the slider line: there both branches meet and neither moves.
+    along = linkage.sign * (x - r * np.cos(theta))
+    _refuse(
+        along <= 0.0,
+        x,
+        dimensions,
+        f"the {solution} solution must lie on the {linkage.branch} branch",
+        "ask for the other solution or the other branch",
+    )
+    wrapped = np.mod(theta, 2.0 * math.pi)
+    # The remainder of a tiny negative angle is rounded to the whole turn.
+    return np.where(wrapped < 2.0 * math.pi, wrapped, 0.0)
+
+
+def crank_motion(
+    linkage: Linkage,
+    slider_position: ArrayLike,
+    *,
+    velocity: ArrayLike,
+    acceleration: ArrayLike,
+    solution: Solution,
+) -> CrankMotion:
+    """Return the crank motion for slider position (m), velocity (m/s) and acceleration (m/s^2) along +x.
+
+    speed = v / x', acceleration = (a - x'' speed^2) / x', with x' and x'' at the angle of `crank_angle_at`.
+    All arguments broadcast with the dimensions. The rod's motion follows from `Linkage.at`.
+
+    Raises `InputError` at a dead centre, where x' = 0 and any crank speed goes with a slider at rest, and
+    `AssemblyError` as `crank_angle_at` does.
+    """
+    v, a = (_finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
+    x, dimensions, d = _triangle(linkage, slider_position)
+    r, l, _ = dimensions
+    margin = np.minimum(r + l - d, d - np.abs(l - r))
+    _refuse(
+        margin <= _ROUNDING * (r + l),
+        x,
+        dimensions,
+        "slider positions must lie off the dead centres, where the crank motion is undetermined",
+        "ask for the crank angle alone, or for a position further away",
+        kind=InputError,
+    )
+    theta = crank_angle_at(linkage, x, solution=solution)
+    m = motion(np.sin(theta), np.cos(theta), *dimensions, linkage.sign)
+    speed = v / m.x_1
+    result = (theta, speed, (a - m.x_2 * speed * speed) / m.x_1)
+    shape = np.broadcast_shapes(*(np.shape(value) for value in result))
+    return CrankMotion(*(np.broadcast_to(value, shape) for value in result))
+
+
+def _triangle(linkage: Linkage, slider_position: ArrayLike) -> tuple[Array, tuple[Array, Array, Array], Array]:
+    """Return position, dimensions and distance of the slider pin from the crank pivot, of one shape."""
+    x, r, l, e = np.broadcast_arrays(
+        _finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
+    )
+    d = np.hypot(x, e)
+    beyond = np.maximum(d - (r + l), np.abs(l - r) - d)
+    # A position that was computed for a dead centre lies a rounding error beyond it.
+    _refuse(
+        (beyond > _ROUNDING * (r + l)) | (d == 0.0),
+        x,
+        (r, l, e),
+        "slider positions must be in reach, |rod - crank| <= sqrt(position^2 + offset^2) <= rod + crank",
+        "move the position into the stroke",
+    )
+    return x, (r, l, e), d
+
+
+def _finite(name: str, value: ArrayLike) -> Array:
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number or an array of numbers; got {value!r}") from None
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{name} must be finite; got {array[~np.isfinite(array)].flat[0]}")
+    return array
+
+
+def _refuse(
+    wrong: NDArray[np.bool_],
+    x: Array,
+    dimensions: tuple[Array, Array, Array],
+    rule: str,
+    remedy: str,
+    kind: type[InputError] = AssemblyError,
+) -> None:
+    if np.any(wrong):
+        at, r, l, e = (1e3 * float(value[wrong].flat[0]) for value in (x, *dimensions))
+        raise kind(f"{rule}; got position {at:.9g} mm with crank {r:g} mm, rod {l:g} mm, offset {e:g} mm; {remedy}")

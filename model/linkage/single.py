@@ -1,0 +1,28 @@
+"""The one linkage that an analysis of a mechanism takes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import InputError
+from ..machine.mechanism import Mechanism
+from .linkage import Linkage
+
+
+def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+    """Return one fully turning linkage, its dimensions as floats.
+
+    Raises `InputError` for an array of linkages and for a linkage on another branch than the mechanism's,
+    `AssemblyError` for one that does not turn fully.
+    """
+    linkage.require_full_rotation()
+    if np.ndim(linkage.rotates_fully):
+        raise InputError(
+            f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"
+        )
+    if linkage.branch != mechanism.branch:
+        raise InputError(
+            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {mechanism.branch}; "
+            "set branch in both"
+        )
+    return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)

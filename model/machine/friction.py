@@ -1,0 +1,68 @@
+"""Coulomb friction of a machine: what rubs and how much.
+
+In the guide the friction force is the coefficient times the size of the guide's force, against the slider's velocity.
+In a pin the friction moment is coefficient times radius times the size of the pin's force, against the turning of one
+part on the other: the pin's force passes its centre at that distance, the radius of its *friction circle*.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A pin in its bearing. radius: m. coefficient: friction moment over radius times force."""
+
+    radius: float = 0.0
+    coefficient: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "coefficient"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0.0:
+                raise InputError(f"the {name} of a pin must be zero or more and finite; got {value:g}")
+
+    @property
+    def circle(self) -> float:
+        """Radius of the friction circle, m: coefficient times radius."""
+        return self.coefficient * self.radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """Friction of a machine; none unless given.
+
+    guide: coefficient of the slider in its guide. crank_pivot: between frame and crank. crank_pin: between crank and
+    rod. slider_pin: between rod and slider.
+
+    The guide carries a single normal force N at the slider pin and rubs with mu |N|; a moment that the slider pin's
+    friction puts on the slider is taken by the guide without rubbing more. Where a joint does not move (the slider at a
+    dead centre, everything at crank speed zero) friction acts against the motion that follows in the sense in which
+    the crank turns; a crank at speed zero is taken to turn counter-clockwise, as for loads that change with the stroke.
+    """
+
+    guide: float = 0.0
+    crank_pivot: Pin = Pin()
+    crank_pin: Pin = Pin()
+    slider_pin: Pin = Pin()
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.guide) or self.guide < 0.0:
+            raise InputError(f"the guide's coefficient of friction must be zero or more and finite; got {self.guide:g}")
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything rubs."""
+        return self.guide > 0.0 or any(pin.circle > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin))
+
+
+def require_frictionless(friction: Friction, what: str) -> None:
+    """Refuse friction where an analysis has none. what: the analysis, as the subject of a sentence."""
+    if friction.acts:
+        raise InputError(
+            f"{what} takes joints and guide without friction; got friction that acts; leave [friction] out"
+        )

@@ -1,0 +1,108 @@
+"""Mass properties of the links: by section, or by mass, inertia and mass centre.
+
+Crank and rod are described along their own axis: origin at the crank pivot (crank) or at the crank pin (rod), length
+between pin centres. Those of a `Bar` follow the length: a longer crank is a heavier one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import InputError
+
+
+def _require(rule: str, name: str, value: float | None, *, positive: bool = False) -> None:
+    """Refuse a value that is not finite, is negative, or (if `positive`) is zero."""
+    if value is None:
+        return
+    if not math.isfinite(value) or value < 0.0 or (positive and value == 0.0):
+        raise InputError(
+            f"{rule} must be {'positive' if positive else 'zero or more'} and finite; got {name} = {value:g}"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bar:
+    """A round-ended bar of rectangular section whose ends are half-discs around the pin centres.
+
+    mass = density depth (L width + pi width^2 / 4) for centre distance L.
+
+    width: in the plane of motion, m. depth: normal to it, m. density: kg/m^3.
+    """
+
+    width: float
+    depth: float
+    density: float
+
+    def __post_init__(self) -> None:
+        for name in ("width", "depth", "density"):
+            _require(f"the {name} of a bar", name, getattr(self, name), positive=True)
+
+    def mass(self, length: float) -> float:
+        """Return the mass, kg, for a centre distance, m."""
+        return self.density * self.depth * (length * self.width + 0.25 * math.pi * self.width**2)
+
+    def principal_inertias(self, length: float) -> tuple[float, float, float]:
+        """Return the moments of inertia about the mass centre, kg m^2.
+
+        About the normal of the plane of motion, about the in-plane axis across the bar, and about the bar's own axis.
+        """
+        w, d = self.width, self.depth
+        body = self.density * d * w * length
+        disc = self.density * d * 0.25 * math.pi * w**2
+        # Second moments over x (along), y (across in plane), z (depth); the discs' halves sit at +-(L/2 + 4 R / 3 pi).
+        radius = 0.5 * w
+        along = body * length**2 / 12.0 + disc * (
+            0.25 * length**2 + length * 4.0 * radius / (3.0 * math.pi) + 0.25 * radius**2
+        )
+        across = body * w**2 / 12.0 + disc * 0.25 * radius**2
+        through = (body + disc) * d**2 / 12.0
+        return along + across, along + through, across + through
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidLink:
+    """A link given by its mass properties.
+
+    mass: kg.
+    centre: distance of the mass centre from the link's origin along the link, m; half the length if None.
+    centre_across: distance of the mass centre from the link's axis, m, positive to the left of origin -> far pin.
+    inertia: about the mass centre, kg m^2; that of a slender uniform rod, mass length^2 / 12, if None.
+    """
+
+    mass: float
+    centre: float | None = None
+    centre_across: float = 0.0
+    inertia: float | None = None
+
+    def __post_init__(self) -> None:
+        _require("the mass of a link", "mass", self.mass)
+        _require("the inertia of a link", "inertia", self.inertia)
+        for name in ("centre", "centre_across"):
+            value = getattr(self, name)
+            if value is not None and not math.isfinite(value):
+                raise InputError(f"the {name} of a link must be finite; got {value:g}")
+
+
+Link = Bar | RigidLink
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counterweight:
+    """A mass fixed to the crank.
+
+    mass: kg. radius: distance of its mass centre from the crank pivot, m. angle: of its mass centre from the crank's
+    own direction, rad (pi: opposite to the crank pin). inertia: about its own mass centre, kg m^2.
+    """
+
+    mass: float
+    radius: float
+    angle: float = math.pi
+    inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "radius", "inertia"):
+            _require(f"the {name} of the counterweight", name, getattr(self, name))
+        if not math.isfinite(self.angle):
+            raise InputError(f"the angle of the counterweight must be finite; got {self.angle:g}")

@@ -1,0 +1,158 @@
+"""Everything about a machine but its three dimensions: speed, masses, gravity, loads, tolerances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from ..errors import InputError
+from .clearance import Clearance
+from .drive import Drive
+from .friction import Friction
+from .links import Counterweight, Link, RigidLink
+from .loads import During, Load, require_word
+from .varying import Varying, put, require_possible
+
+Branch = Literal["open", "crossed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerance:
+    """How far a dimension may be off: `absolute + fraction |dimension|`. absolute: m (rad for an angle)."""
+
+    absolute: float = 0.0
+    fraction: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("absolute", "fraction"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0.0:
+                raise InputError(f"a tolerance must be zero or more and finite; got {name} = {value:g}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Window:
+    """The part of the cycle over which the position error counts.
+
+    during: which stroke. start, end: fractions of the stroke counted outward from the inner dead centre, 0 to 1.
+    """
+
+    during: During = "cycle"
+    start: float = 0.0
+    end: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_word("during", self.during, During)
+        if not 0.0 <= self.start < self.end <= 1.0:
+            raise InputError(
+                "a part of the stroke needs 0 <= start < end <= 1, as fractions from the inner dead centre; "
+                f"got start {self.start:g}, end {self.end:g}"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clearances:
+    """Radial clearances of the joints, m: half the difference of the diameters of bearing and pin.
+
+    crank_pivot, crank_pin, slider_pin: of the three pins. guide: how far the slider can move to either side of its line
+    (its tilt within the guide is not considered). What they do to the slider position: `position_error`.
+    """
+
+    crank_pivot: float = 0.0
+    crank_pin: float = 0.0
+    slider_pin: float = 0.0
+    guide: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0.0:
+                raise InputError(f"a clearance must be zero or more and finite; got {name} = {value:g} m")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances:
+    """Tolerances of the dimensions and of the crank angle, clearances, and where the position error counts."""
+
+    crank: Tolerance = Tolerance()
+    rod: Tolerance = Tolerance()
+    offset: Tolerance = Tolerance()
+    crank_angle: Tolerance = Tolerance()
+    clearances: Clearances = Clearances()
+    window: Window = Window()
+
+    def __post_init__(self) -> None:
+        if self.crank_angle.fraction:
+            raise InputError("a tolerance of the crank angle is an angle, not a share; give it in rad or deg")
+
+    @property
+    def given(self) -> bool:
+        """Whether anything may be off: without tolerance and clearance a position error is not defined."""
+        sizes = (self.crank, self.rod, self.offset, self.crank_angle)
+        return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """A slider-crank but for crank, rod and offset.
+
+    speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
+    crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
+    drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
+    clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
+    varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
+    offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
+    """
+
+    speed: float = 0.0
+    acceleration: float = 0.0
+    crank: Link = RigidLink(mass=0.0)
+    rod: Link = RigidLink(mass=0.0)
+    counterweight: Counterweight = Counterweight(mass=0.0, radius=0.0)
+    slider_mass: float = 0.0
+    gravity: tuple[float, float] = (0.0, 0.0)
+    loads: tuple[Load, ...] = ()
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    friction: Friction = Friction()
+    branch: Branch = "open"
+    drive: Drive | None = None
+    clearance: Clearance | None = None
+    varying: tuple[Varying, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("speed", "acceleration"):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"{name} must be finite; got {getattr(self, name)}")
+        if not math.isfinite(self.slider_mass) or self.slider_mass < 0.0:
+            raise InputError(f"the slider mass must be zero or more and finite; got {self.slider_mass:g} kg")
+        if not all(math.isfinite(component) for component in self.gravity):
+            raise InputError(f"gravity must be finite; got {self.gravity}")
+        if self.branch not in ("open", "crossed"):
+            raise InputError(f"branch must be 'open' or 'crossed'; got {self.branch!r}")
+        if self.varying:
+            require_possible(self)
+
+    @property
+    def nominal(self) -> Mechanism:
+        """The machine as it is given, with nothing varying."""
+        return replace(self, varying=()) if self.varying else self
+
+    @property
+    def direction(self) -> float:
+        """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
+
+        A speed that varies has one sign; it is that of the designs, whatever the speed that is given beside.
+        """
+        return -1.0 if self.fullest.speed < 0.0 else 1.0
+
+    @property
+    def fullest(self) -> Mechanism:
+        """The machine with every varying number at its end of greatest size: it has all that some design has."""
+        return self.at([item.fullest for item in self.varying]) if self.varying else self
+
+    def at(self, values: Sequence[float]) -> Mechanism:
+        """Return the machine with these values, SI, of its varying numbers (k,)."""
+        machine: Mechanism = put(self.nominal, self.varying, values)
+        return machine

@@ -1,0 +1,159 @@
+"""From designs to raw numbers: which raw numbers the designs of a machine set, and how they follow from a design.
+
+A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. What a kernel
+overwrites are raw numbers (`parameters.Raw`). Most are a factor times one value; the counterweight's mass centre is
+given by radius and angle, but raw by its components. Kernels differentiate by the raw numbers; `Numbers.chain` turns
+that into derivatives by the design's own numbers. With k = 0 all of it is the identity, and costs nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kernel.arithmetic import STEP
+from .mechanism import Mechanism
+from .parameters import LOAD_SLOTS, Raw
+
+Array = NDArray[np.float64]
+
+_LINK = {
+    "width": (0, "m"),
+    "depth": (1, "m"),
+    "density": (2, "kg/m^3"),
+    "mass": (3, "kg"),
+    "centre": (4, "m"),
+    "centre_across": (6, "m"),
+    "inertia": (7, "kg m^2"),
+}
+_LOAD = {
+    "outward": (0, "N"),
+    "inward": (1, "N"),
+    "stiffness": (2, "N/m"),
+    "free_position": (3, "m"),
+    "coefficient": (2, "N s/m"),
+}
+_SLOTS: dict[str, tuple[int, str]] = {
+    "speed": (Raw.SPEED, "rad/s"),
+    "acceleration": (Raw.ACCELERATION, "rad/s^2"),
+    "slider_mass": (Raw.SLIDER_MASS, "kg"),
+    "gravity.0": (Raw.GRAVITY_X, "m/s^2"),
+    "gravity.1": (Raw.GRAVITY_Y, "m/s^2"),
+    "counterweight.mass": (Raw.COUNTERWEIGHT_MASS, "kg"),
+    "counterweight.inertia": (Raw.COUNTERWEIGHT_INERTIA, "kg m^2"),
+    "tolerances.crank_angle.absolute": (Raw.ANGLE_TOLERANCE, "rad"),
+    "friction.guide": (Raw.GUIDE_FRICTION, ""),
+    **{f"crank.{name}": (Raw.CRANK_WIDTH + slot, unit) for name, (slot, unit) in _LINK.items()},
+    **{f"rod.{name}": (Raw.ROD_WIDTH + slot, unit) for name, (slot, unit) in _LINK.items()},
+}
+for _name, _slot in (("crank", Raw.CRANK_TOLERANCE), ("rod", Raw.ROD_TOLERANCE), ("offset", Raw.OFFSET_TOLERANCE)):
+    _SLOTS[f"tolerances.{_name}.absolute"] = (_slot, "m")
+    _SLOTS[f"tolerances.{_name}.fraction"] = (_slot + 1, "")
+for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide")):
+    _SLOTS[f"tolerances.clearances.{_name}"] = (Raw.CRANK_PIVOT_CLEARANCE + _index, "m")
+    if _name != "guide":
+        _SLOTS[f"friction.{_name}.radius"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index, "m")
+        _SLOTS[f"friction.{_name}.coefficient"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index + 1, "")
+_POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
+
+
+def unit_of(path: str) -> str:
+    """Return the SI unit of a number of the machine. Raises `InputError` for one that designs cannot set."""
+    return _POLAR[path] if path in _POLAR else _slot_of(path)[1]
+
+
+def _slot_of(path: str) -> tuple[int, str]:
+    load = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
+    if load is not None and load[2] in _LOAD:
+        slot, unit = _LOAD[load[2]]
+        return Raw.END + LOAD_SLOTS * int(load[1]) + slot, unit
+    if path not in _SLOTS:
+        raise InputError(
+            f"no quantity of a design follows smoothly from {path!r}, so it cannot vary; let it be a choice instead"
+        )
+    return _SLOTS[path]
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Raw numbers of n designs.
+
+    columns: (c,), which ones; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their derivatives by
+    the design's numbers; None where that is the identity.
+    """
+
+    columns: NDArray[np.int64]
+    values: Array
+    slopes: Array | None
+
+    def chain(self, gradients: Array) -> Array:
+        """Return derivatives by the design's numbers, (n, ..., 3 + k), from those by the raw numbers, (n, ..., c)."""
+        if self.slopes is None:
+            return gradients
+        return np.asarray(np.einsum("n...c,nck->n...k", gradients, self.slopes))
+
+
+_THREE = np.arange(3)
+
+
+def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bool) -> Numbers:
+    """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
+
+    room: raw numbers that there are; a signal that no load matters for has fewer. gradients: whether to give slopes.
+    """
+    require_width(mechanism, designs)
+    if not mechanism.varying:
+        return Numbers(_THREE, designs, None)
+    found = {slot: value for slot, value in _raw(mechanism, designs).items() if slot < room}
+    columns = np.array(list(found), dtype=np.int64)
+    values = np.ascontiguousarray(np.stack(list(found.values()), axis=1))
+    slopes = np.empty((len(designs) if gradients else 0, len(columns), designs.shape[1]))
+    for v in range(designs.shape[1] if gradients else 0):
+        stepped = designs.astype(np.complex128)
+        stepped[:, v] += 1j * STEP
+        moved = _raw(mechanism, stepped)
+        slopes[:, :, v] = np.stack([moved[slot].imag for slot in found], axis=1) / STEP
+    return Numbers(columns, values, slopes)
+
+
+def number_of(mechanism: Mechanism, slot: Raw, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
+    """Return one raw number of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k); `otherwise` if it is given."""
+    found = numbers_of(mechanism, designs, room=10**9, gradients=True)
+    place = np.flatnonzero(found.columns == slot)
+    if found.slopes is None or not len(place):
+        return np.full(len(designs), otherwise), np.zeros(designs.shape)
+    return found.values[:, place[0]], found.slopes[:, place[0]]
+
+
+def require_width(mechanism: Mechanism, designs: Array) -> None:
+    """Raise `InputError` unless designs (n, 3 + k) have as many numbers as the machine asks for."""
+    if designs.shape[1] != 3 + len(mechanism.varying):
+        more = "".join(f", {item.name}" for item in mechanism.varying)
+        raise InputError(
+            f"a design of this machine has {3 + len(mechanism.varying)} numbers: crank, rod, offset{more}; "
+            f"got {designs.shape[1]}"
+        )
+
+
+def _raw(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
+    """Return the raw numbers that designs set, each (n,); complex designs give complex ones."""
+    found: dict[int, Any] = {column: designs[:, column] for column in range(3)}
+    polar: dict[str, Any] = {}
+    for column, item in enumerate(mechanism.varying):
+        for path, factor in item.sets:
+            if path in _POLAR:
+                polar[path] = factor * designs[:, 3 + column]
+            else:
+                found[_slot_of(path)[0]] = factor * designs[:, 3 + column]
+    if polar:
+        weight = mechanism.counterweight
+        radius = polar.get("counterweight.radius", weight.radius)
+        angle = polar.get("counterweight.angle", weight.angle) + 0.0 * designs[:, 0]
+        found[Raw.COUNTERWEIGHT_ALONG] = radius * np.cos(angle)
+        found[Raw.COUNTERWEIGHT_ACROSS] = radius * np.sin(angle)
+    return found

@@ -1,0 +1,380 @@
+"""All numbers of a machine as one vector, and the design properties that follow from them.
+
+A kernel takes the vector of raw numbers (`RAW` names its entries; loads follow, `LOAD_SLOTS` each) and overwrites the
+entries that vary from design to design. `derive` turns raw numbers into a `Design`: the masses, moments and forces that
+the equations of motion use. Because `derive` is compiled for complex numbers too, anything in the vector can be a
+design variable and has an exact derivative.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kernel.arithmetic import analytic, inlined, magnitude, root
+from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
+from .links import Bar, Link
+from .loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from .mechanism import Mechanism
+
+Raw = IntEnum(
+    "Raw",
+    "CRANK ROD OFFSET BRANCH SPEED ACCELERATION SLIDER_MASS GRAVITY_X GRAVITY_Y "
+    "CRANK_WIDTH CRANK_DEPTH CRANK_DENSITY CRANK_MASS CRANK_CENTRE CRANK_CENTRE_SHARE "
+    "CRANK_CENTRE_ACROSS CRANK_INERTIA CRANK_INERTIA_SHARE "
+    "ROD_WIDTH ROD_DEPTH ROD_DENSITY ROD_MASS ROD_CENTRE ROD_CENTRE_SHARE "
+    "ROD_CENTRE_ACROSS ROD_INERTIA ROD_INERTIA_SHARE "
+    "COUNTERWEIGHT_MASS COUNTERWEIGHT_ALONG COUNTERWEIGHT_ACROSS COUNTERWEIGHT_INERTIA "
+    "CRANK_TOLERANCE CRANK_TOLERANCE_SHARE ROD_TOLERANCE ROD_TOLERANCE_SHARE "
+    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
+    "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE "
+    "GUIDE_FRICTION CRANK_PIVOT_RADIUS CRANK_PIVOT_FRICTION CRANK_PIN_RADIUS CRANK_PIN_FRICTION "
+    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
+    start=0,
+)
+LOAD_SLOTS = 4
+"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and two of its own."""
+
+_CRANK, _ROD, _OFFSET = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)
+_CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
+_END = int(Raw.END)
+
+
+class LoadKind(IntEnum):
+    """What kind of load a slot describes."""
+
+    STROKE_FORCE = 0
+    SPRING = 1
+    VISCOUS = 2
+    POSITION_TABLE = 3
+    ANGLE_TABLE = 4
+
+
+_STROKE_FORCE, _SPRING, _VISCOUS = int(LoadKind.STROKE_FORCE), int(LoadKind.SPRING), int(LoadKind.VISCOUS)
+_DATUMS = {"crank pivot": 0, "inner dead centre": 1, "outer dead centre": 2}
+
+
+class Loads(NamedTuple):
+    """The loads' fixed structure.
+
+    kind, datum: (k,). factor: (k, 2), whether a table acts in the outward and in the inward stroke.
+    start: (k + 1,), where a load's table begins. at, force: its knots.
+    """
+
+    kind: NDArray[np.int64]
+    datum: NDArray[np.int64]
+    factor: NDArray[np.float64]
+    start: NDArray[np.int64]
+    at: NDArray[np.float64]
+    force: NDArray[np.float64]
+
+
+class Design(NamedTuple):
+    """What the equations of motion need of one design (scalars) or of many (arrays). SI.
+
+    Mass moments are about the crank pivot (crank) or the crank pin (rod), in the link's own axes; rod_along and
+    rod_across are per rod length, kg.
+    outward_force, inward_force: sums of the stroke forces. stiffness, spring_force: sums of k and of k x_rest.
+    viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
+    clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
+    rod_error_rss, offset_error_rss: the same added up as squares.
+    guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
+    """
+
+    r: Any
+    l: Any
+    e: Any
+    branch: Any
+    speed: Any
+    acceleration: Any
+    slider_mass: Any
+    gravity_x: Any
+    gravity_y: Any
+    crank_mass: Any
+    crank_along: Any
+    crank_across: Any
+    crank_inertia: Any
+    rod_mass: Any
+    rod_along: Any
+    rod_across: Any
+    rod_inertia: Any
+    crank_error: Any
+    rod_error: Any
+    offset_error: Any
+    angle_error: Any
+    inner: Any
+    outer: Any
+    outward_force: Any
+    inward_force: Any
+    stiffness: Any
+    spring_force: Any
+    viscous: Any
+    rod_error_rss: Any
+    offset_error_rss: Any
+    guide_friction: Any
+    crank_pivot_circle: Any
+    crank_pin_circle: Any
+    slider_pin_circle: Any
+
+
+DESIGN = len(Design._fields)
+"""Rows of a derived block before those of the loads (two each: sign and origin of a table's own coordinate)."""
+_OUTWARD = Design._fields.index("outward_force")
+_RUBBING = Design._fields.index("guide_friction")
+_ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
+
+
+def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
+    """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
+
+    Raises `InputError` for one with varying numbers: it has none before a design says which.
+    """
+    if mechanism.varying:
+        names = ", ".join(item.name for item in mechanism.varying)
+        raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
+    raw = np.zeros(_END + LOAD_SLOTS * len(mechanism.loads))
+    raw[Raw.BRANCH] = 1.0 if mechanism.branch == "open" else -1.0
+    raw[Raw.SPEED] = mechanism.speed
+    raw[Raw.ACCELERATION] = mechanism.acceleration
+    raw[Raw.SLIDER_MASS] = mechanism.slider_mass
+    raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y]] = mechanism.gravity
+    raw[_CRANK_LINK : _CRANK_LINK + 9] = _link_numbers(mechanism.crank)
+    raw[_ROD_LINK : _ROD_LINK + 9] = _link_numbers(mechanism.rod)
+    weight = mechanism.counterweight
+    raw[Raw.COUNTERWEIGHT_MASS] = weight.mass
+    raw[Raw.COUNTERWEIGHT_ALONG] = weight.radius * math.cos(weight.angle)
+    raw[Raw.COUNTERWEIGHT_ACROSS] = weight.radius * math.sin(weight.angle)
+    raw[Raw.COUNTERWEIGHT_INERTIA] = weight.inertia
+    tolerances = mechanism.tolerances
+    for slot, tolerance in (
+        (Raw.CRANK_TOLERANCE, tolerances.crank),
+        (Raw.ROD_TOLERANCE, tolerances.rod),
+        (Raw.OFFSET_TOLERANCE, tolerances.offset),
+    ):
+        raw[slot : slot + 2] = tolerance.absolute, tolerance.fraction
+    raw[Raw.ANGLE_TOLERANCE] = tolerances.crank_angle.absolute
+    gap = tolerances.clearances
+    raw[Raw.CRANK_PIVOT_CLEARANCE : Raw.GUIDE_CLEARANCE + 1] = gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide
+    friction = mechanism.friction
+    raw[Raw.GUIDE_FRICTION] = friction.guide
+    for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
+        raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
+    for index, load in enumerate(mechanism.loads):
+        raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = _load_numbers(load)
+    return raw
+
+
+def _link_numbers(link: Link) -> tuple[float, ...]:
+    if isinstance(link, Bar):
+        return (link.width, link.depth, link.density, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    centre, share = (0.0, 0.5) if link.centre is None else (link.centre, 0.0)
+    inertia, per_mass = (0.0, 1.0 / 12.0) if link.inertia is None else (link.inertia, 0.0)
+    return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
+
+
+def _load_numbers(load: object) -> tuple[float, float, float, float]:
+    match load:
+        case StrokeForce():
+            return (load.outward, load.inward, 0.0, 0.0)
+        case Spring():
+            return (1.0, 1.0, load.stiffness, load.free_position)
+        case Viscous():
+            return (1.0, 1.0, load.coefficient, 0.0)
+        case PositionTable() | AngleTable():
+            return (float(load.during != "inward stroke"), float(load.during != "outward stroke"), 0.0, 0.0)
+    raise TypeError(f"not a load: {load!r}")
+
+
+def load_structure(mechanism: Mechanism) -> Loads:
+    """Return kinds, datums and tables of a mechanism's loads."""
+    kinds = {
+        StrokeForce: LoadKind.STROKE_FORCE,
+        Spring: LoadKind.SPRING,
+        Viscous: LoadKind.VISCOUS,
+        PositionTable: LoadKind.POSITION_TABLE,
+        AngleTable: LoadKind.ANGLE_TABLE,
+    }
+    at: list[float] = []
+    force: list[float] = []
+    start = [0]
+    for load in mechanism.loads:
+        if isinstance(load, PositionTable):
+            at.extend(load.positions)
+            force.extend(load.forces)
+        elif isinstance(load, AngleTable):
+            # The periodic table is closed here: its first knot comes again one turn later.
+            at.extend((*load.angles, load.angles[0] + 2.0 * math.pi))
+            force.extend((*load.forces, load.forces[0]))
+        start.append(len(at))
+    return Loads(
+        np.array([kinds[type(load)] for load in mechanism.loads], dtype=np.int64),
+        np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
+        np.array([_load_numbers(load)[:2] for load in mechanism.loads], dtype=np.float64).reshape(-1, 2),
+        np.array(start, dtype=np.int64),
+        np.array(at, dtype=np.float64),
+        np.array(force, dtype=np.float64),
+    )
+
+
+@analytic
+def design_at(block: Any, j: Any) -> Design:
+    """Return column j of a derived block as a `Design`; from Python `j` may be a slice."""
+    return Design(
+        block[0, j],
+        block[1, j],
+        block[2, j],
+        block[3, j],
+        block[4, j],
+        block[5, j],
+        block[6, j],
+        block[7, j],
+        block[8, j],
+        block[9, j],
+        block[10, j],
+        block[11, j],
+        block[12, j],
+        block[13, j],
+        block[14, j],
+        block[15, j],
+        block[16, j],
+        block[17, j],
+        block[18, j],
+        block[19, j],
+        block[20, j],
+        block[21, j],
+        block[22, j],
+        block[23, j],
+        block[24, j],
+        block[25, j],
+        block[26, j],
+        block[27, j],
+        block[28, j],
+        block[29, j],
+        block[30, j],
+        block[31, j],
+        block[32, j],
+        block[33, j],
+    )
+
+
+@analytic
+def link_properties(
+    length: Any,
+    width: Any,
+    depth: Any,
+    density: Any,
+    mass: Any,
+    centre: Any,
+    centre_share: Any,
+    across: Any,
+    inertia: Any,
+    inertia_share: Any,
+) -> Any:
+    """Return mass, first moments along and across, and inertia about the link's origin.
+
+    The sum of a round-ended bar and of a rigid body with its centre at `centre + centre_share length`, `across` off the
+    axis, and the central inertia `inertia + inertia_share mass length^2`; either may be absent (zero).
+    Half-disc of radius R: centroid 4 R / (3 pi) from its diameter, polar moment about the disc's centre m R^2 / 2.
+    """
+    web = density * depth * width * length
+    cap = density * depth * width * width * (math.pi / 8.0)
+    radius = 0.5 * width
+    centroid = radius * (4.0 / (3.0 * math.pi))
+    at = centre + centre_share * length
+    return (
+        web + 2.0 * cap + mass,
+        (0.5 * web + cap) * length + mass * at,
+        mass * across,
+        web * (length * length * (1.0 / 3.0) + width * width * (1.0 / 12.0))
+        + cap * (radius * radius + length * length + 2.0 * length * centroid)
+        + inertia
+        + mass * (inertia_share * length * length + at * at + across * across),
+    )
+
+
+@inlined
+def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
+    """Fill `out` (DESIGN + 2 k, n) from raw numbers (END + 4 k, n), real or complex."""
+    for j in range(raw.shape[1]):
+        r, l, e = raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j]
+        for i in range(9):
+            out[i, j] = raw[i, j]
+        c = _CRANK_LINK
+        m, along, across, inertia = link_properties(
+            r,
+            raw[c, j],
+            raw[c + 1, j],
+            raw[c + 2, j],
+            raw[c + 3, j],
+            raw[c + 4, j],
+            raw[c + 5, j],
+            raw[c + 6, j],
+            raw[c + 7, j],
+            raw[c + 8, j],
+        )
+        w = c + 18
+        weight, x, y = raw[w, j], raw[w + 1, j], raw[w + 2, j]
+        out[9, j] = m + weight
+        out[10, j] = along + weight * x
+        out[11, j] = across + weight * y
+        out[12, j] = inertia + raw[w + 3, j] + weight * (x * x + y * y)
+        c = _ROD_LINK
+        m, along, across, inertia = link_properties(
+            l,
+            raw[c, j],
+            raw[c + 1, j],
+            raw[c + 2, j],
+            raw[c + 3, j],
+            raw[c + 4, j],
+            raw[c + 5, j],
+            raw[c + 6, j],
+            raw[c + 7, j],
+            raw[c + 8, j],
+        )
+        out[13, j] = m
+        out[14, j] = along / l
+        out[15, j] = across / l
+        out[16, j] = inertia
+        t = w + 4
+        out[17, j] = raw[t, j] + raw[t + 1, j] * r
+        rod, offset = raw[t + 2, j] + raw[t + 3, j] * l, raw[t + 4, j] + raw[t + 5, j] * magnitude(e)
+        pivot, pin, end, guide = raw[t + 7, j], raw[t + 8, j], raw[t + 9, j], raw[t + 10, j]
+        out[18, j] = rod + (pivot + pin + end)
+        out[19, j] = offset + guide
+        out[_ROD_RSS, j] = root(rod * rod + (pivot * pivot + pin * pin + end * end))
+        out[_OFFSET_RSS, j] = root(offset * offset + guide * guide)
+        out[20, j] = raw[t + 6, j]
+        out[21, j] = inner_dead_centre(r, l, e)
+        out[22, j] = outer_dead_centre(r, l, e)
+        f = t + 11
+        out[_RUBBING, j] = raw[f, j]
+        for i in range(3):
+            out[_RUBBING + 1 + i, j] = raw[f + 1 + 2 * i, j] * raw[f + 2 + 2 * i, j]
+    for i in range(_OUTWARD, _OUTWARD + 5):
+        for j in range(raw.shape[1]):
+            out[i, j] = 0.0
+    for k in range(kind.shape[0]):
+        p = _END + LOAD_SLOTS * k
+        q = DESIGN + 2 * k
+        for j in range(raw.shape[1]):
+            if datum[k] == 0:
+                sign, origin = 1.0, 0.0 * out[21, j]
+            elif datum[k] == 1:
+                sign, origin = 1.0, 1.0 * out[21, j]
+            else:
+                sign, origin = -1.0, 1.0 * out[22, j]
+            out[q, j] = sign
+            out[q + 1, j] = origin
+            if kind[k] == _STROKE_FORCE:
+                out[_OUTWARD, j] += raw[p, j]
+                out[_OUTWARD + 1, j] += raw[p + 1, j]
+            elif kind[k] == _SPRING:
+                out[_OUTWARD + 2, j] += raw[p + 2, j]
+                out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
+            elif kind[k] == _VISCOUS:
+                out[_OUTWARD + 4, j] += raw[p + 2, j]

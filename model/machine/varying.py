@@ -1,0 +1,104 @@
+"""Numbers of a machine that differ from design to design, beside crank, rod and offset."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from ..errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Varying:
+    """A number of a machine that a design may choose.
+
+    name: for people; in a job its path, "mechanism.slider.mass". sets: which numbers of the `Mechanism` follow it, each
+    by its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is factor times
+    value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
+    lower, upper: where the value may lie, SI; equal ends fix it.
+    """
+
+    name: str
+    sets: tuple[tuple[str, float], ...]
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
+            raise InputError(
+                f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"
+            )
+        if not self.sets or not all(math.isfinite(factor) and factor for _, factor in self.sets):
+            raise InputError(f"{self.name} must set a number of the machine, each by a factor that is not zero")
+
+    @property
+    def fullest(self) -> float:
+        """The end of greatest size."""
+        return max(self.lower, self.upper, key=abs)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The numbers that follow it."""
+        return tuple(path for path, _ in self.sets)
+
+
+def put(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
+    """Return a machine (any frozen dataclass) with the values of its varying numbers in place."""
+    if len(varying) != len(values):
+        names = ", ".join(item.name for item in varying) or "none"
+        raise InputError(f"a value is needed for every number that varies ({names}); got {len(values)} values")
+    for item, value in zip(varying, values, strict=True):
+        for path, factor in item.sets:
+            part = _with(part, path.split("."), factor * float(value), path)
+    return part
+
+
+def number_at(part: Any, path: str) -> float | None:
+    """Return the number at a dotted path of a machine; None where a link takes its own. Raises `InputError`."""
+    for key in path.split("."):
+        part = _member(part, key, path)
+    if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):
+        raise InputError(f"a varying number must be one number of the machine; got {path!r}, which is none")
+    return part
+
+
+def require_possible(mechanism: Any) -> None:
+    """Raise `InputError` unless the varying numbers of a machine are its own, apart, and possible at both ends."""
+    varying: tuple[Varying, ...] = mechanism.varying
+    paths = [path for item in varying for path in item.paths]
+    for path in paths:
+        number_at(mechanism, path)
+        if paths.count(path) > 1:
+            raise InputError(f"a number may vary once; got {path} twice; leave out one of the two")
+    names = [item.name for item in varying]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"varying numbers need different names; got {name!r} twice")
+    for item in varying:
+        if "speed" in item.paths and not item.lower * item.upper > 0.0:
+            raise InputError(
+                "the sign of the speed says which way the crank turns, so a speed that varies keeps it and is not 0; "
+                f"got {item.lower:g} to {item.upper:g} rad/s; keep the range on one side of 0"
+            )
+    for ends in ([item.lower for item in varying], [item.upper for item in varying]):
+        mechanism.at(ends)
+
+
+def _member(part: Any, key: str, path: str) -> Any:
+    if isinstance(part, tuple) and key.isdecimal() and int(key) < len(part):
+        return part[int(key)]
+    if is_dataclass(part) and key in {field.name for field in fields(part)}:
+        return getattr(part, key)
+    raise InputError(f"a varying number must be a number of the machine; got {path!r}, which it has not")
+
+
+def _with(part: Any, keys: list[str], number: float, path: str) -> Any:
+    if not keys:
+        return number
+    inner = _with(_member(part, keys[0], path), keys[1:], number, path)
+    if isinstance(part, tuple):
+        index = int(keys[0])
+        return (*part[:index], inner, *part[index + 1 :])
+    return replace(part, **{keys[0]: inner})

@@ -1,0 +1,95 @@
+"""Joint forces of many designs at given crank angles, in complex numbers: for quantities that others write.
+
+Where loads or friction are piecewise the piece is that at the real crank angle of the real design, as in `cycle`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.contact import rubs, sides_of
+from ..dynamics.rubbing import joint_forces
+from ..dynamics.segments import Watch, enter, load_on_slider
+from ..dynamics.torque import Forces
+from ..kernel.arithmetic import analytic, kernel
+from ..kernel.batches import in_chunks
+from ..kinematics.position import Motion
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .signals import design_motion
+
+Complex = NDArray[np.complex128]
+
+_WIDE = len(Forces._fields) + 1
+
+
+@analytic
+def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
+    """Return x''', the third derivative of the slider position by the crank angle, m/rad^3.
+
+    With a = l cos(phi), b = l sin(phi): phi''' = (r cos(theta) + a phi'^3 + 3 b phi' phi'') / a and
+    x''' = r sin(theta) + b phi'^3 - 3 a phi' phi'' - b phi'''.
+    """
+    cube = m.rod_1 * m.rod_1 * m.rod_1
+    bent = m.rod_1 * m.rod_2
+    rod_3 = (r * cosine + m.along * cube + 3.0 * m.across * bent) * m.per_along
+    return r * sine + m.across * cube - 3.0 * m.along * bent - m.across * rod_3
+
+
+@kernel
+def _follow(raw: Any, designs: Any, loads: Any, angles: Any, out: Any, rubbing: Any) -> Any:
+    watch = Watch(0, 0.0, 1.0, False)
+    rows = DESIGN + 2 * loads.kind.shape[0]
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    real, block = np.empty((raw.shape[0], 1)), np.empty((rows, 1))
+    stepped, curved = np.empty((raw.shape[0], 1), np.complex128), np.empty((rows, 1), np.complex128)
+    for n in range(designs.shape[0]):
+        for i in range(raw.shape[0]):
+            real[i, 0] = raw[i]
+            stepped[i, 0] = complex(raw[i], 0.0)
+        for v in range(3):
+            real[v, 0] = designs[n, v].real
+            stepped[v, 0] = designs[n, v]
+        derive(real, loads.kind, loads.datum, block)
+        derive(stepped, loads.kind, loads.datum, curved)
+        d, z = design_at(block, 0), design_at(curved, 0)
+        for k in range(angles.shape[1]):
+            theta = angles[n, k].real
+            sine, cosine = math.sin(theta), math.cos(theta)
+            step = angles[n, k].imag
+            s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
+            _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+            sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+            m = design_motion(s, c, z)
+            load = load_on_slider(m, z, curved, 0, angles[n, k], outward, loads, piece, shift)
+            f = joint_forces(s, c, m, z, load, sides)
+            out[n, 0, k] = f.torque
+            out[n, 1, k] = f.pivot_x
+            out[n, 2, k] = f.pivot_y
+            out[n, 3, k] = f.crank_pin_x
+            out[n, 4, k] = f.crank_pin_y
+            out[n, 5, k] = f.slider_pin_x
+            out[n, 6, k] = f.slider_pin_y
+            out[n, 7, k] = f.guide
+            out[n, 8, k] = load
+
+
+def follow_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tuple[Forces, Complex]:
+    """Return the joint forces and the load on the slider, N outward, each (n, k).
+
+    designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
+    """
+    designs, angles = np.ascontiguousarray(designs, np.complex128), np.ascontiguousarray(angles, np.complex128)
+    out = np.empty((len(angles), _WIDE, angles.shape[1]), np.complex128)
+    raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
+
+    def work(begin: int, end: int) -> None:
+        _follow(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
+
+    in_chunks(len(designs), work, size=64)
+    *found, load = out.swapaxes(0, 1)
+    return Forces(*found), load

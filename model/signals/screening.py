@@ -1,0 +1,310 @@
+"""Peak torque and greatest position error of very many designs at once, with gradients.
+
+The innermost loop is over designs, so that every operation is a vector instruction. All designs share the crowded
+angles, at which `locate` samples the curves and finds the cells of the two highest local maxima; these are refined by
+the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
+load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles: good
+for choosing designs, while what is delivered is evaluated by `peaks`. Tables and partial strokes are not handled here.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.segments import crowding
+from ..dynamics.torque import smooth_load
+from ..kernel.arithmetic import STEP, analytic, inlined, inverse, kernel, root
+from ..kernel.batches import in_chunks, turning
+from ..machine.loads import AngleTable, PositionTable
+from ..machine.mechanism import Clearances, Mechanism
+from ..machine.numbers import numbers_of
+from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from .locate import LANES as LANES
+from .locate import ROWS, prepare, row_of, sweep, two_highest
+from .signals import Signal, design_motion, signal
+from .watch import watch_of
+
+Array = NDArray[np.float64]
+
+ANGLES = 64
+"""Sampled angles a turn, where thousands of designs are only sorted."""
+
+_STEPS = 7
+_SETTLED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value
+_TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
+_FLAT = 1e-13
+
+
+@dataclass(frozen=True)
+class Screened:
+    """Greatest value over the cycle: values (n,), angles (n,) in rad, gradients (n, 3 + k) or None."""
+
+    values: Array
+    angles: Array
+    gradients: Array | None
+
+
+def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
+    """Whether `screen` handles this signal of this mechanism."""
+    if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
+        return False
+    watch = watch_of(mechanism, kind, during=during)
+    mechanism = mechanism.fullest
+    whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
+    if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
+        return False  # `locate` samples the squares with the tolerances alone
+    if kind == Signal.TORQUE:
+        return (
+            whole
+            and not mechanism.friction.acts
+            and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
+        )
+    return whole
+
+
+@analytic
+def _value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
+    """Value of a signal, its load taken from the stroke that the slider is in."""
+    outward = d.branch.real * m.x_1.real * direction > 0.0
+    load = smooth_load(m, d, d.outward_force if outward else d.inward_force)
+    return signal(kind, sine, cosine, m, d, load)
+
+
+@analytic
+def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
+    """Sine and cosine of the crank angle at tau: tan(theta - pi/2) = kappa tan(tau)."""
+    if crowd:
+        y = kappa * sine_tau
+        q = inverse(root(cosine_tau * cosine_tau + y * y))
+        return cosine_tau * q, -y * q
+    return cosine_tau, -sine_tau
+
+
+@analytic
+def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
+    """Value at one tau, real or complex."""
+    sine, cosine = _turned(sine_tau, cosine_tau, True, kappa)
+    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
+
+
+@analytic
+def _step(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any) -> Any:
+    """Value, and slope over the crowded angle."""
+    z = _curve(kind, complex(sine, cosine * STEP), complex(cosine, -sine * STEP), kappa, d, direction)
+    return z.real, z.imag * (1.0 / STEP)
+
+
+@inlined
+def _slopes(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction: Any, value: Any, slope: Any) -> Any:
+    """Value and slope of every lane at its own angle."""
+    if kind == _TORQUE:
+        for j in range(LANES):
+            value[j], slope[j] = _step(_TORQUE, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+    elif kind == _WORST:
+        for j in range(LANES):
+            value[j], slope[j] = _step(_WORST, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+    else:
+        for j in range(LANES):
+            value[j], slope[j] = _step(_RSS, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+
+
+@analytic
+def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
+    """Derivative along the imaginary step that the design carries, at a fixed crank angle."""
+    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction).imag * (1.0 / STEP)
+
+
+@inlined
+def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slope: Any) -> Any:
+    """Derivatives of all lanes, each at its own crank angle."""
+    if kind == _TORQUE:
+        for j in range(LANES):
+            slope[j] = _partial(_TORQUE, sine[j], cosine[j], design_at(block, j), direction)
+    elif kind == _WORST:
+        for j in range(LANES):
+            slope[j] = _partial(_WORST, sine[j], cosine[j], design_at(block, j), direction)
+    else:
+        for j in range(LANES):
+            slope[j] = _partial(_RSS, sine[j], cosine[j], design_at(block, j), direction)
+
+
+@inlined
+def _refine(
+    kind: Any, tau: Any, h: Any, top: Any, kappa: Any, block: Any, direction: Any, best: Any, sines: Any, cosines: Any
+) -> Any:
+    """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
+
+    top: place, vertex and curvature of `locate.two_highest`. A lane that has settled stays where it is, however many
+    steps the others take: what it gives does not depend on them.
+    """
+    share = 0.5 if kind == _RSS else 1.0  # `locate` samples its square, which curves twice as much
+    work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
+    for j in range(LANES):
+        at = max(int(top[0, j]), 0)
+        work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h
+        work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = -h, h, 0.0, 0.0, 1.0 if top[0, j] >= 0.0 else 0.0
+        best[j] = -1.0
+    for step in range(_STEPS):
+        for j in range(LANES):
+            t = work[6, j]
+            t2 = t * t
+            # Taylor series: |t| is at most one angle.
+            s = t * (1.0 - t2 / 6.0 * (1.0 - t2 / 20.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0 * (1.0 - t2 / 110.0)))))
+            c = 1.0 - t2 / 2.0 * (
+                1.0 - t2 / 12.0 * (1.0 - t2 / 30.0 * (1.0 - t2 / 56.0 * (1.0 - t2 / 90.0 * (1.0 - t2 / 132.0))))
+            )
+            work[0, j] = work[4, j] * c + work[5, j] * s
+            work[1, j] = work[5, j] * c - work[4, j] * s
+        _slopes(kind, work[0], work[1], kappa, block, direction, work[2], work[3])
+        moving = 0.0
+        for j in range(LANES):
+            t, found, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
+            floor, ceiling, last, last_slope, moves = work[7, j], work[8, j], work[9, j], work[10, j], work[11, j]
+            new_sine, new_cosine, old_sine, old_cosine = work[0, j], work[1, j], sines[j], cosines[j]
+            curvature = share * top[2, j]
+            floor = t if rise > 0.0 else floor
+            ceiling = ceiling if rise > 0.0 else t
+            bend = curvature * found / (h * h) if step == 0 else (rise - last_slope) / (t - last)
+            trial = t - rise / bend
+            middle = 0.5 * (floor + ceiling)
+            trial = trial if (trial > floor) & (trial < ceiling) else middle
+            # So short a step is taken without another look: its square still counts in the value, its cube does not.
+            goes_on = moves if (abs(trial - t) > _SETTLED) | (step == 0) else 0.0
+            ahead = 0.0 if goes_on > 0.0 else trial - t
+            found += 0.5 * rise * ahead
+            # On the flat top the later angle is the better.
+            better = (moves > 0.0) & (found >= peak - _FLAT * abs(peak))
+            best[j] = found if better else peak
+            sines[j] = new_sine + new_cosine * ahead if better else old_sine
+            cosines[j] = new_cosine - new_sine * ahead if better else old_cosine
+            moving += goes_on
+            work[6, j] = trial if goes_on > 0.0 else t
+            work[7, j], work[8, j], work[9, j], work[10, j], work[11, j] = floor, ceiling, t, rise, goes_on
+        if moving == 0.0:
+            break
+
+
+@kernel
+def _screen(
+    kinds: Any,
+    raw: Any,
+    columns: Any,
+    designs: Any,
+    load_kind: Any,
+    load_datum: Any,
+    angles: Any,
+    crowd: Any,
+    values: Any,
+    where: Any,
+    gradients: Any,
+) -> None:
+    n, signals = designs.shape[0], kinds.shape[0]
+    rows = DESIGN + 2 * load_kind.shape[0]
+    lanes, stepped = np.empty((raw.shape[0], LANES)), np.empty((raw.shape[0], LANES), np.complex128)
+    block, complex_block = np.empty((rows, LANES)), np.empty((rows, LANES), np.complex128)
+    for i in range(raw.shape[0]):
+        lanes[i, :] = raw[i]
+    h = 2.0 * math.pi / angles
+    tau = np.empty((2, angles))
+    for k in range(angles):
+        tau[0, k], tau[1, k] = math.sin(k * h), math.cos(k * h)
+    direction = 1.0 if raw[4] >= 0.0 else -1.0
+    kappa = np.ones(LANES)
+    coarse = tau.astype(np.float32)
+    scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((7, LANES), np.float32)
+    samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
+    value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
+    sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
+    for begin in range(0, n, LANES):
+        for i in range(columns.shape[0]):
+            for j in range(LANES):
+                lanes[columns[i], j] = designs[min(begin + j, n - 1), i]
+        derive(lanes, load_kind, load_datum, block)
+        if crowd:
+            for j in range(LANES):
+                kappa[j] = crowding(lanes[0, j], lanes[1, j], lanes[2, j])
+        prepare(block, kappa, direction, scaled)
+        sweep(kinds, coarse, crowd, scaled, samples)
+        last = min(LANES, n - begin)
+        for i in range(raw.shape[0] if gradients.shape[0] else 0):
+            for j in range(LANES):
+                stepped[i, j] = lanes[i, j]
+        for q in range(signals):
+            rivals = two_highest(samples[row_of(kinds[q])], scaled, mark, top)
+            for i in range(2 if rivals else 1):
+                _refine(
+                    kinds[q], tau, h, top[3 * i : 3 * i + 3], kappa, block, direction, value[i], sines[i], cosines[i]
+                )
+            for j in range(LANES):
+                one, two = value[0, j], (value[1, j] if rivals else -1.0)
+                x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]
+                value[0, j] = max(one, two)
+                x = x_2 if two > one else x
+                y = kappa[j] * (y_2 if two > one else y)
+                scale = 1.0 / math.sqrt(x * x + y * y)
+                found[0, q, j], found[1, q, j] = x * scale, -y * scale
+            for j in range(last):
+                values[q, begin + j] = value[0, j]
+                angle = math.atan2(found[0, q, j], found[1, q, j])
+                where[q, begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
+        if gradients.shape[0]:
+            for v in range(columns.shape[0]):
+                for j in range(LANES):
+                    stepped[columns[v], j] += complex(0.0, STEP)
+                derive(stepped, load_kind, load_datum, complex_block)
+                for q in range(signals):
+                    _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
+                    for j in range(last):
+                        gradients[q, begin + j, v] = slope[j]
+                for j in range(LANES):
+                    stepped[columns[v], j] = lanes[columns[v], j]
+
+
+def screen(
+    mechanism: Mechanism,
+    kinds: tuple[Signal, ...],
+    designs: Array,
+    *,
+    gradients: bool = False,
+    angles: int = ANGLES,
+    crowd: bool = True,
+) -> tuple[Screened, ...]:
+    """Return the greatest values of torque or position errors for designs (n, 3 + k): crank, rod, offset, m.
+
+    The k columns more are the values of the machine's varying numbers.
+
+    kinds: signals that `screens` accepts; evaluated together they share the motion. angles: samples a turn, a multiple
+    of 4. crowd: concentrate them where the linkage comes close to locking.
+    """
+    designs = turning(designs)
+    n, signals = len(designs), len(kinds)
+    values, where = np.empty((signals, n)), np.empty((signals, n))
+    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    columns, designs = numbers.columns, numbers.values
+    slopes = np.empty((signals if gradients else 0, n, len(columns)))
+    codes = np.array([int(kind) for kind in kinds])
+
+    def work(begin: int, end: int) -> None:
+        part = slice(begin, end)
+        _screen(
+            codes,
+            raw,
+            columns,
+            designs[part],
+            loads.kind,
+            loads.datum,
+            angles,
+            crowd,
+            values[:, part],
+            where[:, part],
+            slopes[:, part],
+        )
+
+    in_chunks(n, work, size=16 * LANES)
+    return tuple(Screened(values[q], where[q], numbers.chain(slopes[q]) if gradients else None) for q in range(signals))

@@ -1,0 +1,48 @@
+"""What a signal of a machine needs to be followed over the cycle: loads, and where its curve is piecewise."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.segments import Watch
+from ..machine.mechanism import Mechanism
+from ..machine.parameters import LOAD_SLOTS, Loads, load_structure, raw_vector
+from .signals import Signal
+
+Array = NDArray[np.float64]
+
+
+def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:
+    """Return which part of the cycle counts for a signal of a mechanism."""
+    strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
+    friction = mechanism.fullest.friction
+    split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
+    swing = kind.needs_forces and friction.slider_pin.circle > 0.0
+    if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
+        window = mechanism.tolerances.window
+        return Watch(strokes[window.during], float(window.start), float(window.end), False)
+    return Watch(strokes[during], 0.0, 1.0, split, swing)
+
+
+def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
+    """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
+    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+    if kind.needs_forces:
+        return raw, loads
+    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], load_structure(Mechanism())
+
+
+def stroke_dependent(mechanism: Mechanism) -> bool:
+    """Whether a load changes at the dead centres."""
+    structure = load_structure(mechanism.fullest)
+    if np.any(structure.factor[:, 0] != structure.factor[:, 1]):
+        return True
+    # Forces of the two strokes that vary apart from each other may agree at one value only.
+    forces: dict[str, list[tuple[str, float]]] = {}
+    for item in mechanism.varying:
+        for path, factor in item.sets:
+            load, _, name = path.rpartition(".")
+            if name in ("outward", "inward"):
+                forces.setdefault(load, []).append((item.name, factor))
+    return any(len(both) < 2 or both[0] != both[1] for both in forces.values())

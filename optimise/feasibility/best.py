@@ -1,0 +1,93 @@
+"""The best value that one quantity can have while all requirements are kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ...model.machine.mechanism import Mechanism
+from ...objectives.closed_form import ClosedFormQuantity
+from ...objectives.registry import QUANTITIES
+from ..engine.engine import Engine
+from ..front.stationarity import Array
+from ..methods.auto.auto import search_by_default
+from ..problem.problem import Constraint, Objective, Problem, Sense, Settings, Variant
+from ..search.checkpoints import Ledger
+from ..search.elimination import sheets
+from ..search.evaluation import Evaluator
+from ..search.mirror import once
+from ..search.search import Callback, Run
+
+_SAMPLES = 2048
+"""Designs of a round where only the dimensions count."""
+
+
+@dataclass(frozen=True)
+class Best:
+    """The best value (SI) of a quantity, and a design (3 + v,) that has it."""
+
+    value: float
+    design: Array
+
+
+def best_of(
+    problem: Problem, ledger: Ledger | None = None, engine: Engine | None = None, stand: Callback | None = None
+) -> Best | None:
+    """Return the best of a problem's only objective, None where nothing is feasible.
+
+    ledger, engine: of the search that wants to know it. stand: called with how far this one is.
+    """
+    own = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
+    front = search_by_default(problem, own, Run(problem, 1, stand, ledger or Ledger(), stages=stand))
+    if front is None:
+        return None
+    quantity = problem.quantity(problem.objectives[0].quantity)
+    value = float(quantity.evaluate(front.part(0).mechanism, front.dimensions[:1]).values[0])
+    return Best(value, front.dimensions[0])
+
+
+def best_on_dimensions(problem: Problem) -> Best | None:
+    """Return the best of a stroke, time ratio or other closed form, the only objective of a problem.
+
+    Kept are the requirements on the dimensions and the floor of the transmission angle; loads and masses do not count.
+    None where nothing meets them. A search of about a tenth of a second.
+    """
+    light = on_dimensions(problem)
+    return best_of(replace(light, settings=replace(light.settings, samples=_SAMPLES)))
+
+
+def wanting(problem: Problem, name: str, sense: Sense, target: float | None = None) -> Problem:
+    """Return the problem with one quantity as its only objective."""
+    wanted = Objective(quantity=name, sense=sense, target=target)
+    return replace(problem, objectives=(wanted,), settings=Settings(designs=1, seed=problem.settings.seed))
+
+
+def on_dimensions(problem: Problem) -> Problem:
+    """Return the problem with its requirements on the dimensions alone, of a machine that weighs nothing.
+
+    Choices that leave the dimensions and what is asked of them as they are fall together.
+    """
+    parts = list(dict.fromkeys(_weightless(part) for part in problem.parts()))
+    if len(parts) == 1:
+        return parts[0]
+    variants = tuple(
+        Variant(
+            labels=(str(index),),
+            mechanism=part.mechanism,
+            crank=part.crank,
+            rod=part.rod,
+            offset=part.offset,
+            limits=part.constraints,
+        )
+        for index, part in enumerate(parts)
+    )
+    return replace(parts[0], constraints=(), choices=("dimensions",), variants=variants)
+
+
+def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
+    """Return the constraints on quantities that follow from crank, rod and offset alone."""
+    return tuple(c for c in problem.constraints if isinstance(QUANTITIES.get(c.quantity), ClosedFormQuantity))
+
+
+def _weightless(part: Problem) -> Problem:
+    machine = Mechanism(speed=part.mechanism.nominal.speed, branch=part.mechanism.nominal.branch)
+    return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=(), costs=None)

@@ -1,0 +1,153 @@
+"""Nothing feasible: which requirements contradict each other, and how near one can get."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..engine.engine import Engine
+from ..front.stationarity import Array
+from ..problem.problem import Problem, Settings
+from ..search.checkpoints import Ledger, floats
+from ..search.elimination import sheets
+from ..search.evaluation import FEASIBLE, Evaluator, Rows, constraints_of
+from ..search.recorded import polished
+from ..search.sampling import apart, first_samples
+from .best import Best
+from .relaxation import Relaxation, missed, relaxations, sides
+
+_SAMPLES = 16384
+_RANKED = 2048
+_STARTS = 24
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a search for feasible designs found.
+
+    feasible: designs (n, 3 + v), SI, that are feasible if there are any after all. relaxations: requirements of which
+    giving up any one is enough. message: the contradiction in words.
+    """
+
+    feasible: Array
+    relaxations: tuple[Relaxation, ...]
+    message: str
+
+
+class _Violations:
+    """Presents all constraint rows as the pieces of one objective, to be made as small as possible."""
+
+    def __init__(self, evaluator: Evaluator) -> None:
+        self.inner = evaluator
+
+    def valid(self, u: Array) -> NDArray[np.bool_]:
+        return self.inner.valid(u)
+
+    def exact(self, u: Array) -> tuple[Rows, Rows]:
+        _, limits = self.inner.exact(u)
+        goals = Rows(limits.values, limits.gradients, limits.labels, np.zeros(len(limits.owner), np.int64))
+        n, k = u.shape
+        return goals, Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
+
+
+def diagnose(
+    problem: Problem,
+    best: Callable[[Problem], Best | None],
+    ledger: Ledger | None = None,
+    engine: Engine | None = None,
+) -> Diagnosis:
+    """Return feasible designs after all, or which requirements contradict each other.
+
+    best: gives the best of a problem with one objective, None if it is infeasible too. ledger, engine: of the search
+    that wants to know it. First the greatest relative violation is minimised from many starts, without eliminating
+    anything. If it stays positive, each requirement in turn becomes the objective of the problem without it; one that
+    is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
+    `certificate.infeasible` gives the proof where it can.
+    """
+    feasible, turning, nearest = _least_violation(problem, ledger, engine)
+    if len(feasible):
+        return Diagnosis(feasible, (), "")
+    if not turning:
+        message = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
+        return Diagnosis(feasible, (), message)
+    found = []
+    for constraint in constraints_of(problem):
+        for item in relaxations(problem, constraint, best):
+            if not isinstance(item, Relaxation):
+                return Diagnosis(item[None], (), "")
+            found.append(item)
+    sentences = [item.sentence() for item in found]
+    if problem.slow_stroke is not None:
+        loose = replace(
+            problem,
+            slow_stroke=None,
+            objectives=problem.objectives[:1],
+            settings=Settings(designs=1, seed=problem.settings.seed),
+        )
+        if best(loose) is not None:
+            other = "inward" if problem.slow_stroke == "outward" else "outward"
+            sentences.append(
+                f"slow stroke {problem.slow_stroke} is asked, with the {other} one slow or neither all else can be kept"
+            )
+    if sentences:
+        message = "no design meets all requirements: " + "; ".join(sentences)
+    else:
+        message = f"no design meets all requirements, and giving up any single one is not enough; {nearest}"
+    return Diagnosis(feasible, tuple(found), message)
+
+
+def _least_violation(problem: Problem, ledger: Ledger | None, engine: Engine | None) -> tuple[Array, bool, str]:
+    """Return feasible designs, whether any sampled design turns fully, and the design nearest to feasible in words."""
+    feasible = []
+    turning = False
+    nearest, least = "", np.inf
+    for index, sheet in enumerate(sheets(problem, eliminate=False)):
+        evaluator = Evaluator(problem, sheet, ledger, engine)
+        u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
+        u = u[evaluator.valid(u)]
+        if not len(u):
+            continue
+        turning = True
+        u = u[:: max(1, len(u) // _RANKED)]
+        starts = u[apart(_greatest(evaluator, u), u, np.zeros(len(u), np.int64), _STARTS)]
+        found = polished(evaluator, starts, np.ones(1), shown=_Violations(evaluator))
+        dimensions = sheet.dimensions(found.u)
+        feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
+        row = int(np.argmin(found.values[:, 0]))
+        if found.values[row, 0] < least:
+            least = float(found.values[row, 0])
+            nearest = _together(problem, sheet.variant, dimensions[row])
+    return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest
+
+
+def _together(problem: Problem, variant: int, design: Array) -> str:
+    """Return a design and what it meets in place of the requirements that it misses, in words."""
+    part = problem.part(variant)
+    found = []
+    for constraint in constraints_of(part):
+        value = float(part.quantity(constraint.quantity).evaluate(part.mechanism, design[None]).values[0])
+        for relation, _, bound in sides(constraint):
+            item = missed(part, constraint, relation, bound, value)
+            if item is not None:
+                found.append(replace(item, alone=constraint.equality).instead())
+    chosen = "".join(
+        f"{name} {label}, " for name, label in zip(problem.choices, _labels(problem, variant), strict=True)
+    )
+    sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
+    return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
+
+
+def _labels(problem: Problem, variant: int) -> tuple[str, ...]:
+    return problem.variants[variant].labels if problem.variants else ()
+
+
+def _greatest(evaluator: Evaluator, u: Array) -> Array:
+    """Return the greatest relative violation (n,) of points."""
+
+    def greatest() -> tuple[Array]:
+        return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
+
+    return floats(evaluator.ledger.step("violation", (u,), greatest, evaluator)[0])

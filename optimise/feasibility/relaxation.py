@@ -1,0 +1,133 @@
+"""What can be had in place of a requirement that stands in the way, in numbers that can be asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from ..front.stationarity import Array
+from ..problem.problem import Constraint, Problem, Sense
+from ..search.evaluation import FEASIBLE, FLOORS
+from .best import Best, wanting
+from .safe_side import exact, safe
+
+_LOWEST = 0.02
+"""Of a floor: what is kept of it where it is let go. Nearer to locking nothing is worth telling."""
+_UNBOUNDED = ("rod_to_offset",)
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """One requirement that stands in the way, and what can be had of it (shown units) while all others are kept.
+
+    alone: whether no value near the one that can be had is possible, so that it is told in all its digits. standing:
+    whether nobody asked for it: a floor that holds where a job sets none.
+    """
+
+    quantity: str
+    relation: str
+    asked: float
+    reachable: float
+    unit: str
+    title: str
+    alone: bool = False
+    standing: bool = False
+
+    @property
+    def told(self) -> str:
+        """What can be had, in digits that can be asked for."""
+        if self.alone:
+            return exact(self.reachable)
+        return safe(self.reachable, "down" if self.reachable < self.asked else "up")
+
+    @property
+    def number(self) -> float:
+        """What can be had, as it is told."""
+        return float(self.told)
+
+    @property
+    def with_unit(self) -> str:
+        """What can be had, as it is told, with its unit."""
+        return f"{self.told} {self.unit}".rstrip()
+
+    def sentence(self, *, kept: str = "all else") -> str:
+        """Return the relaxation in words. kept: what the other requirements are called."""
+        reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
+        asked = "is kept where a job sets none" if self.standing else "is asked"
+        return f"{self._asked()} {asked}, {reach} {self.with_unit} can be had with {kept} kept"
+
+    def instead(self) -> str:
+        """Return what to ask for in place of the requirement, in words."""
+        return f"{self.title} {self.relation} {self.with_unit} instead of {self._number_asked()}"
+
+    def _asked(self) -> str:
+        return f"{self.title} {self.relation} {self._number_asked()}"
+
+    def _number_asked(self) -> str:
+        return f"{self.asked:.10g} {self.unit}".rstrip()
+
+
+def sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:
+    """Return the sides of a constraint: relation, how to come nearest to it, bound (SI)."""
+    if constraint.equality and constraint.lower is not None:
+        return [("exactly", "target", constraint.lower)]
+    found: list[tuple[str, Sense, float]] = []
+    if constraint.lower is not None:
+        found.append(("at least", "maximise", constraint.lower))
+    if constraint.upper is not None:
+        found.append(("at most", "minimise", constraint.upper))
+    return found
+
+
+def missed(problem: Problem, constraint: Constraint, relation: str, bound: float, value: float) -> Relaxation | None:
+    """Return a side of a constraint with the value (SI) that stands in its place; None where the value meets it."""
+    slack = FEASIBLE * (abs(bound) or 1.0)
+    off = {"at least": bound - value, "at most": value - bound, "exactly": abs(value - bound)}[relation]
+    if off <= slack:
+        return None
+    of = problem.quantity(constraint.quantity)
+    factor, symbol = of.unit.factor, of.unit.symbol
+    standing = all(item.quantity != constraint.quantity for item in problem.constraints)
+    return Relaxation(of.name, relation, bound * factor, value * factor, symbol, of.title, standing=standing)
+
+
+def relaxations(
+    problem: Problem, constraint: Constraint, best: Callable[[Problem], Best | None]
+) -> Iterator[Relaxation | Array]:
+    """Yield what can be had in place of the sides of a constraint that cannot be had, where giving it up is enough.
+
+    Where a side can be had after all, the design (3 + v,) that has it with all else kept is given instead. best: gives
+    the best of a problem with one objective, None where nothing meets its requirements.
+    """
+    for relation, sense, bound in sides(constraint):
+        free = _without(problem, constraint, relation)
+        # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
+        sought: Sense = "target" if constraint.quantity in _UNBOUNDED else sense
+        reached = best(wanting(free, constraint.quantity, sought, bound if sought == "target" else None))
+        if reached is None:
+            continue
+        item = missed(problem, constraint, relation, bound, reached.value)
+        if item is None:
+            yield reached.design
+            continue
+        if sense == "target":
+            rounded = item.number / problem.quantity(constraint.quantity).unit.factor
+            again = best(wanting(free, constraint.quantity, "target", rounded))
+            alone = again is None or missed(problem, constraint, relation, rounded, again.value) is not None
+            item = replace(item, alone=alone)
+        yield item
+
+
+def _without(problem: Problem, constraint: Constraint, relation: str) -> Problem:
+    """Return the problem with one side of a constraint let go.
+
+    Of a floor a little is kept: the one that a job without it has would hide what can be had below that.
+    """
+    lower = constraint.lower if relation == "at most" else None
+    upper = constraint.upper if relation == "at least" else None
+    if lower is None and constraint.lower is not None and constraint.quantity in FLOORS:
+        lower = _LOWEST * constraint.lower
+    kept = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
+    if lower is not None or upper is not None:
+        kept = (*kept, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
+    return replace(problem, constraints=kept)

@@ -1,0 +1,230 @@
+"""What an optimisation gives: the Pareto front, how good it is, and how it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import System, shown_in
+from ..problem.problem import Objective, Problem
+from .constant import spread
+from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
+from .progress import Progress
+from .stationarity import STATIONARY, multipliers
+
+Array = NDArray[np.float64]
+_NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
+_LEAST = 1e-4  # of a range: a step that is worth telling
+Status = Literal["done", "cancelled", "infeasible"]
+
+
+@dataclass(frozen=True)
+class ParetoFront:
+    """The Pareto front of a problem and the evidence for it.
+
+    designs: one row a design, all quantities under their JSON names with units, then `slack_<field>` for every
+    constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual` (stationarity)
+    and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
+    dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary beside them, SI, exactly.
+    variants: of each design, which of the problem's variants it is; empty if nothing was to be chosen.
+    values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
+    design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
+    free unknowns scaled to the unit box.
+    hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
+    history: rounds, with hypervolumes in the same box. versions: of this software and what computed the numbers.
+    """
+
+    problem: Problem
+    status: Status
+    message: str
+    designs: pd.DataFrame
+    dimensions: Array
+    values: Array
+    goals: tuple[tuple[Array, Array], ...]
+    active: tuple[Array, ...]
+    hypervolume: float
+    history: tuple[Progress, ...]
+    evaluations: int
+    seconds: float
+    seed: int
+    versions: dict[str, str] = field(default_factory=dict)
+    variants: tuple[int, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.designs)
+
+    @property
+    def objectives(self) -> tuple[Objective, ...]:
+        """The problem's objectives."""
+        return self.problem.objectives
+
+    def part(self, row: int) -> Problem:
+        """Return the problem that a design answers, with the choices that it made in place."""
+        return self.problem.part(self.variants[row] if self.variants else 0)
+
+    def mechanism(self, row: int) -> Mechanism:
+        """Return the machine of a design: with the choices and the varying numbers that it has."""
+        return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
+
+    def extremes(self) -> dict[str, int]:
+        """Return for each objective the row of its best design; ties go to the better in the other objectives."""
+        scaled = by_range(self.values, size=self._sizes)
+        best = {}
+        for index, objective in enumerate(self.objectives):
+            least = np.flatnonzero(scaled[:, index] <= scaled[:, index].min() + 1e-9)
+            best[objective.quantity] = int(least[np.argmin(scaled[least].sum(axis=1))])
+        return best
+
+    def knee(self) -> int:
+        """Return the row nearest to the ideal point, every objective scaled by its range over the front."""
+        return knee(self.values, size=self._sizes)
+
+    def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
+        """Return the row that weights of the objectives choose, see `picking.closeness`; those not named have none.
+
+        `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
+        """
+        columns = {self._column(name): weight for name, weight in weights.items()}
+        shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
+        return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
+
+    def lexicographic(self, *priorities: Priority | str) -> int:
+        """Return the row that is left when objectives decide in turn, see `picking.lexicographic`.
+
+        `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: of the designs within
+        a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
+        """
+        order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
+        given = [(self._column(item.quantity), item.absolute, item.share) for item in order]
+        return lexicographic(self.values, given, size=self._sizes)
+
+    @property
+    def _sizes(self) -> list[float]:
+        """The targets, SI, 0 without: what distances from them are rounded against."""
+        return [abs(objective.target or 0.0) for objective in self.objectives]
+
+    def _column(self, name: str) -> int:
+        names = [objective.quantity for objective in self.objectives]
+        if name not in names:
+            raise InputError(f"pick by one of the objectives {', '.join(names)}; got {name!r}")
+        return names.index(name)
+
+    def pick(self, best: str, **bounds: tuple[float | None, float | None]) -> int:
+        """Return the row that is best in an objective among those within bounds.
+
+        best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
+        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. Raises `InputError` when none qualifies.
+        """
+        objective = self._column(best)
+        keep = np.ones(len(self), dtype=bool)
+        for column, (least, greatest) in bounds.items():
+            if column not in self.designs.columns:
+                raise InputError(f"the table has no column {column!r}; see front.designs.columns")
+            values = self.designs[column].to_numpy()
+            if least is not None:
+                keep &= values >= least
+            if greatest is not None:
+                keep &= values <= greatest
+        if not keep.any():
+            raise InputError(f"no design of the front lies within {bounds}; widen a bound")
+        rows = np.flatnonzero(keep)
+        return int(rows[np.argmin(self.values[rows, objective])])
+
+    def rates(self, row: int) -> Array:
+        """Return the trade-off rates at a design, (m, m): `[a, b]` is what objective a loses per unit that b gains.
+
+        To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
+        of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
+        b is NaN where b cannot gain at all, and where no design of the front is better in it.
+        """
+        owner, slopes = self.goals[row]
+        m, k = len(self.objectives), slopes.shape[1]
+        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
+        reach = spread(self.values, size=self._sizes)
+        spans = units * np.where(reach > 0.0, reach, 1.0)
+        left = self.values[row] - self.values.min(axis=0)
+        slopes = slopes * (units / spans)[owner.astype(int)][:, None]
+        residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
+        if residual <= STATIONARY:
+            # Along what is left of the slopes all objectives would gain a little, without end: the design counts as
+            # exactly stationary.
+            slopes = slopes - (shares @ slopes + pushes @ self.active[row])
+        rates = np.full((m, m), np.nan)
+        for b in range(m):
+            gains = k and left[b] > _NOTHING * reach[b]
+            losses = _cheapest(slopes, owner, self.active[row], b, m) if gains else None
+            if losses is not None:
+                rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]
+                rates[b, b] = np.nan
+        return rates
+
+    def trade_offs(self, row: int, system: System = "metric") -> list[str]:
+        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
+
+        Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. Of an objective
+        that has nothing left to gain this is said; one that is the same in all designs is left out. system: of the
+        units that they are told in.
+        """
+        rates, reach = self.rates(row), spread(self.values, size=self._sizes)
+        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
+        better = (self.values[row] - self.values.min(axis=0)) * units
+        worse = (self.values.max(axis=0) - self.values[row]) * units
+        sentences = []
+        for b, gain in enumerate(self.objectives):
+            payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
+            span = reach[b] * units[b]
+            if span == 0.0:
+                continue
+            if better[b] <= _NOTHING * span:
+                sentences.append(self._best(gain))
+            elif payers:
+                most = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
+                if most > _LEAST * span:
+                    one = self._unit(gain, system)[1]
+                    step = 10.0 ** np.floor(np.log10(most * one)) / one  # a readable one where it is shown
+                    costs = [self._change(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers]
+                    sentences.append(f"{self._change(gain, step, system, gain=True)} costs {' and '.join(costs)}")
+        return sentences
+
+    def _best(self, objective: Objective) -> str:
+        """Return in words that no design of the front is better in an objective."""
+        title = self.problem.quantity(objective.quantity).title
+        if objective.sense == "target":
+            return f"no design of the front is nearer to the target of {title}"
+        return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
+
+    def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
+        """Return the unit that a system shows for an objective, and what its metric one is in that."""
+        return shown_in(self.problem.quantity(objective.quantity).unit.symbol, system)
+
+    def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
+        """Return a change of an objective, given in its metric unit, in words."""
+        shown = self.problem.quantity(objective.quantity)
+        unit, factor = self._unit(objective, system)
+        size = f"{amount * factor:.3g} {unit}".strip()
+        if objective.sense == "target":
+            return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
+        more = (objective.sense == "maximise") == gain
+        return f"{size} {'more' if more else 'less'} {shown.title}"
+
+
+def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
+    """Return the losses (m,) of the cheapest direction in which objective b gains one; None if there is none."""
+    from scipy.optimize import linprog
+
+    k = slopes.shape[1]
+    pays = np.where(owner == b, 0.0, 1.0)[:, None] * (owner[:, None] == np.arange(m))
+    rows = np.concatenate([np.column_stack([slopes, -pays]), np.pad(active, ((0, 0), (0, m)))])
+    limits = np.concatenate([np.where(owner == b, -1.0, 0.0), np.zeros(len(active))])
+    size = np.maximum(np.abs(rows).max(axis=1, initial=0.0), 1e-300)
+    cost = np.concatenate([np.zeros(k), np.ones(m)])
+    bounds = [(None, None)] * k + [(0.0, None)] * m
+    found = linprog(cost, rows / size[:, None], limits / size, bounds=bounds, method="highs")
+    return np.asarray(found.x[k:]) if found.status == 0 and found.x is not None else None

@@ -1,0 +1,129 @@
+"""Choosing one design of a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
+
+Everything works on objective values (n, m) as they are minimised, in any units: it depends on proportions only.
+size: (m,), what the values of an objective are rounded against besides their own magnitude: a target, of distances.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...model.errors import InputError
+from ...model.machine.loads import require_word
+from .constant import spread
+from .stationarity import Array
+
+Normalisation = Literal["range", "vector"]
+_TIE = 1e-9  # of a range, of a closeness: nearer together is rounding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Priority:
+    """An objective in a ranking, and what may be given up of its best value for the sake of the next.
+
+    absolute: in the quantity's SI unit. share: of the objective's range over the designs. The two add up.
+    """
+
+    quantity: str
+    absolute: float = 0.0
+    share: float = 0.0
+
+    def __post_init__(self) -> None:
+        for value in (self.absolute, self.share):
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"the tolerance of {self.quantity} must be zero or more; got {value:g}; leave it out")
+
+
+def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
+    """Return objectives scaled by their range over the designs: 0 is best, 1 worst; 0 where all are the same."""
+    _require_designs(values)
+    span = spread(values, size=size)
+    scaled = np.where(span > 0.0, values - values.min(axis=0), 0.0) / np.where(span > 0.0, span, 1.0)
+    return np.where(np.isfinite(values), scaled, values)
+
+
+def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
+    """Return the row nearest to the ideal point, every objective scaled by its range over the designs."""
+    apart = np.linalg.norm(by_range(values, size=size), axis=1)
+    return int(np.flatnonzero(apart <= apart.min() + _TIE)[0])
+
+
+def closeness(
+    values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
+) -> Array:
+    """Return the relative closeness (n,) of designs to the ideal, 0 to 1, greatest best (TOPSIS).
+
+    C = d_worst / (d_best + d_worst), where d are Euclidean distances of the weighted normalised objectives from the
+    best and from the worst value of each. C. L. Hwang and K. Yoon, "Multiple Attribute Decision Making", Springer 1981,
+    the section on TOPSIS. They divide each objective by its Euclidean norm over the designs ("vector"): then an
+    objective that varies little around a large value hardly counts, whatever its weight, and adding a constant changes
+    the choice. By default objectives are divided by their range over the designs, so that weights are the worth of
+    whole ranges.
+
+    weights: (m,), zero or more, of any sum. Where all designs are alike in what has weight, all are 1.
+    """
+    require_word("normalisation", normalisation, Normalisation)
+    _require_designs(values)
+    share = np.asarray(weights, dtype=np.float64)
+    if share.shape != values.shape[1:] or not np.isfinite(share).all() or (share < 0.0).any() or not share.any():
+        raise InputError(
+            f"weights must be zero or more, one above zero, one for each of {values.shape[1]} objectives; "
+            f"got {', '.join(f'{item:g}' for item in share.ravel())}"
+        )
+    if normalisation == "range":
+        scaled = by_range(values, size=size)
+    else:
+        norms = np.linalg.norm(values, axis=0)
+        scaled = values / np.where(norms > 0.0, norms, 1.0)
+    scaled = scaled * share / share.sum()
+    best = np.linalg.norm(scaled - scaled.min(axis=0), axis=1)
+    worst = np.linalg.norm(scaled - scaled.max(axis=0), axis=1)
+    whole = best + worst
+    return np.where(whole > 0.0, worst / np.where(whole > 0.0, whole, 1.0), 1.0)
+
+
+def topsis(
+    values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
+) -> int:
+    """Return the row of the greatest `closeness`; ties go to the better in the other objectives."""
+    found = closeness(values, weights, normalisation=normalisation, size=size)
+    return _first(values, np.flatnonzero(found >= found.max() - _TIE), size)
+
+
+def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
+    """Return the row that is left when objectives decide in turn.
+
+    order: objectives as (column, absolute, share). Each in turn keeps those of the designs left that lose at most
+    `absolute + share * range` against the best of them, the range being that over all designs; the last one keeps its
+    best, whatever its tolerance. Ties go to the better in the other objectives. (Fishburn, "Lexicographic orders,
+    utilities and decision rules", Management Science 20(11), 1974; with tolerances: Waltz, "An engineering approach:
+    hierarchical optimization criteria", IEEE Trans. Automatic Control 12(2), 1967.)
+    """
+    _require_designs(values)
+    columns = [column for column, _, _ in order]
+    if not columns or len(set(columns)) < len(columns):
+        raise InputError("a ranking names at least one objective, each once; name what matters most first")
+    span, scaled = spread(values, size=size), by_range(values, size=size)
+    rows = np.arange(len(values))
+    for place, (column, absolute, share) in enumerate(order):
+        last = place == len(order) - 1
+        if span[column] > 0.0:
+            own = scaled[rows, column]
+            rows = rows[own <= own.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
+    return _first(values, rows, size)
+
+
+def _first(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
+    worth = by_range(values, size=size)[rows].sum(axis=1)
+    return int(rows[np.flatnonzero(worth <= worth.min() + _TIE)[0]])
+
+
+def _require_designs(values: Array) -> None:
+    if not len(values):
+        raise InputError("the front is empty; see its message for what contradicts what")

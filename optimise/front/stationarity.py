@@ -1,0 +1,76 @@
+"""How stationary a design is: the least-norm convex combination of objective gradients, less active constraints.
+
+A design is Pareto-stationary when no direction improves every objective at once while the active constraints hold:
+
+    min | sum_i lambda_i g_i + sum_j mu_j a_j |   with lambda >= 0, sum lambda = 1, mu >= 0
+
+is zero (Karush-Kuhn-Tucker conditions of the multi-objective problem; Miettinen, "Nonlinear Multiobjective
+Optimization", 1999, Thm 3.1.5). Kinks count through all their pieces. Solved as a non-negative least-squares problem:
+with sum lambda = 1 as one more weighted row, the minimiser is the same up to its length, the rest being homogeneous.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+Array = NDArray[np.float64]
+
+STATIONARY = 1e-6
+"""Residual, objectives scaled by their range, below which a design counts as stationary."""
+_STIFF = 1e3  # weight of the rows that fix the sums of weights, against gradient rows of size one
+
+
+def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
+    """Return residual, lambda (p,), mu (q,) for gradients (p, k) of objectives and (q, k) of active constraints."""
+    p, q = len(goals), len(active)
+    lengths = np.linalg.norm(active, axis=1)
+    lengths[lengths == 0.0] = 1.0
+    # Objective rows are brought to a common size so that the sum row weighs alike at any scale.
+    size = float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0
+    matrix = np.zeros((goals.shape[1] + 1, p + q))
+    matrix[:-1, :p] = goals.T / size
+    matrix[:-1, p:] = (active / lengths[:, None]).T
+    matrix[-1, :p] = 1.0
+    target = np.zeros(goals.shape[1] + 1)
+    target[-1] = 1.0
+    solution, _ = nnls(matrix, target)
+    total = solution[:p].sum()
+    if total <= 0.0:
+        return float("inf"), np.full(p, 1.0 / p), np.zeros(q)
+    convex, pushing = solution[:p] / total, solution[p:] / total
+    residual = float(np.linalg.norm(matrix[:-1] @ np.concatenate([convex, pushing]))) * size
+    return residual, convex, pushing * size / lengths
+
+
+def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) -> tuple[float, Array, Array]:
+    """Return residual, lambda (p,) and mu (q,) where every objective must carry weight.
+
+    The optimality conditions of Benson's problem, least sum of objectives with none made worse:
+
+        min | sum_p lambda_p g_p + sum_j mu_j a_j |   with the weights lambda of each objective's pieces adding to >= 1.
+
+    A design that only a zero weight makes stationary (two objectives oppose each other, a third could still be had for
+    nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound.
+    """
+    names = np.unique(owner)
+    p, q, m = len(goals), len(active), len(names)
+    lengths = np.linalg.norm(active, axis=1)
+    lengths[lengths == 0.0] = 1.0
+    size = float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0
+    k = goals.shape[1]
+    matrix = np.zeros((k + m, p + q + m))
+    matrix[:k, :p] = goals.T / size
+    matrix[:k, p : p + q] = (active / lengths[:, None]).T
+    for row, name in enumerate(names):
+        matrix[k + row, :p] = _STIFF * (owner == name)
+        matrix[k + row, p + q + row] = -_STIFF
+    target = np.zeros(k + m)
+    target[k:] = _STIFF
+    try:
+        solution, _ = nnls(matrix, target, maxiter=50 * matrix.shape[1])
+    except RuntimeError:
+        return float("inf"), np.full(p, 1.0 / p), np.zeros(q)
+    residual = float(np.linalg.norm(matrix[:k, : p + q] @ solution[: p + q])) * size
+    return residual, solution[:p], solution[p : p + q] * size / lengths

@@ -1,0 +1,29 @@
+"""JSON Schema (draft 2020-12) of a job."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+
+def schema_of(job: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON Schema of a job, without its nulls."""
+    schema = job.model_json_schema(mode="validation")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
+
+
+def _without_null(node: Any) -> Any:
+    """Return a schema without its nulls: a key that is not wanted is left out."""
+    if isinstance(node, list):
+        return [_without_null(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    kept = {key: _without_null(item) for key, item in node.items()}
+    if kept.get("default", 0) is None or isinstance(kept.get("default"), dict):
+        del kept["default"]
+    choices = [choice for choice in kept.get("anyOf", ()) if choice != {"type": "null"}]
+    if len(choices) == 1 and len(kept["anyOf"]) == 2:
+        del kept["anyOf"]
+        return {**choices[0], **kept}
+    return {**kept, "anyOf": choices} if choices else kept

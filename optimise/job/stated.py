@@ -1,0 +1,55 @@
+"""The problem that a job states."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...objectives.motion_deviation import motion_deviations
+from ...objectives.quantity import Quantity
+from ..methods.registry import require_fit
+from ..problem.problem import Problem, Settings
+from .contradictions import require_consistent
+from .model import Job
+from .own import folders_of
+from .quantities import constraints_of, objectives_of, slow_stroke_of
+from .robust import robustly
+from .target_motion import require_target
+from .varying import ends_of, variants_of, varying_machine
+
+
+def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
+    """Return the problem that a job states. Raises JobError if it contradicts itjob.
+
+    folder: where the modules of its functions lie. installed: quantities of packages that it names.
+    """
+    variables = job.variables
+    require_target(job.target_motion, job.objectives, job.constraints)
+    choices, variants = variants_of(job)
+    problem = Problem(
+        name=job.name,
+        mechanism=varying_machine(job),
+        crank=ends_of(variables.crank),
+        rod=ends_of(variables.rod),
+        offset=ends_of(variables.offset),
+        choices=choices,
+        variants=variants,
+        objectives=tuple(objectives_of(job.objectives)),
+        constraints=tuple(constraints_of(job.constraints)),
+        slow_stroke=slow_stroke_of(job.constraints),
+        costs=None if job.costs is None else job.costs.build(),
+        settings=Settings(
+            method=job.optimiser.method,
+            designs=job.optimiser.designs,
+            samples=job.optimiser.samples,
+            evaluations=job.optimiser.evaluations,
+            seed=job.optimiser.seed,
+        ),
+        own=(
+            *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
+            *(part.build(name, folders_of(folder)) for name, part in job.quantity.items()),
+            *installed,
+        ),
+    )
+    require_consistent(problem)
+    require_fit(problem)
+    return robustly(problem, job.robust)

@@ -1,0 +1,105 @@
+"""CMA-ES: one objective, continuous coordinates, a normal distribution that learns the shape of the objective.
+
+    N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, 2016
+    A. Auger, N. Hansen, "A restart CMA evolution strategy with increasing population size", IEEE CEC 2005
+
+Where it has converged it starts again elsewhere with twice the population. Each sheet has a climb of its own, in turn:
+a normal distribution cannot span two. Only ranks matter to it, so constraints enter as ranks: what is feasible comes
+first, by its objective, then what violates less.
+
+This is the `cmaes` package itself, not Optuna's sampler around it: that ignores constraints and keeps the state as a
+pickle with every trial. Told the same generations again it comes to the same state, so nothing else need be kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.search import Archive, Run
+from .generation import Brood, Generation, generation_seed
+from .population import evolve
+from .registry import budget
+
+STEP = 0.3
+"""First standard deviation, of the unit box: the optimum is expected within about two of the centre."""
+_CONVERGED = 1e-10
+"""Extent of a generation, of the unit box, at which a climb ends."""
+_FLAT = 1e-14
+"""The same for its objectives, relative: below, ranks are rounding."""
+_RESTART = 1_000_000  # stream of random numbers, beyond those of any generation
+
+
+def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return what CMA-ES with restarts finds for the problem's only objective."""
+    breed = _Climbs(problem, evaluators)
+    return evolve(problem, evaluators, run, breed, size=breed.size)
+
+
+class _Climbs:
+    """Breeds from each sheet in turn."""
+
+    def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
+        self.seed = problem.settings.seed
+        self.dimension = max(evaluator.dimension for evaluator in evaluators)
+        default = 4 + math.floor(3.0 * math.log(self.dimension))
+        self.size = max(4, min(problem.settings.samples or default, budget(problem)))
+        self.dimensions = [evaluator.dimension for evaluator in evaluators]
+        self.climbs: list[_Climb] = []
+        self.told = 0
+
+    def __call__(self, past: Sequence[Generation]) -> Brood:
+        if not self.climbs:
+            self.climbs = [_Climb(*sheet, self.size, self.seed) for sheet in enumerate(self.dimensions)]
+        for generation in past[self.told :]:
+            self.climbs[self.told % len(self.climbs)].tell(generation)
+            self.told += 1
+        climb = self.climbs[len(past) % len(self.climbs)]
+        u = climb.ask(generation_seed(self.seed, len(past)))
+        padded = np.zeros((len(u), self.dimension))
+        padded[:, : u.shape[1]] = u
+        return Brood(np.full(len(u), climb.index), padded, np.zeros(0, np.int64))
+
+
+class _Climb:
+    """The search of one sheet: a distribution that is told what its points were worth, and begun anew."""
+
+    def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
+        self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
+        self.starts = 0
+        self.begin()
+
+    def begin(self) -> None:
+        """Start from the centre the first time, then from anywhere."""
+        from cmaes import CMA
+
+        random = np.random.default_rng(np.random.SeedSequence([self.seed, _RESTART, self.index, self.starts]))
+        mean = random.random(self.dimension) if self.starts else np.full(self.dimension, 0.5)
+        bounds = np.tile([0.0, 1.0], (self.dimension, 1))
+        self.optimiser = CMA(mean=mean, sigma=STEP, bounds=bounds, population_size=self.size)
+        self.starts += 1
+
+    def ask(self, seed: int) -> Array:
+        """Return the points (n, k) of the next generation."""
+        self.optimiser.reseed_rng(seed)
+        return np.array([self.optimiser.ask() for _ in range(self.optimiser.population_size)])
+
+    def tell(self, generation: Generation) -> None:
+        """Take in what a generation was worth."""
+        u, values = generation.u[:, : self.dimension], generation.values[:, 0]
+        excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)
+        if np.isinf(excess).all():  # nothing to rank by
+            self.begin()
+            return
+        ranks = np.empty(len(u))
+        ranks[np.lexsort([values, excess])] = np.arange(len(u))
+        self.optimiser.tell([(point, float(rank)) for point, rank in zip(u, ranks, strict=True)])
+        flat = not excess.any() and np.ptp(values) <= _FLAT * np.abs(values).max()
+        if flat or np.ptp(u, axis=0).max() <= _CONVERGED or self.optimiser.should_stop():
+            self.size *= 2
+            self.begin()

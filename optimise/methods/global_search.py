@@ -1,0 +1,183 @@
+"""Global methods of scipy for one objective."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.assemble import span_of
+from ..search.checkpoints import floats
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.sampling import generator
+from ..search.search import Archive, Run
+from .local import by_slsqp, found_by
+from .registry import budget
+from .scalar import Form, Programme
+
+_POPULATION = 20  # of differential evolution, members an unknown
+_RECOMBINATION = 0.9  # high: such valleys are not along an axis
+_SETTLED = 1e-12  # of the objective: spread of a population that ends it
+_TOLD = 20  # generations between two entries of the history
+_FAR = 1e3  # violation where no linkage turns fully
+_STREAM = 3500  # of the seed
+_SAMPLED = 256  # points an iteration of SHGO
+_ITERATIONS = 3
+_ROUGH = 5  # steps of SHGO's own descent, which knows no kinks; the epigraph form goes on
+_BASINS = 12
+
+
+class _Exact:
+    """Objective and violation of one sheet for a solver that asks for the one after the other.
+
+    Exact: a screened peak may be off by more than what is left to gain near the optimum.
+    """
+
+    def __init__(self, index: int, evaluator: Evaluator, seen: Archive) -> None:
+        """Evaluate a sheet of this index; the archive takes in what is better than all before."""
+        self.index, self.evaluator, self.seen = index, evaluator, seen
+        self.known: dict[bytes, float] = {}
+        self.best = np.inf
+
+    def violation(self, u: Array) -> Array:
+        """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
+        u = np.ascontiguousarray(u)
+        values, violation = map(floats, self.evaluator.ledger.step("points", (u,), lambda: self._at(u), self.evaluator))
+        self.known = {
+            point.tobytes(): value
+            for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
+            if met and np.isfinite(value)
+        }
+        best = min(self.known, key=self.known.__getitem__, default=b"")
+        if best and self.known[best] < self.best:
+            self.best = self.known[best]
+            self.seen.take(self.index, np.frombuffer(best)[None], np.array([[self.best]]))
+        return np.where(violation <= FEASIBLE, 0.0, violation)
+
+    def _at(self, u: Array) -> tuple[Array, Array]:
+        """Return objective and violation (n,) of points, infinite and far where no linkage turns fully."""
+        values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
+        valid = np.flatnonzero(self.evaluator.valid(u))
+        if len(valid):
+            goals, limits = self.evaluator.exact(u[valid])
+            values[valid] = goals.values.max(axis=1)
+            violation[valid] = np.minimum(limits.values.max(axis=1, initial=0.0), _FAR)
+        return values, violation
+
+    def objective(self, u: Array) -> Array:
+        """Return the minimised objective (n,) of points that were found feasible."""
+        u = np.ascontiguousarray(u)
+        if not all(point.tobytes() in self.known for point in u):
+            self.violation(u)
+        return np.array([self.known.get(point.tobytes(), np.inf) for point in u])
+
+
+def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the optimum of differential evolution, a share of the budget on every sheet.
+
+    Constraints by the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
+    Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
+    """
+    archive, seen = Archive.empty(1), Archive.empty(1)
+    run.archive = seen
+    for index in range(len(evaluators)):
+        _evolve(problem, evaluators, index, archive, seen, run)
+    run.tell("evolving", evaluators, archive)
+    return archive
+
+
+def _evolve(
+    problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive, run: Run
+) -> None:
+    """Put the optimum of one sheet into the archive, what is better than all before into what was seen."""
+    from scipy.optimize import NonlinearConstraint
+    from scipy.optimize import differential_evolution as evolve
+
+    evaluator = evaluators[index]
+    k, count = evaluator.dimension, 0
+    members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
+    generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
+    run.rounds = len(run.told) + 1 + generations // _TOLD
+    exact = _Exact(index, evaluator, seen)
+
+    def each(intermediate_result: Any) -> bool:
+        nonlocal count
+        count += 1
+        if count % _TOLD:
+            return False
+        archive.screen(index, evaluator, np.asarray(intermediate_result.x)[None])
+        run.tell("evolving", evaluators, archive)
+        return False
+
+    minimised: Any = evolve  # its stubs know no function of many points
+    found = minimised(
+        lambda x: exact.objective(x.T),
+        [(0.0, 1.0)] * k,
+        constraints=NonlinearConstraint(
+            lambda x: exact.violation(np.atleast_2d(x.T)).reshape(1, *x.shape[1:]), -np.inf, FEASIBLE
+        ),
+        maxiter=generations,
+        strategy="rand1bin",  # best1bin runs dry in valleys that lie along the kink of two peaks
+        recombination=_RECOMBINATION,
+        popsize=_POPULATION,
+        tol=_SETTLED,
+        init="sobol",
+        rng=generator(problem.settings.seed, _STREAM, index),
+        polish=False,
+        updating="deferred",
+        vectorized=True,
+        callback=each,
+    )
+    archive.screen(index, evaluator, np.clip(found.x, 0.0, 1.0)[None])
+
+
+def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the optima of the basins that simplicial homology finds, a share of the budget on every sheet.
+
+    S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
+    Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
+    ends short of the optimum, so that the epigraph form (`scalar`) goes on from there.
+    """
+    archive, seen = Archive.empty(1), Archive.empty(1)
+    run.archive = seen
+    run.rounds = 1 + len(evaluators)
+    for index in range(len(evaluators)):
+        for u, values in _basins(problem, evaluators, index, seen):
+            archive.take(index, u[None], values[None])
+            archive.feasible += 1
+        run.tell("descending", evaluators, archive)
+    return archive
+
+
+def _basins(problem: Problem, evaluators: list[Evaluator], index: int, seen: Archive) -> Iterator[tuple[Array, Array]]:
+    """Yield the optima of a sheet with their objectives (1,), SI; the archive takes in what comes on the way."""
+    from scipy.optimize import shgo as homology
+
+    evaluator = evaluators[index]
+    exact = _Exact(index, evaluator, seen)
+    points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
+    searched: Any = homology
+    found = searched(
+        lambda u: float(exact.objective(u[None])[0]),
+        [(0.0, 1.0)] * evaluator.dimension,
+        constraints={"type": "ineq", "fun": lambda u: -exact.violation(u[None])},
+        n=points,
+        iters=_ITERATIONS,
+        sampling_method="sobol",
+        minimizer_kwargs={"method": "SLSQP", "options": {"maxiter": _ROUGH}},
+        options={"minimize_every_iter": False},
+    )
+    basins = np.clip(np.atleast_2d(getattr(found, "xl", np.zeros((0, evaluator.dimension)))), 0.0, 1.0)
+    basins = basins[evaluator.valid(basins)][:_BASINS] if len(basins) else basins
+    if not len(basins):
+        return
+    values = evaluator.screen(basins, band=np.inf)[1]
+    ideal, span = np.nanmin(values, axis=0), span_of(problem, values)
+    for start in basins:
+        optimum = found_by(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start)
+        if optimum is not None:
+            u, scaled = optimum
+            yield u, scaled * span + ideal

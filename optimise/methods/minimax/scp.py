@@ -1,0 +1,223 @@
+"""Sequential convex programming of a greatest-of-pieces from one start; see `minimax`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...front.stationarity import Array
+from ...search.evaluation import Rows
+from ...search.pieces import alone, bent, difference
+from ...search.polish import Evaluates
+from .subproblem import Step, Subproblem
+
+CONVERGED = 1e-8
+"""Residual at which a descent is done: what the solver's multipliers can show."""
+_ITERATIONS = 80
+_RADIUS, _LARGEST, _SHORTEST = 0.1, 0.5, 1e-12  # trust region, of the unit box
+_POOR, _GOOD = 0.1, 0.75  # actual over predicted decrease that shrinks and that widens it
+_MET = 1e-11  # relative violation that more steps need not remove
+_NOISE = 1e-14  # of the objective: decreases that rounding may hide
+_WEIGHT, _HEAVIEST = 10.0, 1e7  # penalty of a relative violation, objective scaled to one
+_DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
+_CURVATURE = 1e-8  # least eigenvalue of the programme's curvature
+
+
+@dataclass
+class Point:
+    """A design on its way: where it is, its rows, and the last programme there.
+
+    u: (k,). goals: pieces of the objective, scaled. limits: constraint rows. step: its multipliers. residual: see
+    `residual_of`.
+    """
+
+    u: Array
+    goals: Rows
+    limits: Rows
+    step: Step | None = None
+    residual: float = np.inf
+    iterations: int = 0
+
+    @property
+    def top(self) -> float:
+        """The greatest piece."""
+        return float(self.goals.values.max())
+
+    @property
+    def violation(self) -> float:
+        """The greatest relative violation."""
+        return float(np.max(self.limits.values, initial=0.0))
+
+    def merit(self, weight: float) -> float:
+        """Return the exact penalty function."""
+        return self.top + weight * self.violation
+
+
+class Descent:
+    """Descents of one evaluator; the programme is stated once for all of them."""
+
+    def __init__(self, evaluator: Evaluates, scale: float) -> None:
+        """Prepare for objectives of this scale."""
+        self.evaluator, self.scale = evaluator, scale
+        self._programmes: dict[tuple[int, int, int], Subproblem] = {}
+
+    def run(self, start: Array) -> Point:
+        """Return where the descent from a point (k,) of the unit box, valid, ends."""
+        point = self._at(np.clip(start, 0.0, 1.0))
+        if not len(start):
+            point.residual = point.violation
+            return point
+        radius, weight = _RADIUS, _WEIGHT
+        root = np.zeros((len(start), len(start)))
+        for iteration in range(_ITERATIONS):
+            point.iterations = iteration + 1
+            step, weight = self._programme(point, root, radius, weight)
+            if step is None:
+                break
+            point.step, point.residual = step, residual_of(point, step)
+            still = float(np.abs(step.move).max()) < _SHORTEST
+            done = point.residual <= CONVERGED and point.violation <= _MET
+            if done or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
+                break
+            root = self._root(point, step)
+            step, weight = self._programme(point, root, radius, weight)
+            if step is None:
+                break
+            gain, trial = self._try(point, step, root, weight)
+            if gain < _POOR:
+                again = self._corrected(point, trial, step, root, radius, weight)
+                if again is not None and again[0] > gain:
+                    gain, trial = again
+            size = float(np.abs(step.move).max())
+            if gain >= _POOR and trial is not None:
+                trial.iterations, point = point.iterations, trial
+                if gain > _GOOD and size > 0.9 * radius:
+                    radius = min(_LARGEST, 2.0 * radius)
+            else:
+                radius = 0.25 * min(radius, size)
+        return point
+
+    def _at(self, u: Array) -> Point:
+        goals, limits = self.evaluator.exact(u[None])
+        scaled = Rows(goals.values / self.scale, goals.gradients / self.scale, goals.labels, goals.owner)
+        return Point(u, alone(scaled, 0), alone(limits, 0))
+
+    def _solve(
+        self, point: Point, goals: Array, limits: Array, root: Array, radius: float, weight: float
+    ) -> Step | None:
+        """Return the step for these values of the rows, the greatest piece of the point counting as zero."""
+        shape = (len(point.u), len(goals), len(limits))
+        if shape not in self._programmes:
+            self._programmes[shape] = Subproblem(*shape)
+        return self._programmes[shape].solve(
+            (goals - point.top, point.goals.gradients),
+            (limits, point.limits.gradients),
+            root,
+            np.maximum(-point.u, -radius),
+            np.minimum(1.0 - point.u, radius),
+            weight,
+        )
+
+    def _programme(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
+        """Return the step, and the penalty that its multipliers ask for: an exact one exceeds their sum."""
+        while True:
+            step = self._solve(point, point.goals.values, point.limits.values, root, radius, weight)
+            if step is None or step.limits.sum() < 0.9 * weight or weight >= _HEAVIEST:
+                return step, weight
+            heavier = self._solve(point, point.goals.values, point.limits.values, root, radius, 10.0 * weight)
+            if heavier is None or heavier.slack > 0.9 * step.slack:
+                return step, weight  # no step within the radius removes the violation
+            weight *= 10.0
+
+    def _try(self, point: Point, step: Step, root: Array, weight: float) -> tuple[float, Point | None]:
+        """Return actual over predicted decrease, and the design at the end of a step; None where nothing turns."""
+        predicted = weight * (point.violation - step.slack) - step.top - 0.5 * float(np.sum((root @ step.move) ** 2))
+        u = np.clip(point.u + step.move, 0.0, 1.0)
+        if not self.evaluator.valid(u[None])[0]:
+            return -1.0, None
+        trial = self._at(u)
+        actual = point.merit(weight) - trial.merit(weight)
+        noise = _NOISE * (1.0 + abs(point.top) + weight)
+        if predicted <= noise:
+            return (1.0 if abs(actual) <= noise else -1.0), trial
+        return (actual + noise) / predicted, trial
+
+    def _corrected(
+        self, point: Point, trial: Point | None, step: Step, root: Array, radius: float, weight: float
+    ) -> tuple[float, Point | None] | None:
+        """Return the same for the step that also follows how the rows bend along it."""
+        if trial is None:
+            return None
+        goals, limits = (
+            bent(here, there, step.move) for here, there in ((point.goals, trial.goals), (point.limits, trial.limits))
+        )
+        other = self._solve(point, goals, limits, root, radius, weight)
+        if other is None:
+            return None
+        # Judged by what the first step promised: the bent rows promise what they were made to.
+        return self._try(point, Step(other.move, step.top, step.slack, *_duals(step)), root, weight)
+
+    def _root(self, point: Point, step: Step) -> Array:
+        """Return R with R'R the Lagrangian's Hessian, convexified along what holds the step."""
+        k = len(point.u)
+        moves = np.where(point.u < 0.5, _DIFFERENCE, -_DIFFERENCE)
+        moved = point.u + np.diag(moves)
+        valid = self.evaluator.valid(moved)
+        if not valid.all():
+            return np.zeros((k, k))
+        goals, limits = self.evaluator.exact(moved)
+        goals = Rows(goals.values, goals.gradients / self.scale, goals.labels, goals.owner)
+        hessian = np.stack(
+            [
+                difference(point.goals, alone(goals, i), step.goals)
+                + difference(point.limits, alone(limits, i), step.limits)
+                for i in range(k)
+            ]
+        )
+        return _convex_root(0.5 * (hessian / moves[:, None] + (hessian / moves[:, None]).T), _normals(point, step))
+
+
+def residual_of(point: Point, step: Step) -> float:
+    """Return norm of what the multipliers leave of the gradients, plus complementarity gap, plus violation."""
+    left = (
+        step.goals @ np.where(step.goals[:, None] > 0.0, point.goals.gradients, 0.0)
+        + step.limits @ np.where(step.limits[:, None] > 0.0, point.limits.gradients, 0.0)
+        - step.below
+        + step.above
+    )
+    here, edge = np.isfinite(point.goals.values), np.isfinite(point.limits.values)
+    gap = (
+        step.goals[here] @ (point.top - point.goals.values[here])
+        + step.limits[edge] @ np.abs(point.limits.values[edge])
+        + step.below @ point.u
+        + step.above @ (1.0 - point.u)
+    )
+    return float(np.linalg.norm(left)) + float(gap) + point.violation
+
+
+def _duals(step: Step) -> tuple[Array, Array, Array, Array]:
+    return step.goals, step.limits, step.below, step.above
+
+
+def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:
+    """Return gradients of what holds a step: limits, bounds, and ties of pieces as differences."""
+    tied = point.goals.gradients[step.goals > least]
+    edge = np.eye(len(point.u))
+    return np.concatenate(
+        [tied[1:] - tied[:1], point.limits.gradients[step.limits > least], edge[(step.below + step.above) > least]]
+    )
+
+
+def _convex_root(hessian: Array, normals: Array) -> Array:
+    """Return R: curvature across what holds the step is added first, which its length there makes harmless."""
+    if not np.isfinite(hessian).all():
+        return np.zeros_like(hessian)
+    size = float(np.abs(hessian).max())
+    lengths = np.linalg.norm(normals, axis=1)
+    across = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
+    for weight in (0.0, 1.0, 10.0, 100.0):
+        values, vectors = np.linalg.eigh(hessian + weight * size * across.T @ across)
+        if values[0] >= 0.0:
+            break
+    return np.asarray(np.sqrt(np.clip(values, _CURVATURE, None))[:, None] * vectors.T)

@@ -1,0 +1,143 @@
+"""The convex programme of one minimax step, stated once and solved again and again with other numbers.
+
+With objective pieces p (the present greatest is zero) of gradient g, constraint rows c <= 0 of gradient a, unit-box
+point u, a step solves
+
+    min  t + w s + |R d|^2 / 2   over d, t, s
+    subject to  p + g d <= t (each piece),   c + a d <= s,   0 <= s,   low <= d <= high,
+
+t being the epigraph of the greatest piece, s the greatest violation with its exact penalty w, R'R the curvature of the
+Lagrangian. Its multipliers of the pieces are a convex combination by construction: t has slope one.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from ...front.stationarity import Array
+
+_ABSENT = -1e3
+"""Value of rows that are not there: no step within the unit box makes them count."""
+_HELD = 1e-7  # multipliers above it hold the step
+_TOLERANCE = 1e-11
+_NEAR = 1e-6  # of the unit box: how far holding rows exactly may move what the solver found
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step.
+
+    move: (k,). top: t, the greatest piece after it as slopes tell. slack: s. goals: (p,), limits: (q,), below, above:
+    (k,), multipliers of pieces, constraints and bounds, zero or more.
+    """
+
+    move: Array
+    top: float
+    slack: float
+    goals: Array
+    limits: Array
+    below: Array
+    above: Array
+
+
+class Subproblem:
+    """The programme for k unknowns, p pieces and q constraint rows; stating it costs a hundred times a solution."""
+
+    def __init__(self, k: int, p: int, q: int) -> None:
+        """State the programme."""
+        cp: Any = import_module("cvxpy")  # its stubs leave out most of its names
+
+        self.move, self.top, self.slack = cp.Variable(k), cp.Variable(), cp.Variable(nonneg=True)
+        self.pieces, self.slopes = cp.Parameter(p), cp.Parameter((p, k))
+        self.rows, self.normals = cp.Parameter(q), cp.Parameter((q, k))
+        self.root, self.weight = cp.Parameter((k, k)), cp.Parameter(nonneg=True)
+        self.low, self.high = cp.Parameter(k), cp.Parameter(k)
+        self.held = [
+            self.pieces + self.slopes @ self.move <= self.top,
+            self.move >= self.low,
+            self.move <= self.high,
+        ]
+        if q:
+            self.held.append(self.rows + self.normals @ self.move <= self.slack)
+        curve: Any = 0.5 * cp.sum(cp.square(self.root @ self.move))
+        self.programme = cp.Problem(cp.Minimize(self.top + self.weight * self.slack + curve), self.held)
+
+    def solve(
+        self,
+        goals: tuple[Array, Array],
+        limits: tuple[Array, Array],
+        root: Array,
+        low: Array,
+        high: Array,
+        weight: float,
+    ) -> Step | None:
+        """Return the step for values and gradients of pieces and constraints; None where the solver gives up."""
+        cp: Any = import_module("cvxpy")
+
+        (pieces, slopes), (rows, normals) = _present(*goals), _present(*limits)
+        self.pieces.value, self.slopes.value = pieces, slopes
+        if len(rows):
+            self.rows.value, self.normals.value = rows, normals
+        self.root.value, self.weight.value = root, weight
+        self.low.value, self.high.value = low, high
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the step is judged by what it gains
+            try:
+                self.programme.solve(
+                    solver=cp.CLARABEL,
+                    warm_start=False,  # a descent must not depend on those before it: a resumed run leaves them out
+                    tol_gap_abs=_TOLERANCE,
+                    tol_gap_rel=_TOLERANCE,
+                    tol_feas=_TOLERANCE,
+                )
+            except cp.SolverError:
+                return None
+        if self.programme.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
+            return None
+        duals = [np.maximum(np.atleast_1d(constraint.dual_value), 0.0) for constraint in self.held]
+        limiting = duals[3] if len(duals) > 3 else np.zeros(0)
+        move, top, slack = (np.asarray(found.value, np.float64) for found in (self.move, self.top, self.slack))
+        step = Step(
+            np.clip(move, low, high),
+            float(top),
+            max(0.0, float(slack)),
+            duals[0],
+            limiting,
+            duals[1],
+            duals[2],
+        )
+        return _exact(step, (pieces, slopes), (rows, normals), low, high)
+
+
+def _present(values: Array, slopes: Array) -> tuple[Array, Array]:
+    """Return rows with those that are absent, or too far below to count, made harmless."""
+    there = values > _ABSENT
+    return np.where(there, values, _ABSENT), np.where(there[:, None], slopes, 0.0)
+
+
+def _exact(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
+    """Return the step moved the shortest way to where the rows that hold it hold exactly.
+
+    An interior-point method stops short of them by its tolerance, which a violation would keep for ever.
+    """
+    (pieces, slopes), (rows, normals) = goals, limits
+    k = len(step.move)
+    own, edge = step.goals > _HELD, step.limits > _HELD
+    slack = step.slack if step.slack > _NEAR else 0.0
+    move = np.where(step.below > _HELD, low, np.where(step.above > _HELD, high, step.move))
+    free = (step.below <= _HELD) & (step.above <= _HELD)
+    matrix = np.zeros((int(own.sum() + edge.sum()), k + 1))
+    matrix[:, :k] = np.concatenate([slopes[own], normals[edge]])
+    matrix[: own.sum(), k] = -1.0
+    left = np.concatenate([pieces[own] + slopes[own] @ move - step.top, rows[edge] + normals[edge] @ move - slack])
+    columns = np.append(free, True)
+    change = np.zeros(k + 1)
+    change[columns] = np.linalg.lstsq(matrix[:, columns], -left, rcond=1e-10)[0]
+    if np.abs(change).max() > _NEAR or np.abs(move - step.move).max() > _NEAR:
+        return step
+    return replace(step, move=np.clip(move + change[:k], low, high), top=step.top + float(change[k]), slack=slack)

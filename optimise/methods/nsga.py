@@ -1,0 +1,125 @@
+"""NSGA-II and NSGA-III by Optuna: a population whose children inherit from the designs that survive selection.
+
+    K. Deb, A. Pratap, S. Agarwal, T. Meyarivan, "A fast and elitist multiobjective genetic algorithm: NSGA-II",
+    IEEE Transactions on Evolutionary Computation 6(2), 2002
+    K. Deb, H. Jain, "An evolutionary many-objective optimization algorithm using reference-point-based nondominated
+    sorting approach, part I", the same, 18(4), 2014
+
+Children come from simulated binary crossover and polynomial mutation. Constraints count by constrained domination: what
+is feasible comes first, then what violates less. Several sheets (signs of the offset) are one categorical parameter: a
+share of the budget for each would be wasted on a sheet without good designs, while selection follows the front.
+
+Selection and crossover need only the last generation and what that was bred from. So each generation is a new Optuna
+study in memory with these designs and a new sampler: the cost of a generation stays the same, and it depends on nothing
+but them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...model.errors import InputError
+from ..problem.problem import Problem
+from ..search.evaluation import Evaluator
+from ..search.search import Archive, Run
+from .generation import Brood, Generation, History, Rows, generation_seed
+from .population import evolve
+from .registry import budget
+from .trials import asked, quiet, space, stored
+
+if TYPE_CHECKING:
+    from optuna.samplers import BaseGASampler
+
+POPULATION = 100
+"""Designs of a generation where the job sets no number of samples."""
+
+
+def nsga2(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return what NSGA-II finds: its population is kept diverse by crowding distance."""
+    from optuna.samplers import NSGAIISampler
+
+    return _genetic(problem, evaluators, run, NSGAIISampler)
+
+
+def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return what NSGA-III finds: its population is kept diverse by reference directions, about one a member."""
+    from optuna.samplers import NSGAIIISampler
+
+    size, objectives = population_size(problem), len(problem.objectives)
+    return _genetic(problem, evaluators, run, NSGAIIISampler, dividing_parameter=divisions(size, objectives))
+
+
+def population_size(problem: Problem) -> int:
+    """Return how many designs a generation has. Raises `InputError` for fewer than two, which cannot breed."""
+    size = min(problem.settings.samples or POPULATION, budget(problem))
+    if size < 2:
+        raise InputError(
+            f"{problem.settings.method} breeds from two designs or more; got {size}; raise samples and evaluations"
+        )
+    return size
+
+
+def divisions(population: int, objectives: int) -> int:
+    """Return how finely the axes are divided so that there are at most as many reference directions as designs.
+
+    p divisions give (p + m - 1 over m - 1) directions (Das and Dennis, 1998).
+    """
+    found = 1
+    while objectives > 1 and math.comb(found + objectives, objectives - 1) <= population:
+        found += 1
+    return found
+
+
+def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
+    with quiet():
+        breed = _Genetic(problem, evaluators, run.ledger.poll, sampler, options)
+        return evolve(problem, evaluators, run, breed, size=breed.size)
+
+
+class _Genetic:
+    """Breeds by one of Optuna's genetic samplers."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        evaluators: list[Evaluator],
+        poll: Callable[[], None],
+        sampler: Any,
+        options: dict[str, Any],
+    ) -> None:
+        from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
+
+        self.poll = poll
+        self.sampler = sampler
+        self.size = population_size(problem)
+        self.seed = problem.settings.seed
+        self.objectives = len(problem.objectives)
+        self.space = space(evaluators)
+        self.options = {"crossover": SBXCrossover(), "mutation": PolynomialMutation(), **options}
+
+    def __call__(self, past: Sequence[Generation]) -> Brood:
+        import optuna
+
+        seed = generation_seed(self.seed, len(past))
+        sampler: BaseGASampler = self.sampler(population_size=self.size, seed=seed, **self.options)
+        study = optuna.create_study(directions=["minimize"] * self.objectives, sampler=sampler)
+        pool = np.zeros(0, np.int64)
+        if past:
+            history = History.of(past)
+            pool = np.concatenate([past[-1].parents, history.last])
+            # To the sampler all of them are one generation: it selects from both parts alike.
+            mark = {sampler._get_generation_key(): 0}
+            study.add_trials(stored(self.space, history, pool, mark))
+        sheet, u = asked(study, self.space, self.size, self.poll)
+        return Brood(sheet, u, _survivors(study, sampler, pool))
+
+
+def _survivors(study: Any, sampler: BaseGASampler, pool: Rows) -> Rows:
+    """Return the rows that selection has left of the pool."""
+    if not len(pool):
+        return pool
+    return pool[[trial.number for trial in sampler.get_parent_population(study, 1)]]

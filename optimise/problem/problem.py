@@ -1,0 +1,313 @@
+"""An optimisation problem: what is given, what may vary, what must hold, what is wanted. SI, immutable, validated."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from numbers import Integral, Real
+from typing import Literal
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import SlowStroke
+from ...model.machine.loads import require_word
+from ...model.machine.mechanism import Mechanism
+from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES, quantity
+from .causes import undefined_because
+from .costs import Costs
+
+Sense = Literal["minimise", "maximise", "target"]
+SENSES: dict[str, Sense] = {
+    "minimise": "minimise",
+    "minimize": "minimise",
+    "maximise": "maximise",
+    "maximize": "maximise",
+    "target": "target",
+}
+"""The sense of every word for it, in either spelling."""
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+def _whole(value: object, least: int) -> bool:
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, Integral) and int(value) >= least
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Where a dimension may lie, m; equal bounds fix it."""
+
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not (_finite(self.lower) and _finite(self.upper) and self.lower <= self.upper):
+            raise InputError(
+                f"a range needs lower <= upper, both finite; got {_shown(self.lower)} to {_shown(self.upper)}"
+            )
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the range is one value."""
+        return self.lower == self.upper
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraint:
+    """A quantity that must lie in [lower, upper], in its SI unit; None leaves a side open, equal bounds ask a value."""
+
+    quantity: str
+    lower: float | None = None
+    upper: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_name(self.quantity)
+        if self.lower is None and self.upper is None:
+            raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
+        for bound in (self.lower, self.upper):
+            if bound is not None and not _finite(bound):
+                raise InputError(f"the constraint on {self.quantity} must be finite; got {_shown(bound)}")
+        if self.lower is not None and self.upper is not None and self.lower > self.upper:
+            raise InputError(
+                f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
+            )
+
+    @property
+    def equality(self) -> bool:
+        """Whether one value is asked for."""
+        return self.lower is not None and self.lower == self.upper
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objective:
+    """A quantity to minimise, to maximise, or to bring to a target (in its SI unit).
+
+    sense: "minimize" and "maximize" become "minimise" and "maximise". Raises `InputError` for any other word, and for a
+    name that no quantity can have; whether there is a quantity of the name the `Problem` knows, which may have its own.
+    """
+
+    quantity: str
+    sense: Sense
+    target: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_name(self.quantity)
+        object.__setattr__(self, "sense", _sense(self.quantity, self.sense))
+        if (self.sense == "target") != (self.target is not None):
+            raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
+        if self.target is not None and not _finite(self.target):
+            raise InputError(f"the target of {self.quantity} must be finite; got {_shown(self.target)}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How to search.
+
+    method: a name from `methods.registry`. designs: how many to deliver at most. samples: designs evaluated per round
+    before the polish; None lets the method choose. evaluations: how many designs a method other than "auto" may
+    evaluate; None for its own budget. seed: of everything random.
+    """
+
+    method: str = "auto"
+    designs: int = 100
+    samples: int | None = None
+    evaluations: int | None = None
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        for name, least in (("designs", 1), ("samples", 1), ("evaluations", 1), ("seed", 0)):
+            value = getattr(self, name)
+            if value is None and name in ("samples", "evaluations"):
+                continue
+            if not _whole(value, least):
+                raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
+        if self.method == "auto" and self.evaluations is not None:
+            raise InputError(
+                f"the method auto has no budget of evaluations; got {self.evaluations}; leave it out, or name a method"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One combination of discrete choices.
+
+    labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
+    with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
+    constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it.
+    """
+
+    labels: tuple[str, ...]
+    mechanism: Mechanism
+    crank: Range
+    rod: Range
+    offset: Range
+    limits: tuple[Constraint, ...] = ()
+    slow_stroke: SlowStroke | None = None
+
+    def __post_init__(self) -> None:
+        _require_stroke(self.slow_stroke)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A complete optimisation problem.
+
+    mechanism: its varying numbers are variables beside the dimensions. crank, rod, offset: where the three dimensions
+    may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
+    chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
+    tolerances, for their allocation. own: quantities beside those that every problem has; objectives and constraints
+    may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
+    only, see `slow_side`, and the time ratio is above 1, see `evaluation.constraints_of`.
+    """
+
+    name: str
+    mechanism: Mechanism
+    crank: Range
+    rod: Range
+    offset: Range
+    objectives: tuple[Objective, ...]
+    constraints: tuple[Constraint, ...] = ()
+    settings: Settings = Settings()
+    costs: Costs | None = None
+    own: tuple[Quantity, ...] = ()
+    choices: tuple[str, ...] = ()
+    variants: tuple[Variant, ...] = ()
+    slow_stroke: SlowStroke | None = None
+
+    def __post_init__(self) -> None:
+        _require_stroke(self.slow_stroke)
+        for item in self.mechanism.varying:
+            if item.name in ("crank", "rod", "offset"):
+                raise InputError(
+                    f"a number that varies beside the dimensions needs a name of its own; got {item.name!r}"
+                )
+        for variant in self.variants:
+            if len(variant.labels) != len(self.choices):
+                raise InputError(f"a variant has a label for each of {self.choices}; got {variant.labels}")
+            if [x.name for x in variant.mechanism.varying] != [x.name for x in self.mechanism.varying]:
+                raise InputError("the same numbers must vary in all variants of a problem")
+        if not self.objectives:
+            raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
+        names = [objective.quantity for objective in self.objectives]
+        limits = (limit for variant in self.variants for limit in variant.limits)
+        machines = [variant.mechanism for variant in self.variants] or [self.mechanism]
+        keys = [("objectives", name) for name in names]
+        keys += [("constraints", constraint.quantity) for constraint in (*self.constraints, *limits)]
+        for table, name in keys:
+            reason = undefined_because(self.quantity(name), machines)
+            if reason:
+                raise InputError(f"{table}.{name}: {reason}")
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"the objective {name} is given twice; keep one")
+        constrained = [constraint.quantity for constraint in self.constraints]
+        for name in constrained:
+            if constrained.count(name) > 1:
+                raise InputError(f"the constraint on {name} is given twice; merge the two")
+        if self.offset.lower <= 0.0 <= self.offset.upper:
+            for objective in self.objectives:
+                if objective.quantity == "rod_to_offset" and objective.sense == "maximise":
+                    raise InputError(
+                        "rod_to_offset grows without bound as the offset goes to zero, so it cannot be maximised; "
+                        f"got an offset from {self.offset.lower:g} to {self.offset.upper:g} m; keep the range off zero"
+                    )
+        if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
+            raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
+        return quantity(name, self.own)
+
+    def slow_side(self) -> float | None:
+        """Sign that the offset must have for the slow stroke that is asked, +1 or -1; None where none is asked.
+
+        The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
+        """
+        if self.slow_stroke is None:
+            return None
+        side = self.mechanism.direction * (1.0 if self.mechanism.branch == "open" else -1.0)
+        return side if self.slow_stroke == "inward" else -side
+
+    def part(self, variant: int) -> Problem:
+        """Return the problem of one variant, with nothing left to be chosen."""
+        if not self.variants:
+            return self
+        chosen = self.variants[variant]
+        return replace(
+            self,
+            mechanism=chosen.mechanism,
+            crank=chosen.crank,
+            rod=chosen.rod,
+            offset=chosen.offset,
+            constraints=_both(self.constraints, chosen.limits),
+            slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
+            choices=(),
+            variants=(),
+        )
+
+    def parts(self) -> tuple[Problem, ...]:
+        """Return the problem of every variant; itself if there is nothing to choose."""
+        return tuple(self.part(index) for index in range(max(1, len(self.variants))))
+
+
+def choice_field(name: str) -> str:
+    """Return the key of the column that says what was chosen."""
+    return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
+
+
+def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:
+    """Return the slow stroke that both ask for. Raises `InputError` if they differ."""
+    if stroke is not None and more is not None and stroke != more:
+        raise InputError(
+            f"the slow stroke is either the outward or the inward one; got {stroke} and {more} of a choice"
+        )
+    return stroke if more is None else more
+
+
+def _both(constraints: tuple[Constraint, ...], more: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
+    """Return constraints that hold where all of these do. Raises `InputError` if two exclude each other."""
+    found = {constraint.quantity: constraint for constraint in constraints}
+    for constraint in more:
+        own = found.get(constraint.quantity)
+        if own is not None:
+            lower = [bound for bound in (own.lower, constraint.lower) if bound is not None]
+            upper = [bound for bound in (own.upper, constraint.upper) if bound is not None]
+            constraint = Constraint(
+                quantity=own.quantity, lower=max(lower, default=None), upper=min(upper, default=None)
+            )
+        found[constraint.quantity] = constraint
+    return tuple(found.values())
+
+
+def _require_name(name: object) -> None:
+    """Refuse a name that no quantity can have."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise InputError(
+            f"a quantity is named by small letters, digits and underscores, such as 'peak_torque'; got {name!r}; "
+            f"choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
+        )
+
+
+def _sense(name: str, sense: object) -> Sense:
+    """Return a sense in the one spelling. Raises `InputError` for what is none."""
+    if not isinstance(sense, str) or sense not in SENSES:
+        raise InputError(
+            f"the sense of the objective {name} must be {', '.join(map(repr, SENSES))}; got {sense!r}; "
+            "choose one of these"
+        )
+    return SENSES[sense]
+
+
+def _require_stroke(stroke: object) -> None:
+    if stroke is not None:
+        require_word("slow_stroke", stroke, SlowStroke)
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, Real) else repr(value)

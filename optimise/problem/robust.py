@@ -1,0 +1,168 @@
+"""Robust problems: objectives and constraints as they are within tolerances, and what a robust front keeps of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from ...model.errors import InputError
+from ...model.tolerance.spreads import Shape
+from ...objectives.own.quantity import OwnQuantity
+from ...objectives.robust.quantity import SAMPLES, Kind, RobustQuantity, Side, require_options
+from .gradients import constraints_anywhere
+from .problem import Constraint, Objective, Problem
+
+ERRORS = ("position_error", "position_error_rss")
+"""What tells of the tolerances already: robust only if named."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robust:
+    """How objectives and constraints are robust, see `RobustQuantity`.
+
+    quantities: which of them; None for all but equalities and targets, which stay nominal, and position errors.
+    """
+
+    kind: Kind = "percentile"
+    order: int = 2
+    share: float = 0.99
+    samples: int = SAMPLES
+    shape: Shape = "normal"
+    quantities: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        require_options(self.kind, self.order, self.share, self.samples, self.shape)
+
+
+def robust(problem: Problem, plan: Robust) -> Problem:
+    """Return a problem whose objectives and constraints are robust, under names of their own.
+
+    What is minimised or has a maximum is taken on its high side, what is maximised or has a minimum on its low side:
+    peak_torque becomes peak_torque_robust. A quantity that is needed on both sides becomes two, _robust_low and
+    _robust_high. Equalities stay nominal: the dimensions that are drawn meet them; no machine with errors can. So do
+    targets. Each requirement is robust by itself: 99 % of the machines for each, not 99 % for all together. The sample
+    is seeded by the problem's seed. What comes with a choice (limits of a gearmotor) is made robust alike.
+
+    Raises `InputError` for a quantity that the problem does not have, that cannot be robust, or that has no gradient.
+    """
+    wanted = _chosen(problem, plan)
+    sides: dict[str, set[Side]] = {name: set() for name in wanted}
+    for constraint in constraints_anywhere(problem):
+        if constraint.quantity in sides and not constraint.equality:
+            sides[constraint.quantity] |= {"low"} if constraint.lower is not None else set()
+            sides[constraint.quantity] |= {"high"} if constraint.upper is not None else set()
+    for objective in problem.objectives:
+        if objective.quantity in sides and objective.sense != "target":
+            sides[objective.quantity].add("low" if objective.sense == "maximise" else "high")
+    made: dict[tuple[str, Side], RobustQuantity] = {}
+    for name, needed in sides.items():
+        for side in sorted(needed):
+            made[name, side] = RobustQuantity(
+                inner=problem.quantity(name),
+                side=side,
+                kind=plan.kind,
+                order=plan.order,
+                share=plan.share,
+                samples=plan.samples,
+                shape=plan.shape,
+                seed=problem.settings.seed,
+                suffix="robust" if len(needed) == 1 else f"robust_{side}",
+            )
+    names = {key: quantity.name for key, quantity in made.items()}
+    return replace(
+        problem,
+        objectives=tuple(_robust_objective(objective, names) for objective in problem.objectives),
+        constraints=tuple(_robust_constraints(problem.constraints, names)),
+        variants=tuple(
+            replace(variant, limits=tuple(_robust_constraints(variant.limits, names))) for variant in problem.variants
+        ),
+        own=(*problem.own, *made.values()),
+    )
+
+
+def robust_quantities(problem: Problem) -> tuple[RobustQuantity, ...]:
+    """Return the robust quantities of a problem."""
+    return tuple(quantity for quantity in problem.own if isinstance(quantity, RobustQuantity))
+
+
+def nominal(problem: Problem) -> Problem:
+    """Return the problem that a robust one was made from."""
+    inner = {quantity.name: quantity.inner.name for quantity in robust_quantities(problem)}
+    return replace(
+        problem,
+        objectives=tuple(
+            replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in problem.objectives
+        ),
+        constraints=_nominal(problem.constraints, inner),
+        variants=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.variants),
+        own=tuple(quantity for quantity in problem.own if not isinstance(quantity, RobustQuantity)),
+    )
+
+
+def _chosen(problem: Problem, plan: Robust) -> list[str]:
+    """Return the names of what is to be robust."""
+    bounded = [c.quantity for c in constraints_anywhere(problem) if not c.equality]
+    able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
+    held = {c.quantity for c in constraints_anywhere(problem) if c.equality}
+    aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
+    chosen = [name for name in able if name not in ERRORS] if plan.quantities is None else list(plan.quantities)
+    for name in chosen:
+        if name not in able and name in held:
+            raise InputError(
+                f"{name} cannot equal a value within tolerances; got equals; give min and max, or leave it out of "
+                "robust and it stays nominal"
+            )
+        if name not in able and name in aimed:
+            raise InputError(
+                f"{name} has a target, which has no bad side; got it as robust; minimise or maximise it, or leave it "
+                "out of robust and it stays nominal"
+            )
+        if name not in able:
+            raise InputError(
+                f"robust quantities must be objectives or constraints; got {name!r}; choose from {', '.join(able)}"
+            )
+        own = problem.quantity(name)
+        if isinstance(own, OwnQuantity) and own.gradient == "none":
+            raise InputError(
+                f'a robust quantity needs a gradient; got {name} with gradient = "none"; set gradient = "finite '
+                'differences", or leave it out of robust'
+            )
+    if not chosen:
+        raise InputError(
+            "nothing is left to be robust: equalities, targets and position errors stay nominal; name quantities, or "
+            "leave out robust"
+        )
+    return list(dict.fromkeys(chosen))
+
+
+def _robust_objective(objective: Objective, names: dict[tuple[str, Side], str]) -> Objective:
+    if objective.sense == "target":
+        return objective
+    side: Side = "low" if objective.sense == "maximise" else "high"
+    return replace(objective, quantity=names.get((objective.quantity, side), objective.quantity))
+
+
+def _robust_constraints(
+    constraints: tuple[Constraint, ...], names: dict[tuple[str, Side], str]
+) -> Iterator[Constraint]:
+    for constraint in constraints:
+        name, lower, upper = constraint.quantity, constraint.lower, constraint.upper
+        if constraint.equality or not {(name, "low"), (name, "high")} & set(names):
+            yield constraint
+            continue
+        if lower is not None:
+            yield Constraint(quantity=names[name, "low"], lower=lower)
+        if upper is not None:
+            yield Constraint(quantity=names[name, "high"], upper=upper)
+
+
+def _nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
+    """Return constraints on the quantities themselves, the two sides of one joined again."""
+    found: dict[str, Constraint] = {}
+    for constraint in constraints:
+        name = inner.get(constraint.quantity, constraint.quantity)
+        before = found.get(name)
+        lower = constraint.lower if constraint.lower is not None or before is None else before.lower
+        upper = constraint.upper if constraint.upper is not None or before is None else before.upper
+        found[name] = Constraint(quantity=name, lower=lower, upper=upper)
+    return tuple(found.values())

@@ -1,0 +1,112 @@
+"""Several fronts of the same objectives against each other: what each covers, what it adds, which is nearer to all.
+
+All figures use one scaling: the ideal and the range of the union front, the designs that none of all designs dominates;
+where these do not differ in an objective, its range over all designs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ..front.constant import spread
+from ..front.hypervolume import hypervolume, nondominated, scaling
+from ..front.stationarity import Array
+
+TOLERANCE = 1e-6
+"""Share of an objective's range that counts as equal: designs are exact to about that."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How k fronts compare.
+
+    sizes: (k,), designs. ideal, span: (m,), the scaling, in the objectives' units. hypervolumes: (k,), of each, share
+    of the box from the ideal to 1.1 ranges beyond it. union: hypervolume of all together. shares: (k,), hypervolume by
+    that of the union. in_union: (k,), designs of each that no design of any front dominates; what several found counts
+    for each. coverage: (k, k), `[a, b]` is the share of b's designs that a weakly dominates. epsilon: (k, k), `[a, b]`
+    is the least number that, added to all scaled objectives of a, makes it weakly dominate all of b; not above zero if
+    it does already. dominates: (k, k), whether a weakly dominates all of b, and b not all of a. tolerance: the share of
+    the range that counts as equal in `in_union`, `coverage` and `dominates`.
+    """
+
+    sizes: NDArray[np.int64]
+    ideal: Array
+    span: Array
+    hypervolumes: Array
+    union: float
+    shares: Array
+    in_union: NDArray[np.int64]
+    coverage: Array
+    epsilon: Array
+    dominates: NDArray[np.bool_]
+    tolerance: float
+
+
+def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Comparison:
+    """Return how fronts (n_k, m) of objective values, as they are minimised, compare.
+
+    Coverage C(A, B) after E. Zitzler and L. Thiele, "Multiobjective evolutionary algorithms: a comparative case study
+    and the strength Pareto approach", IEEE Trans. Evolutionary Computation 3(4), 1999; the additive epsilon indicator
+    and "weakly dominates" after Zitzler et al., "Performance assessment of multiobjective optimizers: an analysis and
+    review", ibid. 7(2), 2003. Two samples of one and the same front cover little of each other: there the
+    epsilon says how near they are.
+
+    Raises `InputError` for fewer than two fronts, an empty one, or different numbers of objectives.
+    """
+    if len(fronts) < 2:
+        raise InputError(f"a comparison needs two fronts or more; got {len(fronts)}")
+    if any(not len(front) for front in fronts):
+        raise InputError("a front without designs cannot be compared; leave it out")
+    if len({front.shape[1] for front in fronts}) > 1:
+        raise InputError("fronts compare only with the same objectives; got different numbers of them")
+    if not (math.isfinite(tolerance) and tolerance >= 0.0):
+        raise InputError(f"the tolerance is a share of the range, zero or more; got {tolerance:g}")
+    everything = np.concatenate(list(fronts))
+    ideal, span = _scaling(everything)
+    scaled = [np.asarray((front - ideal) / span) for front in fronts]
+    volumes = np.array([hypervolume(front, ideal, span) for front in fronts])
+    union = hypervolume(everything, ideal, span)
+    k = len(fronts)
+    coverage, epsilon = np.ones((k, k)), np.zeros((k, k))
+    for a in range(k):
+        for b in range(k):
+            # By how much the nearest design of a is worse than each of b, in its worst objective.
+            excess = np.array([np.min(np.max(scaled[a] - point, axis=1)) for point in scaled[b]])
+            coverage[a, b] = float(np.mean(excess <= tolerance))
+            epsilon[a, b] = float(excess.max())
+    whole = coverage == 1.0
+    return Comparison(
+        sizes=np.array([len(front) for front in fronts]),
+        ideal=ideal,
+        span=span,
+        hypervolumes=volumes,
+        union=union,
+        shares=volumes / union,
+        in_union=np.array([_undominated(front, scaled, tolerance) for front in scaled]),
+        coverage=coverage,
+        epsilon=epsilon,
+        dominates=whole & ~whole.T,
+        tolerance=tolerance,
+    )
+
+
+def _scaling(everything: Array) -> tuple[Array, Array]:
+    """Return ideal and range of the union front; the range of all designs where it has none."""
+    best = everything[nondominated(everything)]
+    reach = spread(best)
+    return best.min(axis=0), np.where(reach > 0.0, reach, scaling(everything)[1])
+
+
+def _undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:
+    """Return how many designs no other one dominates by more than the tolerance."""
+    everything = np.concatenate(list(fronts))
+    return sum(
+        not bool(((everything <= point + tolerance).all(axis=1) & (everything < point - tolerance).any(axis=1)).any())
+        for point in front
+    )

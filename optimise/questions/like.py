@@ -1,0 +1,226 @@
+"""A design like a given one that also meets further requirements: the nearest point of the front that they leave.
+
+The requirements are added to the problem. Wanted is the design that is Pareto-optimal for the extended problem and
+nearest to the given one, by Euclidean distance of the objectives, each divided by its range over the given front.
+
+The Pareto-optimal designs are no set that a solver can be given, but the polish maps every point onto one of them and
+leaves them as they are. So: the extended problem is sampled everywhere, the samples nearest to the given design are
+polished, then points around the nearest results, closer in every round. Every result is a polished design, stationary
+and on its constraints to rounding; "nearest" is as good as the sampling, checked against dense fronts in the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ..front.front import ParetoFront
+from ..front.hypervolume import scaling
+from ..front.stationarity import STATIONARY, Array
+from ..methods.auto.challenge import by_sheet
+from ..methods.gradients import require_gradients
+from ..problem.problem import Constraint, Problem, Range, Settings
+from ..search.assemble import empty, only
+from ..search.candidates import Pile
+from ..search.elimination import UNKNOWNS, sheets
+from ..search.enumeration import enumerate_settled, searched
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.sampling import generator
+from ..search.search import Archive, Run, explore
+from ..search.spread import polish
+from ..solve import solve
+
+Ends = tuple[float | None, float | None]
+
+_STARTS = 48
+"""Samples polished at first, the nearest ones."""
+_PARENTS, _CHILDREN = 2, 8  # of a round: nearest designs, and points around each
+_WIDEST, _CLOSEST = 0.1, 1e-6  # of the unit box: spread of the first and of the last round
+_ROUNDS = 30
+_BEATEN = 1e-6  # of the objectives' range: a domination that is more than rounding
+
+
+def distance(values: Array, given: Array, span: Array) -> Array:
+    """Return the distance (n,) of designs (n, m) from a given one (m,), objectives divided by `span` (m,)."""
+    return np.asarray(np.linalg.norm((values - given) / span, axis=1))
+
+
+def like(
+    problem: Problem,
+    row: Mapping[str, object],
+    values: Array,
+    span: Array,
+    constraints: Sequence[Constraint] = (),
+    ranges: Mapping[str, Ends] | None = None,
+) -> ParetoFront:
+    """Return a front of the one Pareto-optimal design of the extended problem that is nearest to a given one.
+
+    row: the given design in the table of its front. values: its objectives (m,) as minimised, SI. span: (m,), the
+    objectives' ranges over its front. constraints: to add. ranges: least and greatest of crank, rod or offset, m, None
+    for open. Residuals are scaled by `span`. Without a feasible design the front is empty and its message says which
+    requirements contradict each other. Raises `InputError` if nothing is added, the design already meets it, or
+    a quantity has no gradient.
+    """
+    ranges = ranges or {}
+    _require_new(problem, row, constraints, ranges)
+    asked, contradiction = extended(problem, constraints, ranges)
+    require_gradients(asked, "the search for a design like another")
+    evaluators = [Evaluator(asked, sheet) for sheet in sheets(asked)]
+    run = Run(asked, 1)
+    if contradiction:
+        return empty(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
+    pile = enumerate_settled(asked, evaluators, run).only_settled(span)
+    free = searched(evaluators)
+    archive = explore(asked, free, run) if free else Archive.empty(len(span))
+    order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
+    for index, u in by_sheet(evaluators, archive.sheet, archive.u, order):
+        pile.add(index, evaluators[index], polish(evaluators[index], u, span))
+    if not len(pile):
+        return _nearest(solve(asked), values, span)
+    _zoom(pile, free, archive, values, asked.settings.seed)
+    return only(asked, evaluators, pile, run, int(_ranked(pile, archive, values)[0]))
+
+
+def like_design(
+    front: ParetoFront, row: int, *constraints: Constraint, ranges: Mapping[str, Ends] | None = None
+) -> ParetoFront:
+    """Return the design most like one of a front that also meets further requirements, as a front of its own.
+
+    It is Pareto-optimal for the problem with them, and of those designs the nearest, see `like`; empty, with the reason
+    in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
+    `like_design(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
+    """
+    table = {str(key): value for key, value in front.designs.iloc[row].items()}
+    return like(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
+
+
+def extended(
+    problem: Problem, constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
+) -> tuple[Problem, str | None]:
+    """Return the problem with added requirements, merged with its own; what leaves nothing is said, and left out."""
+    held = {constraint.quantity: constraint for constraint in problem.constraints}
+    dimensions = {name: getattr(problem, name) for name in UNKNOWNS}
+    contradictions = []
+    for added in constraints:
+        own = held.get(added.quantity)
+        ends = common((added.lower, added.upper), (own.lower, own.upper) if own else (None, None))
+        of = problem.quantity(added.quantity)
+        if ends is None:
+            assert own is not None
+            both = f"{_words((own.lower, own.upper), of.unit.factor, of.unit.symbol)} is asked already"
+            contradictions.append(
+                f"{of.title} {_words((added.lower, added.upper), of.unit.factor, of.unit.symbol)}, where {both}"
+            )
+        else:
+            held[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
+    for name, wanted in ranges.items():
+        own_range = dimensions[name]
+        ends = common(wanted, (own_range.lower, own_range.upper))
+        if ends is None:
+            both = f"{_words((own_range.lower, own_range.upper), 1e3, 'mm')} is its range"
+            contradictions.append(f"{name} {_words(wanted, 1e3, 'mm')}, where {both}")
+        else:
+            assert ends[0] is not None
+            assert ends[1] is not None
+            dimensions[name] = Range(lower=ends[0], upper=ends[1])
+    # The search serves to come near, whatever method made the front.
+    settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
+    return (
+        replace(problem, constraints=tuple(held.values()), settings=settings, **dimensions),
+        "; ".join(contradictions) or None,
+    )
+
+
+def common(one: Ends, other: Ends) -> Ends | None:
+    """Return the range that two have in common, None if there is none."""
+    lower = max((end for end in (one[0], other[0]) if end is not None), default=None)
+    upper = min((end for end in (one[1], other[1]) if end is not None), default=None)
+    return None if lower is not None and upper is not None and lower > upper else (lower, upper)
+
+
+def _words(ends: Ends, factor: float, unit: str) -> str:
+    lower, upper = (None if end is None else f"{end * factor:.6g} {unit}".rstrip() for end in ends)
+    if lower == upper:
+        return f"exactly {lower}"
+    parts = ([f"at least {lower}"] if lower else []) + ([f"at most {upper}"] if upper else [])
+    return " and ".join(parts)
+
+
+def _require_new(
+    problem: Problem, row: Mapping[str, object], constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
+) -> None:
+    columns: list[tuple[str, float, Ends]] = []
+    for item in constraints:
+        of = problem.quantity(item.quantity)
+        columns.append((of.field, of.unit.factor, (item.lower, item.upper)))
+    for name, ends in ranges.items():
+        if name not in UNKNOWNS:
+            raise InputError(f"a range is that of crank, rod or offset; got {name!r}; name one of them")
+        columns.append((f"{name}_mm", 1e3, ends))
+    if not columns:
+        raise InputError("say what is to be different: add a constraint or a range")
+    if all(_within(row[key], ends, factor) for key, factor, ends in columns):
+        raise InputError("the design already meets what is added; ask for more of it")
+
+
+def _within(value: object, ends: Ends, factor: float) -> bool:
+    lower, upper = (None if end is None else end * factor for end in ends)
+    assert isinstance(value, float)
+    return (lower is None or value >= lower - FEASIBLE * abs(lower)) and (
+        upper is None or value <= upper + FEASIBLE * abs(upper)
+    )
+
+
+def _zoom(pile: Pile, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
+    """Add polished designs around the nearest ones, closer and closer."""
+    random = generator(seed, 2000)
+    width = _WIDEST
+    for _ in range(_ROUNDS):
+        parents = _ranked(pile, archive, values)[:_PARENTS]
+        before = distance(pile.values[parents[:1]], values, pile.span)[0]
+        for index, u in by_sheet(evaluators, pile.sheet, pile.u, parents):
+            evaluator = evaluators[index]
+            points = np.repeat(u, _CHILDREN, axis=0)
+            points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
+            points = points[evaluator.valid(points)]
+            if len(points):
+                pile.add(index, evaluator, polish(evaluator, points, pile.span))
+        after = distance(pile.values[_ranked(pile, archive, values)[:1]], values, pile.span)[0]
+        # What still comes nearer by about a step has a way to go.
+        if before - after < 0.5 * width:
+            width *= 0.5
+        if width < _CLOSEST:
+            break
+
+
+def _ranked(pile: Pile, archive: Archive, values: Array) -> NDArray[np.int64]:
+    """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
+    rows = pile.best()
+    if archive.met.any():  # samples within a band around the constraints prove nothing
+        own, screened = pile.values[rows] / pile.span, archive.values[archive.met] / pile.span
+        beaten = np.array(
+            [bool(((screened <= point).all(axis=1) & (screened < point - _BEATEN).any(axis=1)).any()) for point in own]
+        )
+        rows = rows[~beaten] if not beaten.all() else rows
+    apart = distance(pile.values[rows], values, pile.span)
+    return rows[np.lexsort((apart, pile.residual[rows] > STATIONARY))]
+
+
+def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:
+    """Return the nearest design of a front, alone; an empty front as it is."""
+    if not len(front):
+        return front
+    row = int(np.argmin(distance(front.values, values, span)))
+    return replace(
+        front,
+        message=f"1 design, {front.evaluations} evaluated",
+        designs=front.designs.iloc[[row]].reset_index(drop=True),
+        dimensions=front.dimensions[[row]],
+        values=front.values[[row]],
+        goals=(front.goals[row],),
+        active=(front.active[row],),
+    )

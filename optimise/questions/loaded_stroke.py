@@ -1,0 +1,104 @@
+"""Warnings of a loaded stroke that is the fast one, and of offsets that a slow stroke leaves out, before and after."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.linkage.linkage import Linkage, SlowStroke
+from ...model.linkage.loaded_stroke import loaded_stroke
+from ..problem.problem import Problem
+from ..search.elimination import sheets
+from ..search.sampling import first_samples
+
+if TYPE_CHECKING:
+    from ..front.front import ParetoFront
+
+_SAMPLES = 32
+"""Designs of a sheet that are looked at."""
+_SHEETS = 20
+"""Sheets that are looked at: of very many choices the first ones."""
+
+
+def expected_warnings(problem: Problem) -> list[str]:
+    """Return the warnings of a problem: loaded strokes that are fast within its ranges, and offsets that are left out.
+
+    The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
+    """
+    fast, turning, sides = 0, 0, []
+    for index, sheet in enumerate(sheets(problem)[:_SHEETS]):
+        part = problem.part(sheet.variant)
+        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), 1, index))
+        crank, rod, offset = designs.T[:3]
+        with np.errstate(invalid="ignore"):
+            designs = designs[(crank > 0.0) & (rod > crank + np.abs(offset))]
+        if part.slow_stroke is not None or not part.mechanism.loads or not len(designs):
+            continue
+        linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
+        slow = np.atleast_1d(linkage.slow_stroke(direction=part.mechanism.direction))
+        loaded = loaded_stroke(part.mechanism, designs)
+        found = _fast(slow, loaded)
+        fast, turning = fast + int(found.sum()), turning + int(((slow != "equal") & (loaded != "equal")).sum())
+        sides += [str(stroke) for stroke in loaded[found]]
+    if not fast:
+        return _left_out(problem)
+    where = "in every design" if fast == turning else "in a part of the designs"
+    return [*_left_out(problem), _sentence(problem, where, sides)]
+
+
+def front_warnings(front: ParetoFront) -> list[str]:
+    """Return the warnings of a front: loaded strokes of its designs that are fast, and offsets that were left out."""
+    if not len(front):
+        return []
+    free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
+    slow, loaded = (front.designs[name].to_numpy(dtype=str) for name in ("slow_stroke", "loaded_stroke"))
+    found = free & _fast(slow, loaded)
+    if not found.any():
+        return _left_out(front.problem)
+    count = int(found.sum())
+    where = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
+    return [*_left_out(front.problem), _sentence(front.problem, where, [str(stroke) for stroke in loaded[found]])]
+
+
+def _left_out(problem: Problem) -> list[str]:
+    """Return the warning of a slow stroke that leaves the lesser part of a range of offsets."""
+    for part in problem.parts():
+        side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
+        if side is None or not lower < 0.0 < upper:
+            continue
+        low, high = (0.0, upper) if side > 0.0 else (lower, 0.0)
+        if high - low < 0.5 * (upper - lower):
+            turning, other = "counter-clockwise", "clockwise"
+            if part.mechanism.direction < 0.0:
+                turning, other = other, turning
+            return [
+                f'slow_stroke = "{part.slow_stroke}" leaves only offsets from {1e3 * low:.6g} to {1e3 * high:.6g} mm '
+                f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, as the crank turns {turning}; "
+                f"if the others are meant, let it turn {other}"
+            ]
+    return []
+
+
+def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> NDArray[np.bool_]:
+    return np.asarray((slow != "equal") & (loaded != "equal") & (slow != loaded))
+
+
+def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
+    stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
+    has = any(_may_be_slow(part, stroke) for part in problem.parts())
+    turn = "" if has else ", with an offset of the other sign or the crank turning the other way"
+    other = "inward" if stroke == "outward" else "outward"
+    return (
+        f"{where} the stroke that the load acts against, the {stroke} one, is the fast one; if it is to be slow, "
+        f'require slow_stroke = "{stroke}" among the constraints{turn}; if it is meant so, require '
+        f'slow_stroke = "{other}"'
+    )
+
+
+def _may_be_slow(part: Problem, stroke: SlowStroke) -> bool:
+    """Whether the ranges of a part have designs with this stroke as the slow one."""
+    side = replace(part, slow_stroke=stroke).slow_side() or 1.0
+    return side * part.offset.upper > 0.0 or side * part.offset.lower > 0.0

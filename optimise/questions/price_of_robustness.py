@@ -1,0 +1,65 @@
+"""What robustness costs: the robust front beside the nominal one of the same problem."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..front.front import ParetoFront
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..problem.robust import nominal
+from ..search.evaluation import FEASIBLE
+from ..solve import solve
+
+
+@dataclass(frozen=True)
+class RobustCost:
+    """A robust front and the nominal one, objectives (n, m) in shown units.
+
+    nominal: of the nominal designs, as they are drawn. within: of the same designs, within tolerances. robust: of the
+    robust designs, within tolerances. keeps: how many nominal designs keep all requirements within tolerances.
+    """
+
+    nominal: Array
+    within: Array
+    robust: Array
+    keeps: int
+
+    def cost(self, column: int, *, maximised: bool) -> float:
+        """Return by how much the best promised value of an objective falls short of the nominal best, shown unit."""
+        best = np.max if maximised else np.min
+        away = float(best(self.nominal[:, column]) - best(self.robust[:, column]))
+        return away if maximised else -away
+
+
+def robust_cost(front: ParetoFront) -> RobustCost | None:
+    """Return what the robustness of a front costs; None if the nominal problem has no front. Solves that problem."""
+    problem = front.problem
+    plain = solve(nominal(problem))
+    if not len(plain) or not len(front):
+        return None
+    keeps = 0
+    within = np.zeros(plain.values.shape)
+    for row in range(len(plain)):
+        part = problem.part(plain.variants[row] if plain.variants else 0)
+        within[row] = _values(part, plain.dimensions[row : row + 1])
+        keeps += _keeps(part, plain.dimensions[row : row + 1])
+    names = [plain.problem.quantity(objective.quantity).field for objective in plain.objectives]
+    fields = [problem.quantity(objective.quantity).field for objective in front.objectives]
+    return RobustCost(plain.designs[names].to_numpy(float), within, front.designs[fields].to_numpy(float), keeps)
+
+
+def _values(problem: Problem, design: Array) -> list[float]:
+    quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
+    return [float(q.evaluate(problem.mechanism, design).values[0]) * q.unit.factor for q in quantities]
+
+
+def _keeps(problem: Problem, design: Array) -> bool:
+    for constraint in problem.constraints:
+        value = float(problem.quantity(constraint.quantity).evaluate(problem.mechanism, design).values[0])
+        for bound, sign in ((constraint.lower, 1.0), (constraint.upper, -1.0)):
+            if bound is not None and not sign * (value - bound) >= -FEASIBLE * (abs(bound) or 1.0):
+                return False
+    return True

@@ -1,0 +1,165 @@
+"""From polished designs to a front: the best of them, with all that is to be known of each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from ...objectives.analysis import analyse
+from ..front.constant import is_constant
+from ..front.front import ParetoFront, Status
+from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
+from ..front.stationarity import STATIONARY, Array, multipliers
+from ..problem.gradients import without_gradient
+from ..problem.problem import Problem, choice_field
+from .candidates import Pile
+from .evaluation import Evaluator, constraints_of
+from .fingerprint import versions
+from .search import Run
+
+SELECTING, FINISHING = "selecting designs", "finishing designs"
+"""Stages after the rounds: the best designs are chosen, then all that is to be known of each is computed."""
+_AT_ONCE = 100  # designs analysed between two questions whether to end
+_GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
+
+
+def assemble(
+    problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, rows: NDArray[np.int64] | None = None
+) -> ParetoFront:
+    """Return the front of the best designs of a pile that is not empty.
+
+    rows: those to deliver, of a search that was told to end.
+    """
+    status: Status = "done" if rows is None else "cancelled"
+    rows = _best(problem, pile, run.stage(SELECTING)) if rows is None else rows
+    values = pile.values[rows]
+    rows = rows[np.lexsort(values.T[::-1])]
+    values, dimensions = pile.values[rows], pile.dimensions[rows]
+    span = span_of(problem, values) if len(rows) > 1 else pile.span
+    goals = [pile.goals[row] for row in rows]
+    active = [pile.active[row] for row in rows]
+    residual = np.array(
+        [
+            multipliers(slopes * (pile.span / span)[owner.astype(int)][:, None], edges)[0]
+            for (owner, slopes), edges in zip(goals, active, strict=True)
+        ]
+    )
+    if without_gradient(problem):  # nothing is known of slopes: neither whether a design is optimal nor its rates
+        residual[:] = np.inf
+        goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
+        active = [edges[:, :0] for edges in active]
+    variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[rows]], dtype=np.int64)
+    table = table_of(problem, variants, dimensions, run.stage(FINISHING))
+    table["residual"] = residual
+    table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
+    evaluations = sum(evaluator.evaluations for evaluator in evaluators)
+    message = f"{len(rows)} design{'s' if len(rows) != 1 else ''}, {evaluations} evaluated"
+    if status == "cancelled":
+        message = f"cancelled: {message}, the front may be incomplete"
+    ideal = values.min(axis=0)
+    return ParetoFront(
+        problem=problem,
+        status=status,
+        message=message,
+        designs=table,
+        dimensions=dimensions,
+        values=values,
+        goals=tuple((owner, slopes * pile.span[owner.astype(int)][:, None]) for owner, slopes in goals),
+        active=tuple(active),
+        hypervolume=hypervolume(values, ideal, span),
+        history=run.history(ideal, span, *((_GLIMPSE,) if status == "cancelled" else ())),
+        evaluations=evaluations,
+        seconds=run.ledger.seconds,
+        seed=problem.settings.seed,
+        versions=versions(),
+        variants=tuple(variants.tolist()) if problem.variants else (),
+    )
+
+
+def _best(problem: Problem, pile: Pile, stand: Stand) -> NDArray[np.int64]:
+    rows = pile.best(stand)
+    if len(problem.objectives) == 1:
+        return rows
+    best = tuple(dict.fromkeys(np.argmin(pile.values[rows], axis=0).tolist()))
+    return rows[choose(pile.values[rows], problem.settings.designs, always=best, stand=stand)]
+
+
+def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> pd.DataFrame:
+    """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
+
+    variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
+    """
+    parts, done = [], 0
+    for variant in np.unique(variants).tolist():
+        own = np.flatnonzero(variants == variant)
+        part = problem.part(variant)
+        for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
+            stand(done, len(dimensions))
+            table = analyse(part.mechanism, dimensions[rows], own=problem.own)
+            stand(done, len(dimensions))
+            _slacks(table, part, dimensions[rows])
+            done += len(rows)
+            for place, name in enumerate(problem.choices):
+                label = problem.variants[variant].labels[place]
+                table.insert(list(table.columns).index("stroke_mm"), choice_field(name), label)
+            parts.append(table.set_index(rows))
+    return parts[0] if len(parts) == 1 else pd.concat(parts).sort_index()
+
+
+def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
+    for constraint in constraints_of(problem):
+        quantity = problem.quantity(constraint.quantity)
+        values = quantity.evaluate(problem.mechanism, dimensions).values
+        slack = np.full(len(values), np.inf)
+        if constraint.equality:
+            slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
+        else:
+            if constraint.upper is not None:
+                slack = np.minimum(slack, _clear(values, constraint.upper, constraint.upper - values))
+            if constraint.lower is not None:
+                slack = np.minimum(slack, _clear(values, constraint.lower, values - constraint.lower))
+        table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+
+
+def _clear(values: Array, bound: float | None, slack: Array) -> Array:
+    """Return distances from a bound; 0 where a value differs from it by rounding."""
+    on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
+    return np.where(on_it, 0.0, slack)
+
+
+def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
+    """Return a front without designs, which says why."""
+    m = len(problem.objectives)
+    return ParetoFront(
+        problem=problem,
+        status=status,
+        message=message,
+        designs=pd.DataFrame(),
+        dimensions=np.zeros((0, 3)),
+        values=np.zeros((0, m)),
+        goals=(),
+        active=(),
+        hypervolume=0.0,
+        history=tuple(run.told),
+        evaluations=sum(evaluator.evaluations for evaluator in evaluators),
+        seconds=run.ledger.seconds,
+        seed=problem.settings.seed,
+        versions=versions(),
+    )
+
+
+def only(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, row: int) -> ParetoFront:
+    """Return a front of one design of the pile; its residual is scaled by the pile's span."""
+    return assemble(problem, evaluators, pile.part(np.array([row])), run)
+
+
+def span_of(problem: Problem, values: Array) -> Array:
+    """Return the ranges (m,) that objectives (n, m) are scaled by; sizes where a single objective has no front."""
+    _, span = scaling(values)
+    sizes = np.array([abs(objective.target or 0.0) for objective in problem.objectives])
+    if values.shape[1] == 1:
+        best = np.abs(values.min(axis=0))
+        return np.asarray(np.maximum(np.maximum(best, sizes), np.ptp(values, axis=0)) + 1e-300)
+    # A target that the whole front meets has no range but rounding.
+    return np.maximum(span, 1e-6 * sizes)

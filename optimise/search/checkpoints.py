@@ -1,0 +1,253 @@
+"""What a search has found out, step by step: a run that is given it again goes on where it was stopped, bit for bit.
+
+A search is a function of its problem and of what its costly steps gave: a batch that was screened or polished, a local
+solver from one start, a brood that was bred. Given these again it takes the same way without computing them, and from
+where they end it computes. So every method can go on without knowing of it, and what must be kept is little: what a
+step gave, not the hundreds of evaluations that it took.
+
+Each step is kept with a digest of what it was given. A search that asks for another one is another search, or computes
+otherwise: of another job, of other versions, on another kind of processor. It is refused, not mixed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import ForeignRecords
+from ..front.stationarity import Array
+
+PAUSE = 1.0
+"""s between two records of a long round: what a kill loses at most, and the step under way."""
+
+Numbers = NDArray[np.float64] | NDArray[np.int64]
+Words = NDArray[np.int64]
+
+
+class Cancelled(Exception):
+    """The search is to end with what it has; see `Ledger.poll`."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Whose records these are. problem: a digest of it. versions: of all that computes, as JSON."""
+
+    problem: str
+    versions: str
+
+
+@dataclass(frozen=True)
+class Record:
+    """Some steps of a search, the next ones after those of the record before.
+
+    identity: whose. number: counted from zero. told: rounds told up to here. seconds: of the search up to here. words:
+    the steps end to end, numbers of 64 bits as they lie in memory; see `Ledger`.
+    """
+
+    identity: Identity
+    number: int
+    told: int
+    seconds: float
+    words: Words
+
+
+class Counts(Protocol):
+    """What a step that evaluates designs counts them with."""
+
+    evaluations: int
+
+
+class Ledger:
+    """The steps of one search: first those of an earlier run, then those that are computed now, which it keeps.
+
+    told: rounds told so far. before: those that the earlier run told. repeated: records of the earlier run that are
+    gone through, of `resumed`. ended: when the search was first told to end, by `time.perf_counter`; else None.
+
+    In `Record.words` a step is two words of digest, the evaluations that it took, and the number of its arrays; then
+    of each array its kind (0 for floats, 1 for integers), its dimensions' number and sizes, and its numbers.
+    """
+
+    def __init__(
+        self,
+        *,
+        cancelled: Callable[[], bool] | None = None,
+        keep: Callable[[Record], None] | None = None,
+        past: Sequence[Record] = (),
+        identity: Callable[[], Identity] | None = None,
+    ) -> None:
+        """Go on after `past`, all records that an earlier run of the same search kept, in order, however many.
+
+        cancelled: asked many times a second whether the search is to end. keep: called with every new record. identity:
+        whose search this is; needed to keep and to go on only. Raises `ForeignRecords` for records of another one.
+        """
+        self._cancelled = cancelled
+        self._keep = keep
+        self._identity = identity() if identity is not None and (keep is not None or past) else None
+        _require_own(past, self._identity)
+        self.repeated, self.resumed = 0, len(past)
+        self.ended: float | None = None
+        self._past = _steps(self._gone_through(past))
+        self._next = next(self._past, None)
+        self.before = past[-1].told if past else 0
+        self._number = len(past)
+        self._pending: list[Words] = []
+        self.told = 0
+        now = time.perf_counter()
+        self._start = now - (past[-1].seconds if past else 0.0)
+        self._when = now
+
+    @property
+    def replaying(self) -> bool:
+        """Whether steps of the earlier run are left."""
+        return self._next is not None
+
+    @property
+    def seconds(self) -> float:
+        """Time since the search started, that of the earlier run included."""
+        return time.perf_counter() - self._start
+
+    def poll(self) -> None:
+        """Raise `Cancelled` if the search is to end. To be called wherever it computes, every second or sooner."""
+        if self._next is None:
+            self.interrupt()
+
+    def interrupt(self) -> None:
+        """Raise `Cancelled` if the search is to end, also while it replays; for what may never end by itself."""
+        if self._cancelled is not None and self._cancelled():
+            self.ended = time.perf_counter() if self.ended is None else self.ended
+            raise Cancelled
+
+    def close(self) -> None:
+        """Neither ask nor keep from now on: what follows belongs to no step."""
+        self._cancelled = self._keep = self._next = None
+
+    def step(
+        self, kind: str, given: Sequence[Numbers], compute: Callable[[], tuple[Numbers, ...]], counts: Counts
+    ) -> tuple[Numbers, ...]:
+        """Return what a step gives: what it gave in the earlier run, else what it computes.
+
+        kind, given: what tells it from other steps, all that it depends on beside the problem. counts: takes the
+        evaluations. Raises `ForeignRecords` if the earlier run did something else here.
+        """
+        if self._next is None and self._keep is None:
+            return compute()
+        key = _key(kind, given)
+        if self._next is not None:
+            past, self._next = self._next, next(self._past, None)
+            if past.key != key:
+                raise ForeignRecords(_OTHERWISE.format(kind))
+            counts.evaluations += past.evaluations
+            return past.found
+        before = counts.evaluations
+        found = compute()
+        self._pending.append(_words(_Step(key, counts.evaluations - before, found)))
+        if time.perf_counter() - self._when >= PAUSE:
+            self._flush()
+        return found
+
+    def turn(self) -> bool:
+        """Keep the steps of a round that has ended; return whether it is new, not one that the earlier run told."""
+        self.told += 1
+        self._flush()
+        return self.told > self.before
+
+    def _gone_through(self, past: Sequence[Record]) -> Iterator[Record]:
+        """Yield records, and count those whose steps have all been taken."""
+        for record in past:
+            yield record
+            self.repeated += 1
+
+    def _flush(self) -> None:
+        if self._keep is not None and self._pending and self._identity is not None:
+            words, self._pending = np.concatenate(self._pending), []
+            self._number += 1
+            self._keep(Record(self._identity, self._number - 1, self.told, self.seconds, words))
+        self._when = time.perf_counter()
+
+
+@dataclass(frozen=True)
+class _Step:
+    key: tuple[int, int]
+    evaluations: int
+    found: tuple[Numbers, ...]
+
+
+def _key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
+    digest = hashlib.blake2b(kind.encode(), digest_size=16)
+    for array in given:
+        digest.update(str(array.shape).encode())
+        digest.update(np.ascontiguousarray(array).view(np.uint8).data if array.size else b"")
+    first, second = np.frombuffer(digest.digest(), np.int64).tolist()
+    return first, second
+
+
+def _words(step: _Step) -> Words:
+    parts = [np.array([*step.key, step.evaluations, len(step.found)], dtype=np.int64)]
+    for array in step.found:
+        integers = array.dtype == np.int64
+        parts.append(np.array([integers, array.ndim, *array.shape], dtype=np.int64))
+        parts.append(np.ascontiguousarray(array).reshape(-1).view(np.int64))
+    return np.concatenate(parts)
+
+
+def _steps(past: Iterable[Record]) -> Iterator[_Step]:
+    for record in past:
+        words, at = record.words, 0
+        try:
+            while at < len(words):
+                first, second, evaluations, count = words[at : at + 4].tolist()
+                at += 4
+                found = []
+                for _ in range(count):
+                    integers, dimensions = words[at : at + 2].tolist()
+                    shape = words[at + 2 : at + 2 + dimensions].tolist()
+                    at += 2 + dimensions
+                    size = int(np.prod(shape, dtype=np.int64))
+                    array = words[at : at + size].reshape(shape)
+                    found.append(array.copy() if integers else array.view(np.float64).copy())
+                    at += size
+                yield _Step((first, second), evaluations, tuple(found))
+        except ValueError as error:
+            raise ForeignRecords(f"the records of a run must be whole; got a damaged one ({error}); {_ANEW}") from error
+
+
+def _require_own(past: Sequence[Record], identity: Identity | None) -> None:
+    """Raise `ForeignRecords` unless these are all records of this search so far, in order."""
+    for number, record in enumerate(past):
+        if identity is None or record.identity.problem != identity.problem:
+            raise ForeignRecords(f"a run goes on only with the job, the method and the seed it began with; {_ANEW}")
+        if record.identity.versions != identity.versions:
+            raise ForeignRecords(
+                f"a run goes on only with the versions that it began with; got {record.identity.versions} where these "
+                f"are {identity.versions}; install those, or {_ANEW}"
+            )
+        if record.number != number:
+            raise ForeignRecords(
+                f"a run goes on from all of its records in order; got number {record.number} in place of {number}; "
+                f"{_ANEW}"
+            )
+
+
+_ANEW = "start the run anew"
+_OTHERWISE = (
+    "a run goes on only where it computes the same; the search came to another step ({}) than the one that was kept, "
+    f"on another kind of processor perhaps; {_ANEW}"
+)
+
+
+def floats(value: Numbers) -> Array:
+    """Return an array of a step that is known to hold floats."""
+    assert value.dtype == np.float64
+    return value  # type: ignore[return-value]
+
+
+def integers(value: Numbers) -> NDArray[np.int64]:
+    """Return an array of a step that is known to hold integers."""
+    assert value.dtype == np.int64
+    return value  # type: ignore[return-value]

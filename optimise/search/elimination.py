@@ -1,0 +1,272 @@
+"""Equality requirements eliminated exactly: the search moves only in what they leave free.
+
+Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
+free unknowns is chosen from which the rules, applied one after the other, give the rest. Requirements that no rule
+covers stay with the solver as equality constraints. Numbers that vary beside the three are free: no rule computes them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.kernel.arithmetic import STEP
+from ...model.kinematics import geometry
+from ..problem.problem import Constraint, Problem, Range
+
+Array = NDArray[np.float64]
+UNKNOWNS = ("crank", "rod", "offset")
+ZERO = 1e-300
+"""An offset of this size counts as zero."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One way to compute an unknown: `target` from `sources`, by `formula`. `origin` names the requirement.
+
+    wanted: the values that its formula was made of; another process makes it of them again.
+    """
+
+    origin: str
+    target: str
+    sources: tuple[str, ...]
+    formula: Callable[..., Any]
+    wanted: tuple[tuple[str, float], ...] = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.wanted, self.origin, self.target, self.sources)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One sign of the offset with the free unknowns and the steps that give the others.
+
+    sign: of the offset. free: names; crank, rod and offset come before the numbers that vary beside them. lower, upper:
+    of the free unknowns, SI. bounds: of all unknowns, SI. names: of all unknowns, in the order of a design's numbers.
+    variant: which combination of the problem's choices, see `Problem.part`.
+    eliminated: requirements that hold exactly wherever the roots taken are not spurious, which `evaluation` checks.
+    remaining: constraints left to the solver.
+    """
+
+    sign: float
+    free: tuple[str, ...]
+    lower: Array
+    upper: Array
+    bounds: dict[str, Range]
+    steps: tuple[Rule, ...]
+    eliminated: tuple[str, ...]
+    remaining: tuple[Constraint, ...]
+    names: tuple[str, ...] = UNKNOWNS
+    variant: int = 0
+
+    def dimensions(self, u: Any) -> Any:
+        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage fulfils it.
+
+        Columns: crank, rod, offset, m, and the numbers that vary beside them, SI. Complex points give complex designs.
+        """
+        u = np.atleast_2d(u)
+        known: dict[str, Any] = {
+            name: np.full(len(u), bounds.lower, dtype=u.dtype) for name, bounds in self.bounds.items() if bounds.fixed
+        }
+        for column, name in enumerate(self.free):
+            known[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
+        with np.errstate(all="ignore"):
+            for step in self.steps:
+                known[step.target] = step.formula(*(known[name] for name in step.sources)) + 0.0 * u.sum(axis=1)
+        offset = self.sign * known["offset"]
+        if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
+            offset = np.where(offset == 0.0, offset - ZERO, offset)
+        return np.stack([known["crank"], known["rod"], offset, *(known[name] for name in self.names[3:])], axis=1)
+
+    def jacobian(self, u: Array) -> Array:
+        """Return the derivatives (n, 3 + v, k) of the designs by the unit-box coordinates, by complex step."""
+        columns = []
+        for column in range(u.shape[1]):
+            stepped = u.astype(np.complex128)
+            stepped[:, column] += 1j * STEP
+            columns.append(self.dimensions(stepped).imag / STEP)
+        return np.stack(columns, axis=2) if columns else np.zeros((len(u), len(self.names), 0))
+
+
+def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
+    """Return the sheets of a problem: one for each sign that its offset may have, in every variant of its choices.
+
+    Those that leave something free come first: the search moves on them; of each other one its only design is all.
+    eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
+    leaves one sign. Raises `InputError` where the ranges have no offset of that sign.
+    """
+    parts = problem.parts()
+    require_slow_side(problem, parts)
+    found = (
+        _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
+        for variant, part in enumerate(parts)
+        for sign, offset in _signs(part)
+    )
+    return tuple(sorted(found, key=lambda sheet: not sheet.free))
+
+
+def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
+    """Raise `InputError` if a slow stroke is asked that no offset of any part's range has."""
+    if any(_signs(part) for part in parts):
+        return
+    part = parts[0]
+    side = part.slow_side()
+    assert side is not None
+    turning = "counter-clockwise" if part.mechanism.direction > 0.0 else "clockwise"
+    other = "clockwise" if part.mechanism.direction > 0.0 else "counter-clockwise"
+    raise InputError(
+        f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
+        f"{part.slow_stroke} stroke is the slow one where the offset is {'above' if side > 0.0 else 'below'} 0; got an "
+        f"offset from {1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset reach "
+        f"{'above' if side > 0.0 else 'below'} 0"
+        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
+    )
+
+
+def _signs(problem: Problem) -> list[tuple[float, Range]]:
+    """Return the signs that the offset may have, each with the range of its size."""
+    lower, upper = problem.offset.lower, problem.offset.upper
+    signed = []
+    if upper > 0.0 or lower == upper == 0.0:
+        signed.append((1.0, Range(lower=max(lower, 0.0), upper=upper)))
+    if lower < 0.0:
+        signed.append((-1.0, Range(lower=max(-upper, 0.0), upper=-lower)))
+    side = problem.slow_side()
+    return signed if side is None else [(sign, sizes) for sign, sizes in signed if sign == side and sizes.upper > 0.0]
+
+
+def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
+    bounds = {"crank": problem.crank, "rod": problem.rod, "offset": offset}
+    wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
+    rules = _rules(wanted) if eliminate else []
+    fixed = tuple(name for name in UNKNOWNS if bounds[name].fixed)
+    # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
+    loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
+    best: tuple[tuple[int, int], tuple[str, ...], tuple[Rule, ...]] | None = None
+    for size in range(len(loose) + 1):
+        for free in itertools.combinations(loose, size):
+            for steps in _ways(set(free) | set(fixed), rules):
+                score = (len(wanted) - len(_fulfilled(steps)), size)
+                if best is None or score < best[0]:
+                    best = (score, free, steps)
+    assert best is not None  # all unknowns free always works
+    _, free, steps = best
+    used = _fulfilled(steps)
+    more = {item.name: Range(lower=item.lower, upper=item.upper) for item in problem.mechanism.varying}
+    free = (*free, *(name for name, ends in more.items() if not ends.fixed))
+    bounds |= more
+    return Sheet(
+        sign=sign,
+        free=free,
+        lower=np.array([bounds[name].lower for name in free]),
+        upper=np.array([bounds[name].upper for name in free]),
+        bounds=bounds,
+        steps=steps,
+        eliminated=tuple(name for name in wanted if name in used),
+        remaining=tuple(c for c in problem.constraints if c.quantity not in used),
+        names=(*UNKNOWNS, *more),
+        variant=variant,
+    )
+
+
+def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
+    """Yield every order of rules that gives the unknowns which are not known yet.
+
+    Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
+    them alone, which completes the pair.
+    """
+    if len(known) == len(UNKNOWNS):
+        yield steps
+    spent = {step.origin for step in steps}
+    for rule in rules:
+        if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
+            yield from _ways(known | {rule.target}, rules, (*steps, rule))
+
+
+def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:
+    """Return the requirements that hold exactly after these steps.
+
+    One rule of a combination alone fulfils one relation between two requirements, hence neither of them.
+    """
+    single = {step.origin for step in steps if "+" not in step.origin}
+    for step in steps:
+        parts = set(step.origin.split("+"))
+        if len(parts) > 1 and parts & single:
+            single |= parts
+    return single
+
+
+def _rules(wanted: dict[str, float]) -> list[Rule]:
+    """Return every rule that the wanted values give."""
+    rules: list[Rule] = []
+    if "rod_to_offset" in wanted:
+        k = wanted["rod_to_offset"]
+        rules += [
+            Rule("rod_to_offset", "rod", ("offset",), lambda a: k * a),
+            Rule("rod_to_offset", "offset", ("rod",), lambda l: l / k),
+        ]
+    if "rod_to_crank" in wanted:
+        q = wanted["rod_to_crank"]
+        rules += [
+            Rule("rod_to_crank", "rod", ("crank",), lambda r: q * r),
+            Rule("rod_to_crank", "crank", ("rod",), lambda l: l / q),
+        ]
+    if "transmission_angle" in wanted:
+        c = math.cos(wanted["transmission_angle"])
+        rules += [
+            Rule("transmission_angle", "rod", ("crank", "offset"), lambda r, a: (r + a) / c),
+            Rule("transmission_angle", "crank", ("rod", "offset"), lambda l, a: c * l - a),
+            Rule("transmission_angle", "offset", ("crank", "rod"), lambda r, l: c * l - r),
+        ]
+    if "time_ratio" in wanted:
+        b = math.pi * (wanted["time_ratio"] - 1.0) / (wanted["time_ratio"] + 1.0)
+        sine, cosine = math.sin(b), math.cos(b)
+        if "stroke" in wanted:
+            # Cosine rule in the triangle of crank pivot and dead centres: l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
+            half = 0.5 * wanted["stroke"] ** 2
+            rules.append(
+                Rule(
+                    "stroke+time_ratio",
+                    "crank",
+                    ("rod",),
+                    lambda l: np.sqrt((half - l * l * (1.0 - cosine)) / (1.0 + cosine)),
+                )
+            )
+            if cosine < 1.0:
+                rules.append(
+                    Rule(
+                        "stroke+time_ratio",
+                        "rod",
+                        ("crank",),
+                        lambda r: np.sqrt((half - r * r * (1.0 + cosine)) / (1.0 - cosine)),
+                    )
+                )
+        rules.append(
+            Rule(
+                "time_ratio",
+                "offset",
+                ("crank", "rod"),
+                lambda r, l: geometry.offset_from_excess_angle(r, l, sine, cosine),
+            )
+        )
+    if "stroke" in wanted:
+        s = wanted["stroke"]
+        rules += [
+            Rule("stroke", "crank", ("rod", "offset"), lambda l, a: geometry.crank_from_stroke(s, l, a)),
+            Rule("stroke", "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
+            Rule("stroke", "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
+        ]
+    return [replace(rule, wanted=tuple(wanted.items())) for rule in rules]
+
+
+def _again(wanted: tuple[tuple[str, float], ...], origin: str, target: str, sources: tuple[str, ...]) -> Rule:
+    """Return the rule that the wanted values gave."""
+    rules = _rules(dict(wanted))
+    return next(rule for rule in rules if (rule.origin, rule.target, rule.sources) == (origin, target, sources))

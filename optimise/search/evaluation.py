@@ -1,0 +1,334 @@
+"""Objectives and constraints of a problem as functions of the free unknowns: quickly for many, exactly for few."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...objectives.quantity import Array, Pieces, Quantity
+from ..engine.chunks import Chunked
+from ..engine.engine import Engine
+from ..engine.serial import Serial
+from ..engine.shared import Shared
+from ..problem.problem import Constraint, Objective, Problem
+from .checkpoints import Ledger, floats, integers
+from .elimination import UNKNOWNS, Sheet
+from .judging import exactly, joined, quickly
+
+FEASIBLE = 1e-9
+"""Relative violation of a constraint that counts as rounding."""
+_HUGE = 1e100
+LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
+"""Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
+LEAST_SELF_LOCKING_MARGIN = np.radians(5.0)
+"""Least self-locking margin of a machine with friction where the problem sets none: forces grow as 1 / sin(margin)."""
+LEAST_TIME_RATIO = 1.01
+"""Least time ratio where a slow stroke is asked and the problem sets none: a drive's speed varies by about one percent
+itself, and without offset neither stroke is slow."""
+FLOORS = {
+    "transmission_angle": LEAST_TRANSMISSION_ANGLE,
+    "self_locking_margin": LEAST_SELF_LOCKING_MARGIN,
+    "time_ratio": LEAST_TIME_RATIO,
+}
+"""Floors that hold where a problem sets none, SI."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
+
+    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
+    objective that a row belongs to.
+    """
+
+    values: Array
+    gradients: Array
+    labels: Array
+    owner: NDArray[np.int64]
+
+    def put(self, row: int, other: Rows, source: int) -> None:
+        """Overwrite a design's rows with those of a design of `other`."""
+        self.values[row] = other.values[source]
+        self.gradients[row] = other.gradients[source]
+        self.labels[row] = other.labels[source]
+
+
+def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
+    """Return the constraints of a problem with the default floors where none is set.
+
+    They are on the transmission angle, where there is friction on the self-locking margin, and where a slow stroke is
+    asked on the time ratio.
+    """
+    found = _with_floor(problem.constraints, "transmission_angle", FLOORS["transmission_angle"])
+    if problem.mechanism.fullest.friction.acts:
+        found = _with_floor(found, "self_locking_margin", FLOORS["self_locking_margin"])
+    if problem.slow_stroke is not None:
+        found = _with_floor(found, "time_ratio", FLOORS["time_ratio"], above=1.0)
+    return found
+
+
+def _with_floor(
+    constraints: tuple[Constraint, ...], name: str, floor: float, above: float | None = None
+) -> tuple[Constraint, ...]:
+    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
+    own = [c for c in constraints if c.quantity == name]
+    if any(c.lower is not None and (above is None or c.lower > above) for c in own):
+        return constraints
+    upper, least = next((c.upper for c in own), None), above or 0.0
+    lower = floor if upper is None else min(floor, least + 0.5 * (upper - least))
+    kept = [c for c in constraints if c.quantity != name]
+    return (*kept, Constraint(quantity=name, lower=float(lower), upper=upper))
+
+
+def minimised(objective: Objective, values: Array) -> Array:
+    """Return an objective's values as they are minimised: negated if maximised, a distance if it has a target."""
+    if objective.sense == "maximise":
+        return -values
+    if objective.target is not None:
+        return np.abs(values - objective.target)
+    return values
+
+
+class Evaluator:
+    """Evaluates one sheet of a problem.
+
+    engine: where heavy batches are evaluated; it does not show in the results.
+    """
+
+    def __init__(
+        self, problem: Problem, sheet: Sheet, ledger: Ledger | None = None, engine: Engine | None = None
+    ) -> None:
+        """Prepare the constraints that remain on the sheet, cheapest first.
+
+        ledger: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
+        """
+        self.ledger = ledger or Ledger()
+        self.engine = engine or Serial()
+        problem = problem.part(sheet.variant)
+        self.problem = problem
+        self.sheet = sheet
+        self.mechanism = problem.mechanism
+        self.dimension = len(sheet.free)
+        remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
+        self.constraints = tuple(sorted(remaining, key=lambda c: _costly(problem.quantity(c.quantity))))
+        self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
+        self.loose = any(c.equality for c in self.constraints)
+        self.evaluations = 0
+        self.chunked = Chunked(Shared(self), self.engine, self.ledger.poll)
+
+    def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
+        return Evaluator, (self.problem, self.sheet)
+
+    # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
+
+    def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
+        """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) of points of the unit box.
+
+        The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
+        violate a constraint by more than `band` have NaN objectives. Peaks are screened (see `model.screening`).
+        """
+        dimensions = self.sheet.dimensions(u)
+        rows, found, violation = self.ledger.step(
+            "screening", (u, np.array([band])), lambda: self._screened(dimensions, band), self
+        )
+        objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
+        objectives[integers(rows)] = floats(found)
+        return dimensions, objectives, floats(violation)
+
+    def _screened(self, dimensions: Array, band: float) -> tuple[NDArray[np.int64], Array, Array]:
+        """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
+        self.ledger.poll()
+        violation = self._geometry_violation(dimensions)
+        self.evaluations += len(dimensions)
+        # What is out of reach already needs no cycle computed.
+        for costly in (False, True):
+            constraints = [c for c in self.constraints if _costly(self.problem.quantity(c.quantity)) == costly]
+            rows = np.flatnonzero(violation <= band + FEASIBLE if costly else np.isfinite(violation))
+            if constraints and len(rows):
+                found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
+                for constraint, values in zip(constraints, found, strict=True):
+                    violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
+        rows = np.flatnonzero(violation <= band + FEASIBLE)
+        objectives = np.zeros((len(rows), len(self.problem.objectives)))
+        if len(rows):
+            found = self._quick([objective.quantity for objective in self.problem.objectives], dimensions[rows])
+            for column, (objective, values) in enumerate(zip(self.problem.objectives, found, strict=True)):
+                objectives[:, column] = minimised(objective, values)
+        had = np.isfinite(objectives).all(axis=1)
+        violation[rows[~had]] = np.inf
+        return rows[had], objectives[had], violation
+
+    def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
+        parts: list[list[Array]] = self.chunked(_quickly, tuple(names), dimensions)
+        return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+
+    def _geometry_violation(self, dimensions: Array) -> Array:
+        """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
+        crank, rod, offset = dimensions.T[:3]
+        violation = np.zeros(len(dimensions))
+        with np.errstate(invalid="ignore"):
+            turns = (crank > 0.0) & (rod > crank + np.abs(offset))
+        violation[~turns] = np.inf
+        for name in self.computed:
+            bounds = self.sheet.bounds[name]
+            value = np.abs(dimensions[:, UNKNOWNS.index(name)])
+            scale = max(bounds.upper, 1e-300)
+            violation = np.fmax(violation, (value - bounds.upper) / scale)
+            violation = np.fmax(violation, (bounds.lower - value) / scale)
+        rows = np.flatnonzero(turns)
+        for constraint in self.problem.constraints:
+            if constraint.quantity in self.sheet.eliminated and len(rows):
+                values = self.problem.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
+                spurious = _violation(constraint, values) > FEASIBLE
+                violation[rows[spurious]] = np.inf
+        return violation
+
+    # ---- exact: for the polish and the proof ---------------------------------------------------------------------
+
+    def valid(self, u: Array) -> NDArray[np.bool_]:
+        """Return which points give a linkage that turns fully."""
+        return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
+
+    def exact(self, u: Array) -> tuple[Rows, Rows]:
+        """Return objective rows and constraint rows, in unit-box coordinates, of points where `valid` holds."""
+        self.ledger.poll()
+        dimensions = self.sheet.dimensions(u)
+        jacobian = self.sheet.jacobian(u)
+        self.evaluations += len(u)
+        wanted = [objective.quantity for objective in self.problem.objectives]
+        names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
+        found_of = dict(zip(names, joined(self.chunked(_exactly, names, dimensions)), strict=True))
+        cache: dict[str, Pieces] = {}
+
+        def pieces(name: str) -> Pieces:
+            if name not in cache:
+                found = found_of[name]
+                # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
+                bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
+                # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
+                unknown = np.isnan(found.values)
+                values = np.where(bounded | unknown, found.values, np.copysign(np.inf, found.values))
+                slopes = np.where(bounded[:, :, None], found.gradients, 0.0)
+                slopes = np.einsum("npd,ndk->npk", slopes, jacobian)
+                cache[name] = Pieces(values, slopes, found.labels, found.least)
+            return cache[name]
+
+        parts = []
+        for index, objective in enumerate(self.problem.objectives):
+            parts += [(index, *part) for part in _objective_rows(objective, pieces(objective.quantity))]
+        goals = _stack(parts, len(u), self.dimension)
+        parts = []
+        for index, constraint in enumerate(self.constraints):
+            parts += [(index, *part) for part in _constraint_rows(constraint, pieces(constraint.quantity))]
+        count = len(self.constraints)
+        for name in self.computed:
+            column = UNKNOWNS.index(name)
+            sign = self.sheet.sign if name == "offset" else 1.0
+            value = sign * dimensions[:, column : column + 1]
+            slope = sign * jacobian[:, column : column + 1, :]
+            bounds = self.sheet.bounds[name]
+            scale = max(bounds.upper, 1e-300)
+            none = np.zeros_like(value)
+            parts.append((count, (value - bounds.upper) / scale, slope / scale, none))
+            parts.append((count, (bounds.lower - value) / scale, -slope / scale, none))
+            count += 1
+        return goals, _stack(parts, len(u), self.dimension)
+
+    def owner_name(self, owner: int) -> str:
+        """Return the name of the constraint or computed dimension that owns constraint rows."""
+        if owner < len(self.constraints):
+            return self.constraints[owner].quantity
+        return self.computed[owner - len(self.constraints)]
+
+
+def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+    return quickly(evaluator.problem, names, dimensions)
+
+
+def _exactly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+    return exactly(evaluator.problem, names, dimensions)
+
+
+def _costly(quantity: Quantity) -> bool:
+    return not type(quantity).__name__.startswith("ClosedForm")
+
+
+def _scale(bound: float) -> float:
+    return abs(bound) if bound else 1.0
+
+
+def _violation(constraint: Constraint, values: Array) -> Array:
+    """Relative violation (n,), zero or less where the constraint holds."""
+    violation = np.full(len(values), -np.inf)
+    if constraint.upper is not None:
+        violation = np.maximum(violation, (values - constraint.upper) / _scale(constraint.upper))
+    if constraint.lower is not None:
+        violation = np.maximum(violation, (constraint.lower - values) / _scale(constraint.lower))
+    return np.where(np.isnan(values), np.inf, violation)
+
+
+def _objective_rows(objective: Objective, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
+    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
+    if objective.sense == "minimise":
+        return [_ceiling(pieces)]
+    highest = _floor(pieces)
+    top = (-highest[0], -highest[1], highest[2])
+    if objective.target is None:
+        # What is infinite is no optimum but out of reach.
+        return [(np.where(np.isfinite(top[0]), top[0], np.inf), top[1], top[2])]
+    return [(values - objective.target, slopes, labels), (top[0] + objective.target, top[1], top[2])]
+
+
+def _constraint_rows(constraint: Constraint, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
+    rows = []
+    if constraint.upper is not None:
+        scale = _scale(constraint.upper)
+        values, slopes, labels = _ceiling(pieces)
+        rows.append(((values - constraint.upper) / scale, slopes / scale, labels))
+    if constraint.lower is not None:
+        scale = _scale(constraint.lower)
+        highest = _floor(pieces)
+        rows.append(((constraint.lower - highest[0]) / scale, -highest[1] / scale, highest[2]))
+    return rows
+
+
+def _ceiling(pieces: Pieces) -> tuple[Array, Array, Array]:
+    """Return the pieces that all must stay low for the quantity to be low: of a least-of only the lowest."""
+    if pieces.least:
+        return _one(pieces, np.argmin(pieces.values, axis=1))
+    return pieces.values, pieces.gradients, pieces.labels
+
+
+def _floor(pieces: Pieces) -> tuple[Array, Array, Array]:
+    """Return the pieces that all must stay high for the quantity to be high: of a greatest-of only the highest.
+
+    There the others do not tie to hold it up. Peaks come highest first, closed forms in any order.
+    """
+    if pieces.least:
+        return pieces.values, pieces.gradients, pieces.labels
+    return _one(pieces, np.argmax(pieces.values, axis=1))
+
+
+def _one(pieces: Pieces, place: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
+    first = place[:, None]
+    return (
+        np.take_along_axis(values, first, axis=1),
+        np.take_along_axis(slopes, first[:, :, None], axis=1),
+        np.take_along_axis(labels, first, axis=1),
+    )
+
+
+def _stack(parts: list[tuple[int, Array, Array, Array]], n: int, k: int) -> Rows:
+    if not parts:
+        return Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, dtype=np.int64))
+    owner = np.concatenate([np.full(values.shape[1], index) for index, values, _, _ in parts])
+    values = np.concatenate([values for _, values, _, _ in parts], axis=1)
+    return Rows(
+        np.where(np.isnan(values), np.inf, values),
+        np.concatenate([slopes for _, _, slopes, _ in parts], axis=1),
+        np.concatenate([labels for _, _, _, labels in parts], axis=1),
+        owner,
+    )

@@ -1,0 +1,68 @@
+"""Whose records these are: a digest of a problem that is the same in every process, and the versions that compute."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from platform import python_version
+from typing import Any
+
+import numpy as np
+
+from ..problem.problem import Problem
+from .checkpoints import Identity
+
+_COMPUTE = ("slidercrank", "numpy", "scipy", "numba", "moocore", "optuna", "cmaes")
+_LEFT_OUT = ("folders",)  # where the function of an own quantity lies: a job may be moved
+
+
+@cache
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of this software and of what computes its numbers."""
+    return {"python": python_version(), **{name: _version(name) for name in (*_COMPUTE, "pandas")}}
+
+
+def identity_of(problem: Problem) -> Identity:
+    """Return whose records a search of this problem keeps. In between its name may change and its budget be raised."""
+    settings = replace(problem.settings, evaluations=None)
+    digest = hashlib.blake2b(digest_size=16)
+    for part in _parts(replace(problem, settings=settings, name="")):
+        digest.update(part)
+    return Identity(digest.hexdigest(), json.dumps({name: _version(name) for name in _COMPUTE}))
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    """Yield a value's type and content, the parts of one that has parts after their number."""
+    yield f"{type(value).__qualname__}:".encode()
+    if is_dataclass(value) and not isinstance(value, type):
+        for item in fields(value):
+            if item.compare and item.name not in _LEFT_OUT:
+                yield item.name.encode()
+                yield from _parts(getattr(value, item.name))
+    elif isinstance(value, np.ndarray):
+        yield f"{value.dtype}{value.shape}".encode() + value.tobytes()
+    elif isinstance(value, Mapping):
+        yield from _parts(tuple(value.items()))
+    elif isinstance(value, (tuple, list)):
+        yield f"{len(value)};".encode()
+        for item in value:
+            yield from _parts(item)
+    elif isinstance(value, float):
+        yield value.hex().encode() + b";"
+    elif value is None or isinstance(value, (str, int, bool, np.generic)):
+        yield f"{value!r};".encode()
+    elif callable(value) and hasattr(value, "__qualname__"):
+        yield f"{value.__module__}.{value.__qualname__};".encode()
+    else:
+        yield from _parts(vars(value) if hasattr(value, "__dict__") else None)

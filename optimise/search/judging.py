@@ -1,0 +1,61 @@
+"""Quantities of many designs: what an evaluator asks for, row by row, so that rows can be judged anywhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...model.machine.mechanism import Mechanism
+from ...objectives.cycle_peak import CyclePeak, screen_peaks
+from ...objectives.quantity import Array, Pieces
+from ...objectives.robust.quantity import RobustQuantity
+from ..problem.problem import Problem
+
+
+def quickly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+    """Return quantities (n,) of designs, peaks by screening, robust ones estimated."""
+    quantities = [problem.quantity(name) for name in names]
+    peaks = [quantity for quantity in quantities if isinstance(quantity, CyclePeak)]
+    screened = dict(zip((peak.name for peak in peaks), screen_peaks(peaks, problem.mechanism, dimensions), strict=True))
+    return [
+        _robustly(quantity, problem.mechanism, dimensions)
+        if isinstance(quantity, RobustQuantity)
+        else (
+            screened[quantity.name] if quantity.name in screened else quantity.evaluate(problem.mechanism, dimensions)
+        ).values
+        for quantity in quantities
+    ]
+
+
+def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
+    """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
+    inner = quantity.inner
+    if isinstance(inner, CyclePeak):
+        found = screen_peaks([inner], mechanism, dimensions, gradients=True)[0]
+    else:
+        found = inner.evaluate(mechanism, dimensions, gradients=True)
+    return quantity.estimate(mechanism, dimensions, found)
+
+
+def exactly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+    """Return the pieces of quantities of designs."""
+    return [problem.quantity(name).pieces(problem.mechanism, dimensions) for name in names]
+
+
+def joined(parts: list[list[Pieces]]) -> list[Pieces]:
+    """Return the pieces of consecutive designs as those of all, what some have fewer of filled up with absent ones."""
+    return [_joined(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+
+
+def _joined(parts: tuple[Pieces, ...]) -> Pieces:
+    least = parts[0].least
+    most = max(part.values.shape[1] for part in parts)
+    room = [((0, 0), (0, most - part.values.shape[1])) for part in parts]
+    absent = np.inf if least else -np.inf
+    return Pieces(
+        np.concatenate(
+            [np.pad(part.values, more, constant_values=absent) for part, more in zip(parts, room, strict=True)]
+        ),
+        np.concatenate([np.pad(part.gradients, (*more, (0, 0))) for part, more in zip(parts, room, strict=True)]),
+        np.concatenate([np.pad(part.labels, more) for part, more in zip(parts, room, strict=True)]),
+        least,
+    )

@@ -1,0 +1,96 @@
+"""Sheets that are mirror images of each other: one of the two has all that there is to find.
+
+Mirrored about the slider's direction and run backwards, a machine with offset e is one with offset -e that turns the
+same way. Accelerations and whatever depends on the position alone are the same in both, velocities change sign. So the
+two are equal in everything unless gravity across the slider line, a load or friction that depends on the motion, or
+what is asked for tells them apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+import numpy as np
+
+from ...model.machine.loads import Load, PositionTable, Spring, StrokeForce
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from .elimination import Sheet
+from .evaluation import constraints_of
+from .sampling import generator
+
+_TRIED = 512  # random designs, of which those that turn fully count
+_COMPARED = 8
+_EQUAL = 1e-8  # relative: accuracy of a peak near locking
+_STREAM = 4000  # of the seed
+
+
+def once(problem: Problem, sheets: tuple[Sheet, ...]) -> tuple[Sheet, ...]:
+    """Return the sheets without those whose designs are mirror images of designs of another one.
+
+    Of two with the same range the one of positive offsets stays, otherwise the one with the wider range.
+    """
+    parts = problem.parts()
+    groups: dict[Hashable, list[Sheet]] = {}
+    for sheet in sheets:
+        part = parts[sheet.variant]
+        labels = problem.variants[sheet.variant].labels if problem.variants else ()
+        key = (labels, part.mechanism, part.crank, part.rod, part.constraints)
+        groups.setdefault(key, []).append(sheet)
+    twins: set[int] = set()
+    for group in groups.values():
+        pairs = [pair for one in group for other in group if (pair := _ordered(one, other)) and one.sign < other.sign]
+        if pairs and not _told_apart(parts[pairs[0][0].variant], [sheet for sheet, _ in pairs]):
+            twins |= {id(twin) for _, twin in pairs}
+    return tuple(sheet for sheet in sheets if id(sheet) not in twins)
+
+
+def _ordered(one: Sheet, other: Sheet) -> tuple[Sheet, Sheet] | None:
+    """Return two sheets of opposite sign, first the one whose sizes of the offset include those of the second."""
+    if one.sign == other.sign:
+        return None
+    first, second = (one, other) if one.sign > 0.0 else (other, one)
+    for wide, narrow in ((first, second), (second, first)):
+        ends, inner = wide.bounds["offset"], narrow.bounds["offset"]
+        if ends.lower <= inner.lower and inner.upper <= ends.upper:
+            return wide, narrow
+    return None
+
+
+def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
+    """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
+    machine = part.mechanism.fullest
+    if part.own or machine.gravity[1] or machine.acceleration or machine.friction.acts:
+        return True
+    if not all(_by_position(load) for load in machine.loads):
+        return True  # what differs at some crank angles only would be seen in some designs only
+    designs = np.concatenate([_random(part, sheet) for sheet in sheets])
+    if not len(designs):
+        return True
+    mirrored = designs * np.where(np.arange(designs.shape[1]) == 2, -1.0, 1.0)
+    names = {item.quantity for item in part.objectives} | {item.quantity for item in constraints_of(part)}
+    return any(
+        not np.allclose(
+            part.quantity(name).evaluate(part.mechanism, designs).values,
+            part.quantity(name).evaluate(part.mechanism, mirrored).values,
+            rtol=_EQUAL,
+            atol=0.0,
+            equal_nan=True,
+        )
+        for name in sorted(names)
+    )
+
+
+def _by_position(load: Load) -> bool:
+    """Whether a load is the same wherever the slider is at the same place."""
+    if isinstance(load, StrokeForce):
+        return load.outward == load.inward
+    return isinstance(load, Spring) or (isinstance(load, PositionTable) and load.during == "cycle")
+
+
+def _random(part: Problem, sheet: Sheet) -> Array:
+    """Return some random designs (n, 3 + v) within a sheet's ranges that turn fully, whatever is required."""
+    ends = [sheet.bounds[name] for name in sheet.names]
+    lower, upper = (np.array([getattr(item, end) for item in ends]) for end in ("lower", "upper"))
+    designs = lower + (upper - lower) * generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))
+    return np.asarray(designs[designs[:, 1] > designs[:, 0] + designs[:, 2]][:_COMPARED])

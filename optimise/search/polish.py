@@ -1,0 +1,319 @@
+"""Sequential quadratic programming that moves designs onto the Pareto front.
+
+Each design solves Benson's problem from where it stands, min sum_i f_i with no objective made worse and all constraints
+held, whose solutions are Pareto-optimal (H. P. Benson, "Existence of efficient solutions for vector maximization
+problems", JOTA 26(4), 1978). Merely mutual non-dominance, or a vanishing convex combination of some gradients, is not
+enough: where two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
+
+`programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with the
+multipliers that the programme itself gives, made convex across what holds the step before anything else. A full step
+that bends out of what it is to hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
+Optimization", 2006, ch. 18.3): otherwise designs creep along curved constraints. A design that starts outside the
+constraints is first moved onto them the shortest way. Peaks that tie enter as separate pieces: a kink is a minimax, not
+noise. Designs advance together, so that every evaluation is a batch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..front.stationarity import Array, multipliers, strict_multipliers
+from .evaluation import Rows
+from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
+from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
+
+ITERATIONS = 100
+CONVERGED = 1e-9
+"""Residual of Benson's problem at which a design is done."""
+_TIGHT = 1e-11  # the same as ACTIVE while a design may still move
+_NOISE = 1e-15  # of the objectives: rounding of the merit
+_STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
+_DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
+_CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
+_HEAVIEST = 1e8  # largest penalty of a violation
+_SHORTEST = 1e-13  # radius at which a design's polish ends
+_RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
+
+
+class Evaluates(Protocol):
+    """What the polish needs of an evaluator."""
+
+    def valid(self, u: Array) -> NDArray[np.bool_]:
+        """Return which points can be evaluated."""
+        ...
+
+    def exact(self, u: Array) -> tuple[Rows, Rows]:
+        """Return objective rows and constraint rows."""
+        ...
+
+
+@dataclass(frozen=True)
+class Polished:
+    """Designs after the polish.
+
+    u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative. residual: (n,), see
+    `stationarity.multipliers`. goals: for each design, owner and gradient of the active objective pieces. active: the
+    gradients of its active constraints and bounds.
+    """
+
+    u: Array
+    values: Array
+    violation: Array
+    residual: Array
+    goals: tuple[tuple[Array, Array], ...]
+    active: tuple[Array, ...]
+
+
+def polish(
+    evaluator: Evaluates,
+    start: Array,
+    scale: Array,
+    *,
+    chosen: tuple[int, ...] | None = None,
+    iterations: int = ITERATIONS,
+) -> Polished:
+    """Return designs improved to stationarity from `start` (n, k) in the unit box.
+
+    scale: range of each objective over the front. chosen: improve these objectives only (all by default). A design that
+    was feasible once is feasible in the end.
+    """
+    batch = _Batch(evaluator, start, scale, chosen)
+    if iterations:
+        batch.restore()
+    for _ in range(iterations):
+        if not batch.advance():
+            break
+    return batch.result()
+
+
+def project(evaluator: Evaluates, start: Array, scale: Array) -> Polished:
+    """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
+    batch = _Batch(evaluator, start, scale, None)
+    batch.restore()
+    return batch.result()
+
+
+class _Batch:
+    """Designs under polish: where they stand, their rows, and which still move."""
+
+    def __init__(self, evaluator: Evaluates, start: Array, scale: Array, chosen: tuple[int, ...] | None) -> None:
+        self.evaluator = evaluator
+        self.scale = scale
+        self.chosen = tuple(range(len(scale))) if chosen is None else chosen
+        self.u = np.clip(start, 0.0, 1.0)
+        self.goals, self.limits = self._evaluate(self.u)
+        n, k = start.shape
+        self.open = np.full(n, k > 0)
+        self.stalls = np.zeros(n, dtype=np.int64)
+        self.radius = np.full(n, 0.25)
+        self.moved = np.ones(n, dtype=bool)
+        self.weight = np.full(n, VIOLATION)
+        self.hessians = np.tile(np.eye(k), (n, 1, 1))
+        self.held = greatest(self.goals, len(scale))
+        self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
+
+    def restore(self) -> None:
+        """Move designs that violate constraints onto them, the shortest way."""
+        for _ in range(_RESTORING):
+            outside = np.flatnonzero(self.open & ~self._feasible())
+            if not len(outside):
+                break
+            steps = [self._programme(row, ()).move for row in outside.tolist()]
+            self._search(outside, np.array(steps), (), correct=False)
+        self.open[:] = self.u.shape[1] > 0
+        self.moved[:] = True
+        self.radius[:] = 0.25
+        self.stalls[:] = 0
+        self.held = greatest(self.goals, len(self.scale))
+
+    def advance(self) -> bool:
+        """Take one step with every open design; return whether any was open."""
+        for row in np.flatnonzero(self.open & self.moved).tolist():
+            if np.max(self.limits.values[row], initial=0.0) <= ROUNDING and self._residual(row) < CONVERGED:
+                self.open[row] = False
+        rows = np.flatnonzero(self.open)
+        if not len(rows):
+            return False
+        fresh = rows[self.moved[rows]]
+        if len(fresh):
+            # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one serve.
+            drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
+            self.hessians[fresh] = self._hessians(fresh, drafts)
+        steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
+        self._search(rows, np.array(steps), self.chosen, correct=True)
+        self.open &= self.stalls < 2
+        inside = rows[self._feasible()[rows]]
+        self.safe[inside] = self.u[inside]
+        self.held[inside] = greatest(self.goals, len(self.scale))[inside]
+        return True
+
+    def result(self) -> Polished:
+        """Return where the designs stand."""
+        n, m = len(self.u), len(self.scale)
+        lost = np.flatnonzero(~self._feasible() & np.isfinite(self.safe).all(axis=1))
+        if len(lost):
+            goals, limits = self._evaluate(self.safe[lost])
+            for source, row in enumerate(lost.tolist()):
+                self._put(row, self.safe[row], goals, limits, source)
+        residual = np.zeros(n)
+        pieces, active = [], []
+        for row in range(n):
+            here, edge = alone(self.goals, row), alone(self.limits, row)
+            columns = active_pieces(here, tuple(range(m)))
+            pieces.append((here.owner[columns].astype(np.float64), here.gradients[columns]))
+            active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], box(self.u[row])]))
+            wanted = active_pieces(here, self.chosen)
+            residual[row], _, _ = multipliers(here.gradients[wanted], active[-1])
+        violation = self.limits.values.max(axis=1, initial=0.0)
+        return Polished(self.u, greatest(self.goals, m), violation, residual, tuple(pieces), tuple(active))
+
+    def _feasible(self) -> NDArray[np.bool_]:
+        return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)
+
+    def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
+        goals, limits = self.evaluator.exact(u)
+        factor = 1.0 / self.scale[goals.owner]
+        return Rows(goals.values * factor, goals.gradients * factor[:, None], goals.labels, goals.owner), limits
+
+    def _put(self, row: int, u: Array, goals: Rows, limits: Rows, source: int) -> None:
+        self.u[row] = u
+        self.goals.put(row, goals, source)
+        self.limits.put(row, limits, source)
+
+    def _residual(self, row: int) -> float:
+        """Return the residual of Benson's problem; what is not quite active does not count, so that it becomes so."""
+        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        pieces = active_pieces(goals, self.chosen, within=_TIGHT)
+        edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], within=_TIGHT)])
+        return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges)[0]
+
+    def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
+        """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
+        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        first = step = self._solve(row, goals, limits, chosen)
+        light = self.weight[row]
+        while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
+            self.weight[row] *= 10.0
+            step = self._solve(row, goals, limits, chosen)
+        if self.weight[row] > light and _left(limits, step.move) > max(0.5 * _left(limits, first.move), ROUNDING):
+            # A violation that no step within the radius removes: weight would only stiffen what follows.
+            self.weight[row] = light
+            return first
+        return step
+
+    def _solve(self, row: int, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Step:
+        return solve_step(
+            self.u[row],
+            goals,
+            limits,
+            self.hessians[row] if chosen else np.eye(self.u.shape[1]),
+            radius=self.radius[row],
+            chosen=chosen,
+            tops=self.held[row],
+            violation=self.weight[row],
+        )
+
+    def _hessians(self, rows: NDArray[np.int64], drafts: list[Step]) -> Array:
+        """Return the Hessians (n, k, k) of the Lagrangians with fixed multipliers, made positive definite."""
+        u = self.u[rows]
+        n, k = u.shape
+        hessians = np.zeros((n, k, k))
+        for column in range(k):
+            step = np.where(u[:, column] < 0.5, _DIFFERENCE, -_DIFFERENCE)
+            moved = u.copy()
+            moved[:, column] += step
+            moved = np.where(self.evaluator.valid(moved)[:, None], moved, u)
+            goals, limits = self._evaluate(moved)
+            for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
+                change = difference(alone(self.goals, row), alone(goals, i), np.minimum(draft.goals, LOSS))
+                change = change + difference(
+                    alone(self.limits, row), alone(limits, i), np.minimum(draft.limits, _HEAVIEST)
+                )
+                hessians[i, column] = change / step[i]
+        hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
+        return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
+
+    def _search(self, rows: NDArray[np.int64], steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+        """Take the steps that lower the merit, corrected where they do not as they are; shrink the radius of the rest.
+
+        The merit is the sum of the objectives, plus penalised losses and greatest violation.
+        """
+        m, columns = len(self.scale), list(chosen)
+        before, held = greatest(self.goals, m)[:, columns], self.held[:, columns]
+        violation = _beyond(self.limits.values.max(axis=1, initial=0.0))
+        self.moved[rows] = False
+        pending = np.arange(len(rows))
+        steps = steps.copy()
+        for corrected in (False, True)[: 1 + correct]:
+            at = rows[pending]
+            trial = np.clip(self.u[at] + steps[pending], 0.0, 1.0)
+            valid = self.evaluator.valid(trial)
+            trial = np.where(valid[:, None], trial, self.u[at])
+            goals, limits = self._evaluate(trial)
+            after = greatest(goals, m)[:, columns]
+            loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
+            worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
+            merit = (after - before[at] + LOSS * loss).sum(axis=1) + self.weight[at] * worse
+            distance = np.abs(trial - self.u[at]).max(axis=1)
+            # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
+            accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))
+            for i in np.flatnonzero(accepted).tolist():
+                row = int(at[i])
+                self._put(row, trial[i], goals, limits, i)
+                self.moved[row] = True
+                if distance[i] > 0.5 * self.radius[row]:
+                    self.radius[row] = min(0.5, 2.0 * self.radius[row])
+                self.stalls[row] = self.stalls[row] + 1 if merit[i] > -_STALLED else 0
+            if correct and not corrected:
+                for i in np.flatnonzero(~accepted & valid).tolist():
+                    steps[pending[i]] = self._corrected(
+                        int(at[i]), steps[pending[i]], alone(goals, i), alone(limits, i), chosen
+                    )
+            pending = pending[~accepted]
+            if not len(pending):
+                break
+        lost = rows[pending]
+        # Nothing along short steps helps any more: rounding, or a kink that was not seen; the residual will tell.
+        size = np.abs(steps[pending]).max(axis=1, initial=0.0)
+        self.radius[lost] = 0.25 * np.minimum(self.radius[lost], size)
+        self.open[lost] &= self.radius[lost] > _SHORTEST
+
+    def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
+        """Return the step that also holds what the first one bends out of; rows are those at its end."""
+        goals, limits = [
+            Rows(bent(here, there, step), here.gradients, here.labels, here.owner)
+            for here, there in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
+        ]
+        return self._solve(row, goals, limits, chosen).move
+
+
+def _convex(hessian: Array, normals: Array) -> Array:
+    """Return a positive definite matrix that agrees with the Hessian along what holds the step, if that can be."""
+    if not np.isfinite(hessian).all():
+        return np.eye(len(hessian))
+    values, vectors = np.linalg.eigh(hessian)
+    lengths = np.linalg.norm(normals, axis=1)
+    if values[0] < _CURVATURE and lengths.any():
+        _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
+        across = directions[: len(sizes)][sizes > 1e-6]
+        for weight in (1.0, 10.0, 100.0):
+            curved = hessian + weight * np.abs(values).max() * across.T @ across
+            if np.linalg.eigvalsh(curved)[0] >= _CURVATURE:
+                break
+        values, vectors = np.linalg.eigh(curved)
+    return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
+
+
+def _left(limits: Rows, move: Array) -> float:
+    """Return the greatest violation after a step, as far as slopes tell."""
+    near = np.isfinite(limits.values)
+    return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))
+
+
+def _beyond(excess: Array) -> Array:
+    """Return what exceeds rounding."""
+    return np.maximum(excess - ROUNDING, 0.0)

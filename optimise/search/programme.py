@@ -1,0 +1,139 @@
+"""The quadratic programme of one polishing step, solved as a least-distance problem.
+
+With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient a, a step solves
+
+    min  sum_i (t_i + t_i^2 / 2) + sum_i (K v_i + K^2 v_i^2 / 2) + (C w + C^2 w^2 / 2) + d' B d / 2   over d, t, v, w
+    subject to  p + g d <= F_i + t_i  (each piece p of objective i),   t_i <= v_i,   0 <= v_i,
+                c + a d <= w,   0 <= w,   0 <= u + d <= 1,   |d| <= radius,
+
+where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
+has room for rounding, so that a gain too small to show is not weighed as a loss. v and w are exact penalties: where an
+objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution.
+Without objectives the step is the shortest one that fulfils the constraints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from ..front.stationarity import Array
+from .evaluation import Rows
+
+LOSS = 1e3
+"""K: what an objective's loss weighs against another's gain, ranges scaled to one."""
+VIOLATION = 1e2
+"""C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
+ROUNDING = 1e-12
+"""Losses and violations below it are rounding."""
+_REACH = 1.0  # pieces farther below the greatest cannot become it within a step
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step d (k,), the multipliers of goal rows (p,) and limit rows (q,), and the gradients (r, k) of what holds it.
+
+    normals: gradients of the limits, bounds, held objectives and ties (differences) whose multipliers are positive.
+    """
+
+    move: Array
+    goals: Array
+    limits: Array
+    normals: Array
+
+
+def solve_step(
+    u: Array,
+    goals: Rows,
+    limits: Rows,
+    hessian: Array,
+    *,
+    radius: float,
+    chosen: tuple[int, ...],
+    tops: Array,
+    violation: float,
+) -> Step:
+    """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
+
+    hessian: B, positive definite. chosen: objectives to improve. tops: (m,), F of every objective. violation: C.
+
+    With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
+    its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
+    ch. 23.4).
+    """
+    k, count = len(u), len(chosen)
+    size = k + 2 * count + 1
+    low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
+    blocks: list[Array] = []  # rows a z <= b for z = (d, t, v, w)
+    bounds: list[Array] = []
+
+    def demand(bound: Array, *parts: tuple[int, Array]) -> slice:
+        block = np.zeros((len(bound), size))
+        for column, part in parts:
+            block[:, column : column + part.shape[1]] = part
+        begin = sum(len(known) for known in bounds)
+        blocks.append(block)
+        bounds.append(bound)
+        return slice(begin, begin + len(bound))
+
+    pieces = []
+    for place, owner in enumerate(chosen):
+        columns = np.flatnonzero((goals.owner == owner) & (goals.values > tops[owner] - _REACH))
+        bound = tops[owner] - goals.values[columns]
+        rows = demand(bound, (0, goals.gradients[columns]), (k + place, -np.ones((len(columns), 1))))
+        pieces.append((columns, rows))
+    one, none = np.eye(count), np.zeros(count)
+    losing = demand(np.full(count, ROUNDING), (k, one), (k + count, -one))
+    demand(none, (k + count, -one))
+    near = np.flatnonzero(np.isfinite(limits.values))
+    limiting = demand(-limits.values[near], (0, limits.gradients[near]), (size - 1, -np.ones((len(near), 1))))
+    demand(np.zeros(1), (size - 1, -np.ones((1, 1))))
+    above = demand(high, (0, np.eye(k)))
+    below = demand(-low, (0, -np.eye(k)))
+    move, dual = _least_distance(
+        np.concatenate(blocks),
+        np.concatenate(bounds),
+        hessian,
+        np.concatenate([np.ones(count), np.full(count, LOSS), [violation]]),
+    )
+    goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
+    normals = [limits.gradients[near][dual[limiting] > 0.0]]
+    edge = np.eye(k)
+    normals.append(edge[(dual[above] > 0.0) & (high < radius)])
+    normals.append(edge[(dual[below] > 0.0) & (low > -radius)])
+    limit_weight[near] = dual[limiting]
+    for place, (columns, rows) in enumerate(pieces):
+        goal_weight[columns] = dual[rows]
+        tied = goals.gradients[columns[dual[rows] > 0.0]]
+        normals.append(tied[1:] - tied[:1])
+        if dual[losing][place] > 0.0:
+            normals.append(tied[:1])
+    return Step(np.clip(move, low, high), goal_weight, limit_weight, np.concatenate(normals))
+
+
+def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) -> tuple[Array, Array]:
+    """Return d and the multipliers of all rows; zeros where rounding leaves no solution."""
+    k, size = len(hessian), rows.shape[1]
+    scale = np.zeros((size, size))  # z = scale x + shift
+    scale[:k, :k] = np.linalg.inv(np.linalg.cholesky(hessian)).T
+    scale[k:, k:] = np.diag(1.0 / weights)
+    shift = np.concatenate([np.zeros(k), -1.0 / weights])
+    g, h = -rows @ scale, rows @ shift - bounds
+    lengths = np.linalg.norm(g, axis=1)
+    lengths[lengths == 0.0] = 1.0
+    matrix = np.vstack([(g / lengths[:, None]).T, h / lengths])
+    target = np.zeros(size + 1)
+    target[-1] = 1.0
+    try:
+        dual, _ = nnls(matrix, target, maxiter=50 * matrix.shape[1])
+    except RuntimeError:
+        return np.zeros(k), np.zeros(len(rows))
+    rest = matrix @ dual - target
+    if rest[-1] == 0.0:
+        return np.zeros(k), np.zeros(len(rows))
+    x, held = -rest[:-1] / rest[-1], dual > 0.0
+    # Between pieces that oppose each other large multipliers cancel: what holds the step places it more exactly.
+    x = x + np.linalg.lstsq(g[held], h[held] - g[held] @ x, rcond=1e-12)[0]
+    return (scale @ x)[:k], dual / lengths / -rest[-1]

@@ -1,0 +1,78 @@
+"""Where to look: low-discrepancy points with a share on the faces, then new points around sparse parts of the front."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from scipy.stats import qmc
+
+from ..front.hypervolume import scaling
+from ..front.stationarity import Array
+
+FACES = 0.3
+"""Chance that a coordinate of a sample is snapped to one of its bounds: optima sit on faces and edges."""
+
+APART = 0.1
+"""Distance in the unit box of starts that are to lead to different optima."""
+
+
+def apart(worth: Array, points: Array, sheet: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
+
+    Points of different sheets are apart.
+    """
+    rows = np.argsort(worth, kind="stable")
+    rows = rows[np.isfinite(worth[rows])]
+    chosen: list[int] = []
+    while len(rows) and len(chosen) < count:
+        best = int(rows[0])
+        chosen.append(best)
+        far = np.abs(points[rows] - points[best]).max(axis=1, initial=0.0) >= APART
+        rows = rows[far | (sheet[rows] != sheet[best])]
+    return np.array(chosen, dtype=np.int64)
+
+
+def generator(seed: int, *stream: int) -> np.random.Generator:
+    """Return the random generator of one stream of a seed; streams are independent and never shared."""
+    return np.random.default_rng(np.random.SeedSequence([seed, *stream]))
+
+
+def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
+    """Return about `count` points of the unit box (n, k), a part of them on faces, edges and corners."""
+    if dimension == 0:
+        return np.zeros((1, 0))
+    random = generator(seed, stream, 0)
+    power = max(1, int(np.ceil(np.log2(max(2, count)))))
+    points = qmc.Sobol(dimension, rng=random).random_base2(power)[:count]
+    snapped = random.random(points.shape) < FACES
+    return np.asarray(np.where(snapped, np.round(points), points))
+
+
+def around(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
+    """Return `count` points near parents (n, k), more near those whose neighbours on the front are far.
+
+    values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound mostly
+    stays there.
+    """
+    ideal, span = scaling(values)
+    scaled = (values - ideal) / span
+    neighbours = min(len(parents), values.shape[1] + 1)
+    if neighbours > 1:
+        distance = np.asarray(cKDTree(scaled).query(scaled, k=neighbours)[0])
+        sparse = distance[:, 1:].mean(axis=1) + 1e-9
+    else:
+        sparse = np.ones(len(parents))
+    chosen = random.choice(len(parents), size=count, p=sparse / sparse.sum())
+    base = parents[chosen]
+    # Heavy tails: most children stay near, some jump.
+    step = width * random.standard_normal(base.shape) * random.standard_exponential((count, 1))
+    on_bound = (base == 0.0) | (base == 1.0)
+    stays = on_bound & (random.random(base.shape) < 0.7)
+    return np.asarray(np.clip(np.where(stays, base, base + step), 0.0, 1.0))
+
+
+def stacked(above: Array, below: Array) -> Array:
+    """Return points of two sheets under each other, those with fewer columns padded with zeros."""
+    width = max(above.shape[1], below.shape[1])
+    return np.concatenate([np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in (above, below)])

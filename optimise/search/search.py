@@ -1,0 +1,242 @@
+"""The search's first half: many screened designs, first everywhere, then around sparse parts of the front."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..front.hypervolume import Stand, nondominated
+from ..front.progress import REPEATING, Progress
+from ..front.stationarity import Array
+from ..problem.problem import Problem
+from .checkpoints import Ledger
+from .evaluation import FEASIBLE, Evaluator
+from .growth import Growth
+from .sampling import around, first_samples, generator, stacked
+
+if TYPE_CHECKING:
+    from .candidates import Pile
+
+FIRST = 16384
+"""Designs of the first round, everywhere."""
+SAMPLES = 4096
+"""Designs of each later round."""
+WIDTHS = (0.1, 0.05, 0.02, 0.01)
+"""Spread of the zoom rounds, in the unit box."""
+BANDS = (0.0, 0.01, 0.04, 0.16)
+"""Relative violation that samples may have, in turn, until enough are found; the polish removes it. The first is left
+out where equalities remain: no sample meets them."""
+ENOUGH = 32
+"""Samples that are enough to zoom on."""
+LEAST = 1024
+"""Designs of a round on each of many sheets."""
+_CROWD = 2000  # parents of a round
+_BEST = 1000  # designs kept of a single objective
+_SHOWN = 400  # designs of a front so far, and of that of a round in the history
+TELL = 0.5
+"""s between two words of a long stage: somebody watches."""
+
+Callback = Callable[[Progress], None]
+
+
+@dataclass
+class Archive:
+    """Non-dominated designs found so far: sheet index, unit-box point, objectives.
+
+    u: (n, k), padded to as many columns as any sheet has, at least three. met: (n,), which of them meet every
+    constraint; these only each other displaces. band: by how much the others may violate constraints, relative.
+    feasible: designs seen that meet every constraint.
+    """
+
+    sheet: NDArray[np.int64]
+    u: Array
+    values: Array
+    met: NDArray[np.bool_]
+    band: float = 0.0
+    feasible: int = 0
+
+    @classmethod
+    def empty(cls, objectives: int) -> Archive:
+        """Return an archive without designs."""
+        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
+
+    def __len__(self) -> int:
+        return len(self.u)
+
+    def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
+        """Evaluate points (n, k) of a sheet, take in those that are feasible within the band, return how many."""
+        _, values, violation = evaluator.screen(u, band=self.band)
+        good = violation <= self.band + FEASIBLE
+        self.feasible += int((violation <= FEASIBLE).sum())
+        self.take(index, u[good], values[good], violation[good] <= FEASIBLE)
+        return int(good.sum())
+
+    def take(self, index: int, u: Array, values: Array, met: NDArray[np.bool_] | None = None) -> None:
+        """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
+
+        met: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
+        """
+        self.sheet = np.concatenate([self.sheet, np.full(len(u), index)])
+        self.u = stacked(self.u, u)
+        self.values = np.concatenate([self.values, values])
+        self.met = np.concatenate([self.met, np.ones(len(u), np.bool_) if met is None else met])
+        rows = _best(self.values)
+        if not self.met.all():
+            own = np.flatnonzero(self.met)
+            rows = np.concatenate([own[_best(self.values[own])], rows[~self.met[rows]]])
+        self.sheet, self.u, self.values, self.met = self.sheet[rows], self.u[rows], self.values[rows], self.met[rows]
+
+    def groups(self) -> tuple[NDArray[np.int64], ...]:
+        """Return the rows that meet every constraint and those that are to be moved there: choose from each alone."""
+        return tuple(rows for rows in (np.flatnonzero(self.met), np.flatnonzero(~self.met)) if len(rows))
+
+
+def _best(values: Array) -> NDArray[np.int64]:
+    """Return the rows worth keeping: the non-dominated ones, or many of a single objective, best first."""
+    alone = values.shape[1] == 1
+    return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
+
+
+def share(samples: int, evaluators: list[Evaluator]) -> int:
+    """Return how many samples each sheet gets of those of a round; many sheets get a sensible number each."""
+    if len(evaluators) <= 2:
+        return -(-samples // len(evaluators))
+    return max(-(-samples // len(evaluators)), min(samples, LEAST))
+
+
+@dataclass
+class Run:
+    """What a search tells while it runs: its rounds, the fronts that they ended with, and what it would give by now.
+
+    ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
+    archive: what the search has found on the others. pile: the designs of the settled ones, and what the polish has
+    made of the archive. fronts: of each round, feasible designs that its hypervolume is told of.
+    progress: called after every round. stages: called in long stages between two.
+    """
+
+    problem: Problem
+    rounds: int
+    progress: Callback | None = None
+    ledger: Ledger = field(default_factory=Ledger)
+    told: list[Progress] = field(default_factory=list)
+    fronts: list[Array] = field(default_factory=list)
+    archive: Archive | None = None
+    pile: Pile | None = None
+    settled: list[Evaluator] = field(default_factory=list)
+    stages: Callback | None = None
+
+    def __post_init__(self) -> None:
+        self._growth = Growth(self._targets)
+        self._latest: Array = np.zeros((0, len(self.problem.objectives)))
+        self._heard = time.monotonic()
+
+    def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
+        """Record the end of a round; evaluators: those that the archive's designs are from.
+
+        Of the last archive with designs the front is made if the search is told to end. A round that an earlier run has
+        told is not told again, only that it is repeated.
+        """
+        self.archive = archive if len(archive) else self.archive
+        polished = [] if self.pile is None else [self.pile.values]
+        values = np.concatenate([archive.values, *polished])
+        values = values[nondominated(values)]
+        self._latest = values[:: 1 + len(values) // _SHOWN]
+        entry = Progress(
+            stage,
+            len(self.told) + 1,
+            max(self.rounds, len(self.told) + 1),
+            sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
+            archive.feasible + (0 if self.pile is None else self.pile.settled),
+            self._growth.take(np.concatenate([archive.values[archive.met], *polished])),
+            self.ledger.seconds,
+        )
+        self.told.append(entry)
+        self.fronts.append(self._growth.front[:: 1 + len(self._growth.front) // _SHOWN])
+        if self.ledger.turn():
+            self._say(entry, self.progress)
+        else:
+            self.stand(stage, 0, 1)
+
+    def stage(self, name: str) -> Stand:
+        """Return what is to be called many times a second in a long stage: it ends a cancelled search, and tells."""
+
+        def stand(done: int, of: int) -> None:
+            self.ledger.poll()
+            self.stand(name, done, of)
+
+        return stand
+
+    def stand(self, stage: str, done: int, of: int, *, now: bool = False) -> None:
+        """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told, or now."""
+        if self.stages is None or (time.monotonic() - self._heard < TELL and not now):
+            return
+        if self.ledger.told < self.ledger.before or self.ledger.replaying:
+            stage, done, of = REPEATING, self.ledger.repeated, self.ledger.resumed
+        last = self.told[-1] if self.told else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
+        self._say(replace(last, stage=stage, seconds=self.ledger.seconds, step=done, steps=max(done, of)), self.stages)
+
+    def _say(self, entry: Progress, hearing: Callback | None) -> None:
+        if hearing is not None:
+            hearing(entry)
+        self._heard = time.monotonic()
+
+    @property
+    def _targets(self) -> Array:
+        return np.array([objective.target or 0.0 for objective in self.problem.objectives])
+
+    def history(self, ideal: Array, span: Array, most: int | None = None) -> tuple[Progress, ...]:
+        """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.
+
+        most: designs of each round that count; the others would add little.
+        """
+        growth = Growth(self._targets, box=(ideal, span), most=most)
+        return tuple(
+            replace(entry, hypervolume=growth.take(front)) for entry, front in zip(self.told, self.fronts, strict=True)
+        )
+
+    def front_so_far(self) -> Array:
+        """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
+        return self._latest
+
+
+def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
+    """Return the archive of non-dominated screened designs: first samples, then zooms."""
+    run = run or Run(problem, 1 + len(WIDTHS))
+    archive = run.archive = Archive.empty(len(problem.objectives))
+    samples = problem.settings.samples or FIRST
+    loose = any(evaluator.loose for evaluator in evaluators)
+    for attempt, band in enumerate(BANDS[1:] if loose else BANDS[:-1]):
+        archive.band = band
+        found = 0
+        for index, evaluator in enumerate(evaluators):
+            # A small feasible region wants more points before it is given up.
+            count = share(samples * 4**attempt, evaluators)
+            points = first_samples(count, evaluator.dimension, problem.settings.seed, index)
+            found += archive.screen(index, evaluator, points)
+        if found >= min(ENOUGH, samples):
+            break
+    run.tell("sampling", evaluators, archive)
+    if len(archive):
+        zoom(problem, evaluators, archive, run)
+    return archive
+
+
+def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> None:
+    """Sample around sparse parts of the front, closer in every round."""
+    samples = problem.settings.samples or SAMPLES
+    for step in range(len(WIDTHS)):
+        random = generator(problem.settings.seed, 1000, step)
+        some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
+        parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
+        for index, evaluator in enumerate(evaluators):
+            own = of == index
+            if own.any():
+                count = max(1, int(samples * own.mean()))
+                points = around(parents[own][:, : evaluator.dimension], values[own], count, WIDTHS[step], random)
+                archive.screen(index, evaluator, points)
+        run.tell("zooming", evaluators, archive)

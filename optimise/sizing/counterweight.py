@@ -1,0 +1,299 @@
+"""Crank counterweight and rod balance of least shaking, as a second-order cone programme.
+
+    minimise  |F| + |M| / arm,   |.| the peak or the root mean square over the cycle,
+
+over the counterweight's moment c (within `most`) and what is added to the rod. F and M are affine in them
+(`shaking_rows`), so that |F(theta)| <= tau is a second-order cone at every crank angle and the root mean square the
+norm of an affine vector. Peaks are over the continuum of angles: the programme is solved with a few, the exact peaks of
+what it leaves (`model.peaks`, no grid) are added, until none exceeds those it has.
+
+What is added to the rod is any body within a distance R of the crank pin: mass m, first moment b and inertia I are
+those of such a body exactly if
+
+    |b|^2 <= m I   (Cauchy and Schwarz)   and   I <= R^2 m,
+
+a convex cone again. Its mass has the effect of a counterweight towards the crank pin, which c undoes: of all answers
+with the same forces the one of least added mass is given.
+
+Known limits: without slider mass, or with a rod balance that puts the centre of rod and slider onto the crank pin, the
+force vanishes (R. S. Berkof and G. G. Lowen, "A new method for completely force balancing simple linkages", J.
+Engineering for Industry 91, 1969); for a long rod without offset c is the rotating mass and half the reciprocating one.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ...model.cycle.shaking import ShakingCurves, shaking_curves
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single import single
+from ...model.machine.loads import require_word
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.averages import average
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
+from .shaking_rows import Array, mean_rows, moving_moment, rows, with_masses
+
+Measure = Literal["peak", "rms"]
+
+ROUNDS = 60
+_START = 24  # crank angles a turn that the first round has
+_EXCESS = 1e-10  # of the shaking before, by which a peak may exceed those that the programme has
+
+
+@dataclass(frozen=True, kw_only=True)
+class RodSpace:
+    """Where a balance mass on the rod may be: within `radius` of the crank pin, m, and of at most `mass`, kg."""
+
+    radius: float
+    mass: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.radius) and self.radius > 0.0):
+            raise InputError(
+                f"the space for the rod balance must have a positive, finite radius; got {self.radius:g} m"
+            )
+        if not (math.isfinite(self.mass) and self.mass > 0.0):
+            raise InputError(f"the greatest mass of the rod balance must be positive, finite; got {self.mass:g} kg")
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """Peaks and root mean squares over the cycle: force, N, moment about the crank pivot, N m; peak angles, rad."""
+
+    peak_force: float
+    peak_force_angle: float
+    rms_force: float
+    peak_moment: float
+    peak_moment_angle: float
+    rms_moment: float
+
+
+@dataclass(frozen=True)
+class RodBalance:
+    """What is added to the rod: mass, kg, first moment along and across the rod, kg m, and inertia, kg m^2.
+
+    First moment and inertia are about the crank pin. The mass centre is at moment / mass.
+    """
+
+    mass: float
+    along: float
+    across: float
+    inertia: float
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The best balance.
+
+    moment, angle: of the counterweight, kg m, and rad from the crank's direction. radius: m, of the counterweight in
+    `after`; mass: kg, at that radius. rod: None unless asked for. before: the mechanism as it was; after: as balanced.
+    objective: what was minimised, N. bound: what it cannot be below, by the cone programme and to its accuracy, about
+    1e-9 of the shaking before. saving: by how much it falls for each kg m that `most` is raised. rounds: of the
+    exchange. converged: False where it ended with peaks still rising.
+    """
+
+    moment: float
+    angle: float
+    radius: float
+    rod: RodBalance | None
+    linkage: Linkage
+    before: Mechanism
+    after: Mechanism
+    shaking_before: Shaking
+    shaking_after: Shaking
+    objective: float
+    bound: float
+    saving: float
+    rounds: int
+    converged: bool
+
+    @property
+    def mass(self) -> float:
+        """Mass of the counterweight at `radius`, kg."""
+        return self.moment / self.radius
+
+    def hodograph(self, crank_angle: Array) -> tuple[ShakingCurves, ShakingCurves]:
+        """Return the shaking before and after at crank angles (n,), rad: force_y over force_x is the hodograph."""
+        before, after = (shaking_curves(each, self.linkage, crank_angle) for each in (self.before, self.after))
+        return before, after
+
+
+def balance(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    measure: Measure = "peak",
+    arm: float | None = None,
+    radius: float | None = None,
+    most: float | None = None,
+    rod: RodSpace | None = None,
+) -> Balance:
+    """Return the counterweight, instead of the mechanism's own, and the rod balance of least shaking of one linkage.
+
+    arm: m, the shaking moment counts as moment / arm; left out if None. It needs a rod balance: no counterweight
+    changes it. radius: of the counterweight, m; that of the mechanism's own, or the crank, if None. most: greatest
+    moment of the counterweight, kg m. rod: the space for a rod balance; none if None.
+    Raises `InputError` for a crank that stands or accelerates, and where nothing that moves has a mass.
+    """
+    require_word("measure", measure, Measure)
+    linkage = single(mechanism, linkage)
+    for name, value in (("arm", arm), ("radius", radius), ("most", most)):
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise InputError(f"{name} must be positive and finite; got {value:g}")
+    if mechanism.acceleration or not mechanism.speed:
+        raise InputError(
+            "a balance is for a crank that turns at constant speed; got "
+            f"{mechanism.speed:g} rad/s, accelerating by {mechanism.acceleration:g} rad/s^2; "
+            "set a speed and no acceleration"
+        )
+    if arm is not None and rod is None:
+        raise InputError(
+            "the shaking moment about the crank pivot does not depend on the counterweight; "
+            f"got an arm of {arm:g} m without a rod balance; add space on the rod or leave out the arm"
+        )
+    if not moving_moment(mechanism, linkage) > 0.0:
+        raise InputError("a balance needs masses; got none in crank, rod and slider; give at least one")
+    return _Programme(mechanism, linkage, measure, arm, most, rod).solve(
+        radius or mechanism.counterweight.radius or float(linkage.crank)
+    )
+
+
+class _Programme:
+    """The programme in the moments of `shaking_rows.NAMES`, each divided by its `unit`."""
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        linkage: Linkage,
+        measure: Measure,
+        arm: float | None,
+        most: float | None,
+        rod: RodSpace | None,
+    ) -> None:
+        self.mechanism, self.linkage, self.measure = mechanism, linkage, measure
+        self.arm, self.most, self.rod = arm, most, rod
+        moment = moving_moment(mechanism, linkage)
+        mass, reach = moment / float(linkage.crank), 1.0 if rod is None else rod.radius
+        self.unit = np.array([moment, moment, mass, mass * reach, mass * reach, mass * reach**2])
+        self.force = moment * mechanism.speed**2  # of order of the forces, N
+        self.count = 2 if rod is None else 6
+
+    def solve(self, radius: float) -> Balance:
+        """Return the balance with the counterweight at a radius, m."""
+        angles = np.linspace(0.0, 2.0 * math.pi, _START, endpoint=False)
+        for count in range(1, ROUNDS + 1):
+            x, bound, saving = self._cone(angles)
+            after = with_masses(self.mechanism, self.linkage, x, radius)
+            fresh = self._rising(x, angles, after) if self.measure == "peak" else np.empty(0)
+            if not len(fresh) or count == ROUNDS:
+                break
+            angles = np.concatenate([angles, fresh])
+        before, shaken = (shaking_of(each, self.linkage) for each in (self.mechanism, after))
+        force, moment = (getattr(shaken, f"{self.measure}_{name}") for name in ("force", "moment"))
+        return Balance(
+            math.hypot(x[0], x[1]),
+            math.atan2(x[1], x[0]),
+            radius,
+            None if self.rod is None else RodBalance(*(float(value) for value in x[2:])),
+            self.linkage,
+            self.mechanism,
+            after,
+            before,
+            shaken,
+            force + (moment / self.arm if self.arm else 0.0),
+            bound,
+            saving,
+            count,
+            not len(fresh),
+        )
+
+    def _cone(self, angles: Array) -> tuple[Array, float, float]:
+        """Return x (6,), the least objective, N, with peaks at some angles only, and the price of `most`, N / kg m."""
+        import cvxpy
+
+        cp: Any = cvxpy  # its own types know neither `norm` nor `abs`
+        z = cp.Variable(self.count)
+        goals, rules = [], []
+        peaks = self.measure == "peak"
+        design = self.mechanism, self.linkage
+        force, moment = rows(*design, angles) if peaks else mean_rows(*design)
+        for table, size in ((force, self.force), *([(moment, self.force * self.arm)] if self.arm else [])):
+            first, others = table[..., 0] / size, table[..., 1 : 1 + self.count] * self.unit[: self.count] / size
+            if not peaks:
+                goals.append(cp.norm(first + others @ z))
+                continue
+            goals.append(cp.Variable())
+            if table.ndim == 3:
+                parts = cp.vstack([first[axis] + others[axis] @ z for axis in range(2)])
+                rules.append(cp.norm(parts, axis=0) <= goals[-1])
+            else:
+                rules.append(cp.abs(first + others @ z) <= goals[-1])
+        held = [] if self.most is None else [cp.norm(z[:2]) <= self.most / self.unit[0]]
+        rules += held
+        if self.rod is not None:
+            rules += [cp.quad_over_lin(z[3:5], z[2]) <= z[5], z[5] <= z[2], z[2] <= self.rod.mass / self.unit[2]]
+        problem = cp.Problem(cp.Minimize(sum(goals)), rules)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # what an inaccurate answer is worth shows in its peaks
+            problem.solve(solver=cp.CLARABEL, tol_gap_abs=1e-11, tol_gap_rel=1e-11, tol_feas=1e-11)
+        if z.value is None:
+            raise InputError(f"the cone solver found no balance ({problem.status}); masses must be of comparable size")
+        x = np.zeros(6)
+        x[: self.count] = z.value * self.unit[: self.count]
+        tight = self.most is not None and math.hypot(x[0], x[1]) > self.most * (1.0 - 1e-6)
+        price = held[0].dual_value * self.force / self.unit[0] if tight else 0.0
+        return self._lightest(self._inside(x)), float(problem.value * self.force), float(price)
+
+    def _inside(self, x: Array) -> Array:
+        """Return x within its bounds, from where the solver's rounding left it."""
+        if self.most is not None:
+            x[:2] *= min(1.0, self.most / max(math.hypot(x[0], x[1]), 1e-300))
+        if self.rod is not None:
+            mass = min(float(x[2]), self.rod.mass) if x[2] > 1e-9 * self.rod.mass else 0.0
+            inertia = min(max(float(x[5]), 0.0), mass * self.rod.radius**2)
+            x[3:5] *= min(1.0, math.sqrt(mass * inertia) / max(math.hypot(x[3], x[4]), 1e-300))
+            x[2], x[5] = mass, inertia
+        return x
+
+    def _lightest(self, x: Array) -> Array:
+        """Return the answer with the same forces, and moment if it counts, that adds the least mass to the rod."""
+        if self.rod is None:
+            return x
+        first, reach = math.hypot(x[3], x[4]), self.rod.radius
+        inertia = first * reach if self.arm is None else max(0.0, float(x[5]))
+        mass = max(inertia / reach**2, first**2 / inertia) if inertia else 0.0
+        light = np.array([x[0] + (x[2] - mass) * float(self.linkage.crank), x[1], mass, x[3], x[4], inertia])
+        return light if self.most is None or math.hypot(light[0], light[1]) <= self.most else x
+
+    def _rising(self, x: Array, angles: Array, after: Mechanism) -> Array:
+        """Return the crank angles of exact peaks that exceed all those at the angles that the programme has."""
+        force, moment = (table @ np.array([1.0, *x]) for table in rows(self.mechanism, self.linkage, angles))
+        fresh = []
+        for kind, size, unit in (
+            (Signal.SHAKING_FORCE, np.hypot(*force), self.force),
+            *([(Signal.SHAKING_MOMENT, np.abs(moment), self.force * self.arm)] if self.arm else []),
+        ):
+            found = find_peaks(after, kind, _design(self.linkage))
+            fresh.append(found.angles[0, found.values[0] > size.max() + _EXCESS * unit])
+        return np.concatenate(fresh)
+
+
+def shaking_of(mechanism: Mechanism, linkage: Linkage) -> Shaking:
+    """Return peaks and root mean squares of shaking force and moment of one linkage."""
+    numbers: list[float] = []
+    for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):
+        peak = find_peaks(mechanism, kind, _design(linkage), kept=1)
+        mean = average(mechanism, kind, _design(linkage))
+        numbers += [float(peak.values[0, 0]), float(peak.angles[0, 0]), float(mean.rms[0])]
+    return Shaking(*numbers)
+
+
+def _design(linkage: Linkage) -> Array:
+    return np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)

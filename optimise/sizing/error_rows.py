@@ -1,0 +1,72 @@
+"""The position error as linear rows in scaled tolerances, and its exact peaks: the constraints of an allocation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism, Tolerance
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
+from ...model.tolerance.sources import counted_angles, limits, source_influences
+from ..problem.costs import NAMES, Costs
+
+Array = NDArray[np.float64]
+Kind = Literal["worst case", "rss"]
+
+_START = 32  # crank angles a turn in `start`
+_TURN = 2.0 * np.pi
+
+
+class ErrorRows:
+    """(error / limit)^p of one linkage as a linear function of x_i = t_i^p / scale_i, which is of order one.
+
+    p: 1 for the worst case, 2 for the root-sum-square. t_i: the n tolerances that have a cost, m and rad. start: crank
+    angles spread over the counted part of the cycle, rad.
+    """
+
+    def __init__(self, mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float, kind: Kind) -> None:
+        self.mechanism, self.linkage, self.limit = mechanism, linkage, limit
+        self.power = 1 if kind == "worst case" else 2
+        self.names = tuple(costs.given)
+        self._chosen = [NAMES.index(name) for name in self.names]
+        self._given = limits(mechanism, linkage)
+        self._given[self._chosen] = 0.0
+        self.start = np.mod(np.concatenate(counted_angles(mechanism, linkage, count=_START)), _TURN)
+        self.scale = np.ones(len(self._chosen))
+        share = 1.0 / (len(self._chosen) * self.rows(self.start)[0].max(axis=0))
+        self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.given.values()]) ** self.power)
+
+    def rows(self, angles: Array) -> tuple[Array, Array]:
+        """Return the coefficients (m, n) of x and what is left for them (m,) at crank angles (m,), rad."""
+        parts = (np.abs(source_influences(self.mechanism, self.linkage, angles)) / self.limit) ** self.power
+        return parts[self._chosen].T * self.scale, 1.0 - self._given**self.power @ parts
+
+    def scaled(self, tolerances: Array) -> Array:
+        """Return x of tolerances (n,), m and rad."""
+        found: Array = tolerances**self.power / self.scale
+        return found
+
+    def tolerances(self, x: Array) -> Array:
+        """Return the tolerances (n,), m and rad, of x."""
+        found: Array = (x * self.scale) ** (1.0 / self.power)
+        return found
+
+    def machine(self, x: Array) -> Mechanism:
+        """Return the mechanism with the tolerances of x."""
+        own: dict[str, Any] = {
+            name: Tolerance(absolute=float(value)) for name, value in zip(self.names, self.tolerances(x), strict=True)
+        }
+        return replace(self.mechanism, tolerances=replace(self.mechanism.tolerances, **own))
+
+    def peaks(self, x: Array) -> tuple[Array, Array]:
+        """Return the exact local peaks (k,) over the counted angles, highest first, and their crank angles, rad."""
+        signal = Signal.POSITION_ERROR if self.power == 1 else Signal.POSITION_ERROR_RSS
+        design = np.array([[self.linkage.crank, self.linkage.rod, self.linkage.offset]], dtype=np.float64)
+        found = find_peaks(self.machine(x), signal, design)
+        there = np.isfinite(found.values[0])
+        return (found.values[0, there] / self.limit) ** self.power, found.angles[0, there]

@@ -1,0 +1,209 @@
+"""What sections must withstand, each limit state a posynomial of width w (in the plane of motion) and depth d.
+
+With pin centre distance L, density rho, and the joints' loads of `section_loads` (N axial, V moment at the root, F on
+pins), the own mass of a bar of width w adds at most
+
+    rod:    N'  = rho d (w L^2 phi_t^2 / 8 + pi w^2 a_along / 8),
+            M'  = rho d (w kappa + w^3 a_across / 12 + pi w^4 phi_tt / 128),
+    crank:  N'  = rho d (w_t^2 s1 + g (w L + pi w^2 / 8)),
+            M'  = rho d (g s1 + alpha s2),   s1 = w L^2 / 2 + pi w^2 L / 8 + w^3 / 12,
+            s2 = w L^3 / 3 + pi w^2 L^2 / 8 + w^3 L / 6 + pi w^4 / 128,
+
+the rod's kappa between its pins and the half-discs of its round ends beyond them, the crank from its far end to the
+pivot; s1 and s2 are the first and second moment of its area about the pivot. Axial force and moment peak at different
+crank angles, and the half-discs' share at yet others: adding the peaks is on the safe side. With C = (compression + N')
+and u = n C / P, P = pi^2 E d w^3 / (12 K^2 L^2), a moment grows in a compressed bar by at most
+
+    sec(pi sqrt(u) / 2) <= 1 + (4 / pi) u z,   z >= 1 / (1 - u)   written as   1 / z + u <= 1
+
+(Timoshenko and Gere, "Theory of Elastic Stability", 2nd ed., ch. 1: the end couples' secant, and the cantilever as half
+of that bar, K = 2). Each of these is at most one:
+
+    static stress   n / S_y (N / (w d) + 6 M (1 + (4 / pi) u z) / (d w^2))
+    fatigue         n (sigma_a / S_e + sigma_m / S_m) of the same stresses: amplitudes sigma_a and means sigma_m of the
+                    joints' loads, what comes of own mass and of compression as amplitude; S_m = S_u (Goodman) or S_y
+                    (Soderberg): Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46 and 6-45
+    buckling        n C / P in the plane, and the same with w and d exchanged out of it: Shigley eq. 4-43 with the end
+                    condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
+                    crank, a cantilever
+    net section     n F / (S_y (w - D) d), written as n F / (S_y w d) + D / w, at each pin of diameter D
+    bearing         F / (D d p), the pressure on the projected area of each pin
+
+Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
+most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. Stress raisers
+belong in S_e (Shigley eq. 6-18 and 6-32). Not considered: shear, the shape of the eyes beyond their net section, pin
+bending, friction, bending out of the plane.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from ...model.machine.mechanism import Mechanism
+from .section_limits import Material, SectionLimits
+from .section_loads import JointLoads, Range, Whip
+
+AMPLIFICATION = "amplification"
+"""The state that defines z; no limit of its own."""
+_SWELL = 4.0 / math.pi
+_NOTHING = 1e-12  # of the greatest load: no load, with room for a logarithm
+_TINY = 1e-30
+
+
+Above = Callable[[Any], Any]
+"""Puts a variable in the place of an expression, no less than it: keeps the expressions of a programme short."""
+
+
+def same(expression: Any) -> Any:
+    """Return the expression."""
+    return expression
+
+
+@dataclass(frozen=True)
+class BarLoads:
+    """What one bar carries; numbers, or posynomials of the sections. N, N m, and Pa^-1 N for fatigue.
+
+    axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass included.
+    pins: force and diameter by name.
+    """
+
+    axial: Any
+    compression: Any
+    moment: Any
+    fatigue_axial: Any
+    fatigue_moment: Any
+    pins: dict[str, tuple[Any, float]]
+
+    def each(self, above: Above) -> BarLoads:
+        """Return the same with `above` applied to each that own mass adds to."""
+        return BarLoads(
+            above(self.axial),
+            above(self.compression),
+            above(self.moment),
+            above(self.fatigue_axial),
+            above(self.fatigue_moment),
+            self.pins,
+        )
+
+
+def limit_states(
+    w: Any,
+    d: Any,
+    z: Any,
+    length: float,
+    held: float,
+    loads: BarLoads,
+    material: Material,
+    limits: SectionLimits,
+    above: Above = same,
+) -> dict[str, Any]:
+    """Return what must be at most one, by name; held: K of the plane's buckling length. z: amplification.
+
+    cvxpy expressions give posynomials; numbers give numbers, with z at its least if it is None, infinite where the bar
+    buckles.
+    """
+    static = limits.static_safety / material.yield_strength
+    euler = 12.0 * (held * length) ** 2 / (math.pi**2 * material.elasticity) * loads.compression
+    u = above(limits.static_safety * euler / (d * w**3))
+    if z is None:
+        z = 1.0 / (1.0 - u) if u < 1.0 else math.inf
+    swell = above(_SWELL * u * z * loads.moment)
+    fatigue = loads.fatigue_axial / (w * d) + 6.0 * (loads.fatigue_moment + swell / material.endurance) / (d * w**2)
+    found = {
+        AMPLIFICATION: 1.0 / z + u,
+        "static stress": static * (loads.axial / (w * d) + 6.0 * (loads.moment + swell) / (d * w**2)),
+        "fatigue": limits.fatigue_safety * fatigue,
+        "buckling in the plane": limits.buckling_safety * euler / (d * w**3),
+        "buckling out of the plane": limits.buckling_safety * euler / (w * d**3),
+    }
+    for name, (force, diameter) in loads.pins.items():
+        found[f"net section at the {name}"] = static * force / (w * d) + diameter / w
+        found[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
+    found["least width"], found["greatest width"] = limits.width[0] / w, w / limits.width[1]
+    found["least depth"], found["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
+    return found
+
+
+def rod_loads(
+    w: Any, d: Any, length: float, joints: dict[str, Any], whip: Whip, material: Material, limits: SectionLimits
+) -> BarLoads:
+    """Return what the rod carries, its own mass included."""
+    rho, fatigue = material.density, 1.0 / material.endurance
+    axial = rho * d * (_some(whip.spinning * length**2 / 8.0) * w + _some(math.pi / 8.0 * whip.along) * w**2)
+    moment = (
+        rho
+        * d
+        * (_some(whip.moment) * w + _some(whip.across / 12.0) * w**3 + _some(math.pi / 128.0 * whip.turning) * w**4)
+    )
+    return BarLoads(
+        axial=joints["rod"] + axial,
+        compression=joints["rod compression"] + axial,
+        moment=moment,
+        fatigue_axial=joints["rod fatigue"] + fatigue * axial,
+        fatigue_moment=fatigue * moment,
+        pins={
+            "crank pin": (joints["crank pin"], limits.crank_pin),
+            "slider pin": (joints["slider pin"], limits.slider_pin),
+        },
+    )
+
+
+def crank_loads(
+    w: Any,
+    d: Any,
+    length: float,
+    joints: dict[str, Any],
+    mechanism: Mechanism,
+    material: Material,
+    limits: SectionLimits,
+) -> BarLoads:
+    """Return what the crank carries at the pivot, its own mass included."""
+    rho, fatigue, pull = material.density, 1.0 / material.endurance, math.hypot(*mechanism.gravity)
+    first = length**2 / 2.0 * w + math.pi * length / 8.0 * w**2 + w**3 / 12.0
+    second = length**3 / 3.0 * w + math.pi * length**2 / 8.0 * w**2 + length / 6.0 * w**3 + math.pi / 128.0 * w**4
+    axial = rho * d * (_some(mechanism.speed**2) * first + _some(pull) * (length * w + math.pi / 8.0 * w**2))
+    moment = rho * d * (_some(pull) * first + _some(abs(mechanism.acceleration)) * second)
+    return BarLoads(
+        axial=joints["crank"] + axial,
+        compression=joints["crank compression"] + axial,
+        moment=joints["bending"] + moment,
+        fatigue_axial=joints["crank fatigue"] + fatigue * axial,
+        fatigue_moment=joints["bending fatigue"] + fatigue * moment,
+        pins={
+            "pivot": (joints["crank pivot"], limits.crank_pivot),
+            "crank pin": (joints["crank pin"], limits.crank_pin),
+        },
+    )
+
+
+def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -> dict[str, float]:
+    """Return the joints' loads as the limit states take them, each more than zero: N, N m, and those over Pa."""
+    mean = material.ultimate_strength if limits.criterion == "goodman" else material.yield_strength
+
+    def fatigue(load: Range) -> float:
+        return load.amplitude / material.endurance + load.mean / mean
+
+    terms = {
+        "rod": joints.rod.peak,
+        "rod compression": max(0.0, -joints.rod.least),
+        "rod fatigue": fatigue(joints.rod),
+        "crank": joints.crank.peak,
+        "crank compression": max(0.0, -joints.crank.least),
+        "crank fatigue": fatigue(joints.crank),
+        "bending": joints.bending.peak,
+        "bending fatigue": fatigue(joints.bending),
+        "crank pivot": joints.crank_pivot,
+        "crank pin": joints.crank_pin,
+        "slider pin": joints.slider_pin,
+    }
+    least = _NOTHING * max(terms.values())
+    floors = {name: least / material.endurance if name.endswith("fatigue") else least for name in terms}
+    return {name: _some(max(value, floors[name])) for name, value in terms.items()}
+
+
+def _some(value: float) -> float:
+    """Return a coefficient that a posynomial can have: none is zero."""
+    return max(value, _TINY)

@@ -1,0 +1,112 @@
+"""Shaking force and moment as affine functions of the masses that balance them, with exact peaks and means.
+
+At constant crank speed w (`model.inertia`, alpha = 0), with C the first moment of what is fixed to the crank, in its
+axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia about the crank
+pin:
+
+    force  = w^2 R(theta) C + m r w^2 (cos theta, sin theta) - S_tt - m_slider a_B
+    moment = -(A x S_tt + S x a_A + I phi_tt) + e m_slider a_B,    a_A = -w^2 A.
+
+Both are linear in C, m, S and I, and so affine in what a counterweight (c = mass times vector to its centre) and a mass
+added to the rod (m, b, I about the crank pin) put in. The moment about the pivot depends neither on c, whose force
+passes through the pivot, nor on m: only b and I change it. m does what a counterweight of moment m r towards the crank
+pin does. Not affine: mass and inertia as functions of a moment (m = |c| / radius, I = |c| radius). The counterweight's
+matter with an acceleration of the crank only, so that its mass follows afterwards for any radius; those on the rod are
+variables of their own (`balancing`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.cycle.shaking import shaking_curves
+from ...model.dynamics.segments import crowding, uncrowded
+from ...model.linkage.linkage import Linkage
+from ...model.machine.links import Bar, Counterweight, Link, RigidLink
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.parameters import link_properties
+
+Array = NDArray[np.float64]
+
+NAMES = ("c along", "c across", "m", "b along", "b across", "I")
+"""Columns: counterweight's moment along and across the crank, kg m; of what is added to the rod, mass, kg, first moment
+along and across it, kg m, and inertia, kg m^2, about the crank pin."""
+_NODES = 192  # of the means, as in `model.averages`
+
+
+def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:
+    """Return force (2, k, 7), N, and moment (k, 7), N m, at crank angles (k,), rad.
+
+    The first column is what there is without counterweight, the others per unit of `NAMES`.
+    """
+
+    def curves(**masses: Any) -> Array:
+        machine = Mechanism(speed=mechanism.speed, branch=mechanism.branch, **masses)
+        found = shaking_curves(machine, linkage, angles)
+        return np.stack([found.force_x, found.force_y, found.moment])
+
+    bare = curves(crank=mechanism.crank, rod=mechanism.rod, slider_mass=mechanism.slider_mass)
+    along, across = (curves(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi))
+    mass = curves(rod=RigidLink(mass=1.0, centre=0.0, inertia=0.0))
+    inertia = curves(rod=RigidLink(mass=0.0, inertia=1.0))
+    pin = mass + inertia  # a mass of 1 kg at 1 m has both, beside its first moment
+    ahead = curves(rod=RigidLink(mass=1.0, centre=1.0, inertia=0.0)) - pin
+    aside = curves(rod=RigidLink(mass=1.0, centre=0.0, centre_across=1.0, inertia=0.0)) - pin
+    table = np.stack([bare, along, across, mass, ahead, aside, inertia], axis=-1)
+    return table[:2], table[2]
+
+
+def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
+    """Return force (7, 7) and moment (7, 7) rows: the norm of rows @ (1, x) is the root mean square over the cycle."""
+    kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
+    tau = np.arange(_NODES) * (2.0 * math.pi / _NODES)
+    angles = np.array([uncrowded(float(t), kappa) for t in tau])
+    weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2) / _NODES
+    force, moment = rows(mechanism, linkage, angles)
+    share = np.sqrt(weight)[:, None]
+    both = np.concatenate([share * force[0], share * force[1]]), share * moment
+    reduced: list[Array] = [np.asarray(np.linalg.qr(table, mode="r")) for table in both]
+    return reduced[0], reduced[1]
+
+
+def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:
+    """Return the mechanism with a counterweight at a radius, m, instead of its own, and with a mass added to the rod.
+
+    x: (6,), as in `NAMES`; the rod then becomes a `RigidLink` of that length.
+    """
+    size = math.hypot(x[0], x[1])
+    weight = Counterweight(mass=size / radius, radius=radius, angle=math.atan2(x[1], x[0]) if size else math.pi)
+    rod = mechanism.rod
+    if x[2] > 0.0:
+        mass, along, across, inertia = np.add(_moments(rod, float(linkage.rod)), x[2:])
+        central = inertia - (along * along + across * across) / mass
+        rod = RigidLink(
+            mass=float(mass),
+            centre=float(along / mass),
+            centre_across=float(across / mass),
+            inertia=max(0.0, float(central)),
+        )
+    return replace(mechanism, counterweight=weight, rod=rod)
+
+
+def _moments(link: Link, length: float) -> Array:
+    """Return mass, first moments along and across, and inertia of a link about its origin."""
+    if isinstance(link, Bar):
+        numbers = (link.width, link.depth, link.density, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    else:
+        centre = 0.5 * length if link.centre is None else link.centre
+        inertia, share = (0.0, 1.0 / 12.0) if link.inertia is None else (link.inertia, 0.0)
+        numbers = (0.0, 0.0, 0.0, link.mass, centre, 0.0, link.centre_across, inertia, share)
+    return np.array(link_properties(length, *numbers))
+
+
+def moving_moment(mechanism: Mechanism, linkage: Linkage) -> float:
+    """Return the first moment, kg m, of crank, rod and slider as if all but the crank were at the crank pin."""
+    crank = _moments(mechanism.crank, float(linkage.crank))
+    mass = _moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass
+    return float(math.hypot(crank[1], crank[2]) + mass * float(linkage.crank))

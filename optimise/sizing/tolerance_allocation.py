@@ -1,0 +1,277 @@
+"""Tolerances of least manufacturing cost that keep the position error within a limit.
+
+    minimise  sum_i c_i(t_i)   with   error(theta; t) <= limit at every crank angle of the working stroke,
+                                      least_i <= t_i <= greatest_i,
+
+c_i(t) = a_i + b_i / t^k_i (`costs`), with the first-order influences s_i(theta) of `model.position_error`. Put
+y_i = t_i^p with p = 1 for the worst case and p = 2 for the root-sum-square. Both limits are then linear,
+
+    sum_i |s_i(theta)|^p y_i <= limit^p - F(theta),
+
+where F holds what is given (clearances, tolerances without a cost), the bounds stay bounds, and the costs
+b_i y_i^(-k_i / p) are strictly convex: one convex programme for both, with one solution. Its constraints are one for
+each crank angle of a continuum. They are exchanged: the programme is solved with a few angles, the exact local peaks of
+the error that it leaves (`model.peaks`, no grid) are added, until none exceeds the limit (R. Hettich and K. O.
+Kortanek, "Semi-infinite programming", SIAM Review 35(3), 1993, on exchange methods). The cone solver tells which angles
+and bounds are active, but finds tolerances of little weight in the cost to 1e-4 only; the optimality conditions
+
+    k_i b_i t_i^(-k_i-1) = sum_j lambda_j p |s_i(theta_j)|^p t_i^(p-1)  for tolerances within their bounds,
+    error(theta_j; t) = limit at the active peaks theta_j, which move with t,
+
+are then solved for t and lambda to rounding. In a convex programme they are sufficient: what meets them, with
+lambda >= 0 and no peak above the limit, is the optimum.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single import single
+from ...model.machine.loads import require_word
+from ...model.machine.mechanism import Mechanism, Window
+from ..problem.costs import Costs
+from .error_rows import Array, ErrorRows, Kind
+
+ROUNDS = 60
+_NEAR = 1e-3  # relative excess below which the optimality conditions are tried
+_EXCESS = 1e-10  # relative, that the last round may leave
+_SOLVED = 1e-11  # of the optimality conditions, relative ...
+_MET = 1e-6  # ... and what is called optimal where they could not be solved
+_AT_BOUND = 1e-6  # relative, in the cone solver's answer
+_CARRIES = 1e-6  # share of the multipliers that makes an angle active
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Part:
+    """One tolerance that was chosen.
+
+    tolerance: m, of the crank angle rad. cost: of holding it. bound: which end of its range it stands at. saving: by
+    how much the total cost falls for each m (rad) by which that end is loosened; zero within the range.
+    """
+
+    name: str
+    tolerance: float
+    cost: float
+    bound: Literal["least", "greatest"] | None
+    saving: float
+
+
+@dataclass(frozen=True)
+class Allocation:
+    """Tolerances of least cost.
+
+    parts: the tolerances chosen. cost: their total. mechanism: that of the arguments, with them. error: greatest
+    first-order position error with them, m. saving: by how much the cost falls for each m that the limit is raised.
+    angles: crank angles, rad, at which the limit holds the tolerances back, ascending; savings: the share of each in
+    `saving`. residual: of the optimality conditions, relative. rounds: of the exchange. converged: whether the error is
+    within the limit to 1e-10 and the residual below 1e-6; otherwise this is the best point found.
+    """
+
+    kind: Kind
+    limit: float
+    parts: tuple[Part, ...]
+    cost: float
+    mechanism: Mechanism
+    error: float
+    saving: float
+    angles: Array
+    savings: Array
+    residual: float
+    rounds: int
+    converged: bool
+
+
+def allocate(
+    linkage: Linkage,
+    costs: Costs,
+    limit: float,
+    kind: Kind = "worst case",
+    window: Window | None = None,
+    *,
+    mechanism: Mechanism | None = None,
+) -> Allocation:
+    """Return the tolerances of least cost that keep the first-order position error of one linkage within a limit, m.
+
+    kind: how errors add up. window: the part of the cycle in which the error counts; that of the mechanism if None.
+    mechanism: its clearances, and its tolerances of what has no cost, take their part of the limit; its speed says
+    which way the crank turns. Raises `InputError` where even the least tolerances exceed the limit.
+    """
+    require_word("kind", kind, Kind)
+    if not (math.isfinite(limit) and limit > 0.0):
+        raise InputError(f"the limit of the position error must be positive and finite; got {limit:g} m")
+    given = Mechanism(branch=linkage.branch) if mechanism is None else mechanism
+    if linkage.branch != given.branch:
+        raise InputError(
+            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {given.branch}; "
+            "set branch in both"
+        )
+    if window is not None:
+        given = replace(given, tolerances=replace(given.tolerances, window=window))
+    return _Programme(ErrorRows(given, single(given, linkage), costs, limit, kind), costs).solve()
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Scaled tolerances x, active peaks and their multipliers, the Lagrangian's slope (n,), and its residual."""
+
+    x: Array
+    angles: Array
+    multipliers: Array
+    slope: Array
+    residual: float
+
+
+class _Programme:
+    """The programme in x, with the limit as 1."""
+
+    def __init__(self, rows: ErrorRows, costs: Costs) -> None:
+        self.error, self.costs = rows, list(costs.given.values())
+        self.least, self.greatest, at = (
+            rows.scaled(np.array([getattr(cost, name) for cost in self.costs])) for name in ("least", "greatest", "at")
+        )
+        self.q = np.array([cost.exponent for cost in self.costs]) / rows.power
+        self.beta = np.array([cost.cost for cost in self.costs]) * at**self.q
+        floor, limit = rows.peaks(self.least)[0].max(), 1e3 * rows.limit
+        if not floor < 1.0:
+            raise InputError(
+                "the limit must exceed the position error that the least tolerances leave with what is given; "
+                f"got {limit:g} mm, below {limit * floor ** (1.0 / rows.power):.6g} mm; raise the limit, "
+                "or reduce clearances and least tolerances"
+            )
+
+    def solve(self) -> Allocation:
+        angles = self.error.start
+        for count in range(1, ROUNDS + 1):
+            x, carried = self._cone(angles)
+            values, at = self.error.peaks(x)
+            rough = self._grouped(x, angles, carried, at[values > 1.0 - _NEAR])
+            point = self._exact(rough) if values.max() <= 1.0 + _NEAR else None
+            if point is not None or values.max() <= 1.0 + _EXCESS or count == ROUNDS:
+                # Without an exact point the case is degenerate: as exact as the cone solver, which the residual says.
+                return self._allocation(point or rough, count)
+            angles = np.concatenate([angles, at[values > 1.0]])
+        raise AssertionError("the last round returns")
+
+    def _cone(self, angles: Array) -> tuple[Array, Array]:
+        """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
+        import cvxpy
+
+        cp: Any = cvxpy  # its own types know neither `sum` nor `power`
+        rows, room = self.error.rows(angles)
+        size = float(self.beta.sum())
+        x = cp.Variable(len(self.beta))
+        terms = zip(self.beta / size, x, -self.q, strict=True)
+        cost = sum(share * cp.power(each, exponent, approx=False) for share, each, exponent in terms)
+        within = rows @ x <= room
+        rules = [within, x >= self.least]
+        ends = np.flatnonzero(np.isfinite(self.greatest))
+        if len(ends):
+            rules.append(x[ends] <= self.greatest[ends])
+        problem = cp.Problem(cp.Minimize(cost), rules)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # an inaccurate answer is a start for the exact conditions
+            problem.solve(solver=cp.CLARABEL, tol_gap_abs=1e-10, tol_gap_rel=1e-10, tol_feas=1e-10)
+        if x.value is None:
+            raise InputError(
+                f"the cone solver found no tolerances ({problem.status}); costs and bounds must be of comparable size: "
+                f"got costs of {self.beta.min():.3g} to {self.beta.max():.3g} for equal shares of the limit"
+            )
+        return np.clip(x.value, self.least, self.greatest), size * np.maximum(within.dual_value, 0.0)
+
+    def _grouped(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
+        """Return the multipliers of sampled angles gathered at the peaks nearest to them."""
+        multipliers = np.zeros(len(at))
+        if len(at):
+            np.add.at(multipliers, _nearest(angles, at), carried)
+        active = multipliers > _CARRIES * multipliers.sum()
+        return self._point(x, at[active], multipliers[active])
+
+    def _point(self, x: Array, angles: Array, multipliers: Array) -> _Point:
+        pull = multipliers @ self.error.rows(angles)[0] if len(angles) else np.zeros(len(x))
+        push = self.q * self.beta * x ** (-self.q - 1.0)
+        inside = (x > self.least * (1.0 + _AT_BOUND)) & (x < self.greatest * (1.0 - _AT_BOUND))
+        residual = np.abs(pull / push - 1.0)[inside].max(initial=0.0)
+        return _Point(x, angles, multipliers, np.where(inside, 0.0, pull - push), float(residual))
+
+    def _exact(self, start: _Point) -> _Point | None:
+        """Return the point near another that meets the optimality conditions; None if there is none."""
+        from scipy.optimize import least_squares
+
+        x = start.x
+        low, high = x <= self.least * (1.0 + _AT_BOUND), x >= self.greatest * (1.0 - _AT_BOUND)
+        pinned = np.where(low, self.least, np.where(high, self.greatest, x))
+        free = np.flatnonzero(~(low | high))
+        count, weight = len(free), start.multipliers
+
+        def place(z: Array) -> tuple[Array, Array]:
+            here = pinned.copy()
+            here[free] *= np.exp(z[:count])
+            found = self.error.peaks(here)[1]
+            return here, found[_nearest(start.angles, found)]
+
+        def conditions(z: Array) -> Array:
+            here, where = place(z)
+            rows, room = self.error.rows(where)
+            pull = (weight * (1.0 + z[count:])) @ rows
+            push = self.q * self.beta * here ** (-self.q - 1.0)
+            return np.concatenate([(pull / push - 1.0)[free], rows @ here - room])
+
+        z = np.zeros(count + len(weight))
+        if len(z):
+            z = least_squares(conditions, z, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=40).x
+            if not np.abs(conditions(z)).max() <= _SOLVED:
+                return None
+        here, where = place(z)
+        point = self._point(here, where, weight * (1.0 + z[count:]))
+        met = (
+            np.all(point.multipliers >= 0.0)
+            and np.all((here >= self.least) & (here <= self.greatest))
+            and np.all(point.slope[low] >= 0.0)
+            and np.all(point.slope[high] <= 0.0)
+            and self.error.peaks(here)[0].max() <= 1.0 + _SOLVED
+        )
+        return point if met else None
+
+    def _allocation(self, point: _Point, rounds: int) -> Allocation:
+        greatest = float(self.error.peaks(point.x)[0].max())
+        tolerances = self.error.tolerances(point.x)
+        parts = []
+        for name, cost, t, x, slope in zip(self.error.names, self.costs, tolerances, point.x, point.slope, strict=True):
+            bound: Literal["least", "greatest"] | None = None
+            if slope != 0.0:
+                bound = "least" if slope > 0.0 else "greatest"
+            saving = abs(slope) * self.error.power * x / t  # dx = p x dt / t
+            parts.append(Part(name, float(t), cost.of(float(t)), bound, float(saving)))
+        order = np.argsort(point.angles)
+        savings = (
+            point.multipliers[order] * self.error.power / self.error.limit
+        )  # d(limit^p) = p limit^p dlimit / limit
+        return Allocation(
+            "worst case" if self.error.power == 1 else "rss",
+            self.error.limit,
+            tuple(parts),
+            math.fsum(part.cost for part in parts),
+            self.error.machine(point.x),
+            self.error.limit * greatest ** (1.0 / self.error.power),
+            float(savings.sum()),
+            point.angles[order],
+            savings,
+            point.residual,
+            rounds,
+            greatest <= 1.0 + _EXCESS and point.residual <= _MET,
+        )
+
+
+def _nearest(angles: Array, among: Array) -> NDArray[np.intp]:
+    """Return which of some crank angles is nearest to each angle, rad."""
+    apart: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
+    return np.asarray(apart.argmin(axis=1))
