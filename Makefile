@@ -67,3 +67,5 @@ $(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
 
 $(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test,benchmark])
+
+include .javascript/rules.mk

@@ -10,7 +10,7 @@ export function scale(low, high, start, end, count = 5) {
   }
   const factor = (end - start) / (high - low);
   const step = roundStep((high - low) / count);
-  const places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const power = Math.floor(Math.log10(step) + 1e-9); // of the last digit in which ticks differ
   const ticks = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(i * step);
   return {
@@ -19,8 +19,15 @@ export function scale(low, high, start, end, count = 5) {
     ticks,
     at: (value) => start + (value - low) * factor,
     value: (pixel) => low + (pixel - start) / factor,
-    text: (tick) => (Math.abs(tick) >= 1e5 ? tick.toExponential(1) : tick.toFixed(places)).replace(/^-0(\.0*)?$/, "0").replace("-", "−"),
+    text: (tick) => tickText(tick, power),
   };
+}
+
+/** Return a tick as text, to the digit of a power of ten. */
+function tickText(tick, power) {
+  const size = Math.abs(tick);
+  const text = size >= 1e5 ? tick.toExponential(Math.max(0, Math.floor(Math.log10(size)) - power)) : tick.toFixed(Math.max(0, -power));
+  return text.replace(/^-0(\.0*)?$/, "0").replace("-", "−");
 }
 
 /** Return {low, high} of values, those that are no numbers left out, with `room` of the range on both sides. */

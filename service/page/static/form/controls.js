@@ -92,7 +92,7 @@ export function unitSelect(label, kind, unit, percent = false, id = null) {
 
 /** Return what a job holds for a typed number: a number if it is one. */
 export function number(text) {
-  const typed = text.trim().replace("−", "-");
+  const typed = text.trim().replaceAll("−", "-");
   if (typed === "") return undefined;
   return Number.isFinite(Number(typed)) ? Number(typed) : typed;
 }

@@ -87,7 +87,7 @@ export function axisFields(explorer) {
 
 /** Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none. */
 function number(node, unit) {
-  const written = node.value.trim().replace("−", "-").replace(",", ".");
+  const written = node.value.trim().replaceAll("−", "-").replace(",", ".");
   const value = written === "" ? null : fromShown(Number(written), unit);
   const fine = value === null || Number.isFinite(value);
   if (fine) node.removeAttribute("aria-invalid");

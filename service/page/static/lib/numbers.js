@@ -45,12 +45,12 @@ export function fromShown(value, unit) {
 
 /** Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash. */
 export function text(value, unit = "", digits = 5) {
-  if (value === null || value === undefined) return "–";
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (typeof value !== "number") return String(value);
   const shown = inShown(value, unit);
   if (shown === 0) return "0";
   const size = Math.abs(shown);
-  if (size >= 1e6 || size < 1e-4) return shown.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("-", "−");
+  if (size >= 1e6 || size < 1e-4) return shown.toExponential(digits - 1).replace(/\.?0+e/, "e").replaceAll("-", "−");
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
 }
@@ -65,12 +65,12 @@ export function limitText(value, unit, side, digits = 5) {
   const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
   const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one
   const scaled = (shown + (side === "up" ? -rounding : rounding)) * 10 ** places;
-  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replace("-", "−");
+  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replaceAll("-", "−");
 }
 
 /** Return a number with its unit: "41.2 mm", "38°". */
 export function withUnit(value, unit = "", digits = 5) {
-  if (value === null || value === undefined || typeof value !== "number") return text(value);
+  if (typeof value !== "number" || Number.isNaN(value)) return text(value);
   const shown = unitOf(unit);
   return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
 }

@@ -1,0 +1,32 @@
+# JavaScript of the page and of the player: lint and types (npm), unit tests (node 18.18 or newer; Debian: nodejs npm).
+# Without node they are left out, and make says so.
+.PHONY: lint-javascript test-javascript clean-javascript
+lint: lint-javascript
+test: test-javascript
+clean: clean-javascript
+
+JAVASCRIPT := .javascript
+IN_NODE := $(JAVASCRIPT)/node_modules/.bin
+
+ifneq ($(shell sh -c 'command -v npm'),)
+lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed
+	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 $(JAVASCRIPT) service tests
+else
+lint-javascript:
+	@echo 'SKIPPED: lint and types of the JavaScript, which need npm; on Debian: apt install nodejs npm' >&2
+endif
+
+test-javascript:
+ifneq ($(shell sh -c 'command -v node'),)
+	node --test --test-reporter spec $(shell find tests -name '*.test.mjs')
+else
+	@echo 'SKIPPED: unit tests of the JavaScript, which need node; on Debian: apt install nodejs' >&2
+endif
+
+clean-javascript:
+	rm -rf $(JAVASCRIPT)/node_modules $(JAVASCRIPT)/openapi.*
+
+$(JAVASCRIPT)/node_modules/.installed: $(JAVASCRIPT)/package.json $(JAVASCRIPT)/package-lock.json
+	@echo 'Installing into $(JAVASCRIPT)/node_modules ...'
+	@cd $(JAVASCRIPT) && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@

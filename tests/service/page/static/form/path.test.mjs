@@ -1,0 +1,58 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { at, idOf, put, read, written } from "../../../../../service/page/static/form/path.js";
+import { draws } from "../draws.mjs";
+
+const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
+
+/** Return a drawn path: a key first, places of lists only behind keys. */
+function path({ whole, one, number }) {
+  const found = [one(KEYS)];
+  while (found.length < whole(1, 5)) found.push(typeof found.at(-1) === "string" && number(0, 1) < 0.4 ? 0 : one(KEYS));
+  return found;
+}
+
+test("a path that is written is read as itself", () => {
+  const draw = draws(5);
+  for (let n = 0; n < 1000; n += 1) {
+    const one = path(draw).map((key) => (key === 0 ? draw.whole(0, 30) : key));
+    assert.deepEqual(read(written(one)), one);
+  }
+  assert.deepEqual(read('variables."own length".choices #2'), ["variables", "own length", "choices", 1]);
+  assert.deepEqual(read(""), []);
+  assert.equal(written([]), "");
+});
+
+test("what is put is there, and nothing is left once it is taken away", () => {
+  const draw = draws(6);
+  for (let n = 0; n < 1000; n += 1) {
+    const one = path(draw);
+    const job = { name: "kept" };
+    put(job, one, "5 mm");
+    assert.equal(at(job, one), "5 mm");
+    put(job, one, undefined);
+    assert.equal(at(job, one), undefined);
+    assert.equal(job.name, "kept");
+    if (!one.includes(0)) assert.deepEqual(job, { name: "kept" });
+  }
+});
+
+test("others stay as they are", () => {
+  const job = { load: [{ force: "1 N" }, { force: "2 N" }], constraints: { stroke: { min: 1, max: 2 } } };
+  put(job, ["load", 0], undefined);
+  put(job, ["constraints", "stroke", "max"], undefined);
+  assert.deepEqual(job, { load: [{ force: "2 N" }], constraints: { stroke: { min: 1 } } });
+  put(job, ["tolerances", "rod"], undefined);
+  assert.deepEqual(job, { load: [{ force: "2 N" }], constraints: { stroke: { min: 1 } } });
+});
+
+test("nothing stands behind a value that is no table", () => {
+  for (const value of [null, 4, "text", undefined, NaN]) assert.equal(at({ name: value }, ["name", "further"]), undefined);
+});
+
+test("ids of different paths of a form differ, and are names in a document", () => {
+  const ids = [["load", 0, "force"], ["load", 1, "force"], ["load", 0], ["rod"]].flatMap((one) => ["c", "u"].map((part) => idOf(one, part)));
+  assert.equal(new Set(ids).size, ids.length);
+  assert.match(idOf(["choice of", "µ"], "c"), /^[\w-]+$/);
+});
