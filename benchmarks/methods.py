@@ -22,7 +22,7 @@ from pymoo.util.ref_dirs import get_reference_directions
 from slidercrank.optimise.front.hypervolume import choose, hypervolume, nondominated, scaling
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.methods.registry import METHODS
+from slidercrank.optimise.methods.registry import methods as known
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
@@ -54,7 +54,7 @@ def compare(
 
     evaluations: budget of all, their own by default. methods: names; by default all that take several objectives.
     """
-    names = methods or tuple(name for name, method in METHODS.items() if method.takes(4))
+    names = methods or tuple(name for name, method in known().items() if method.takes(4) and not method.polishes)
     rows, courses = [], {}
     for job in jobs:
         given = load_job(f"runs/{job}.toml")

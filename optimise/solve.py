@@ -15,18 +15,16 @@ from .feasibility.infeasibility import diagnose
 from .front.front import ParetoFront
 from .front.progress import REPEATING, Progress
 from .front.stationarity import Array
-from .methods.auto.auto import search_by_default
-from .methods.auto.deliver import as_found, deliver
+from .methods.auto.deliver import deliver, searched_by
 from .methods.auto.so_far import so_far
-from .methods.gradients import require_gradients
-from .methods.registry import require_eliminated, require_fit, search_of
+from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
 from .problem.gradients import without_gradient
 from .problem.problem import Problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
 from .search.checkpoints import Cancelled, Ledger, Record
 from .search.elimination import Sheet, sheets
-from .search.enumeration import enumerate_settled, searched
+from .search.enumeration import searched
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
 from .search.mirror import once
@@ -82,19 +80,15 @@ def solve(
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    method, free = problem.settings.method, searched(evaluators)
-    if method == "auto" or not free:
-        front = search_by_default(problem, evaluators, run)
-    else:
-        enumerate_settled(problem, evaluators, run)
-        front = as_found(problem, evaluators, search_of(method)(problem, free, run), run)
+    method, free = method_of(problem), searched(evaluators)
+    front = searched_by(method, problem, evaluators, run)
     if front is not None:
         return front
     if without_gradient(problem):
-        return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method))
+        return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
-    if len(diagnosis.feasible) and method != "auto" and free:
-        return empty(problem, evaluators, run, "infeasible", _MISSED.format(method))
+    if len(diagnosis.feasible) and not method.polishes and free:
+        return empty(problem, evaluators, run, "infeasible", _MISSED.format(method.name))
     if len(diagnosis.feasible) and free:
         archive = run.archive = Archive.empty(len(problem.objectives))
         _seed(archive, free, diagnosis.feasible)

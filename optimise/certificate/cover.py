@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import moocore
 import numpy as np
 from numpy.typing import NDArray
 
@@ -118,6 +117,8 @@ def volume(values: Array) -> float:
     m = values.shape[1]
     if m == 1:
         return float((REFERENCE - values.min()) / REFERENCE)
+    import moocore
+
     values = np.ascontiguousarray(values[nondominated(values)])
     return float(moocore.hypervolume(values, ref=REFERENCE) / REFERENCE**m)
 

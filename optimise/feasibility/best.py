@@ -9,7 +9,8 @@ from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.registry import QUANTITIES
 from ..engine.engine import Engine
 from ..front.stationarity import Array
-from ..methods.auto.auto import search_by_default
+from ..methods.auto.auto import AUTO
+from ..methods.auto.deliver import searched_by
 from ..problem.problem import Constraint, Objective, Problem, Sense, Settings, Variant
 from ..search.checkpoints import Ledger
 from ..search.elimination import sheets
@@ -37,7 +38,7 @@ def best_of(
     ledger, engine: of the search that wants to know it. stand: called with how far this one is.
     """
     own = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
-    front = search_by_default(problem, own, Run(problem, 1, stand, ledger or Ledger(), stages=stand))
+    front = searched_by(AUTO, problem, own, Run(problem, 1, stand, ledger or Ledger(), stages=stand))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
@@ -18,6 +17,9 @@ from .constant import spread
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .progress import Progress
 from .stationarity import STATIONARY, multipliers
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding

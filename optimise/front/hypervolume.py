@@ -5,7 +5,6 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable
 
-import moocore
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,6 +34,8 @@ def nondominated(values: Array) -> NDArray[np.int64]:
         return np.zeros(0, dtype=np.int64)
     if values.shape[1] == 1:
         return np.array([int(np.argmin(values[:, 0]))])
+    import moocore
+
     return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
 
 
@@ -51,6 +52,8 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True
         return 0.0
     if scaled.shape[1] == 1:
         return float((REFERENCE - scaled.min()) / REFERENCE)
+    import moocore
+
     volume = moocore.hypervolume(np.ascontiguousarray(scaled), ref=REFERENCE)
     return float(volume / REFERENCE ** scaled.shape[1])
 
@@ -67,6 +70,8 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
         return np.arange(n)
     if values.shape[1] == 1:
         return np.array(sorted(set(always) | set(np.argsort(values[:, 0], kind="stable")[:count].tolist()))[:count])
+    import moocore
+
     ideal, span = scaling(values)
     scaled = np.ascontiguousarray((values - ideal) / span)
     picked = list(dict.fromkeys(always))[:count]

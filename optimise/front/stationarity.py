@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 Array = NDArray[np.float64]
 
@@ -24,6 +23,8 @@ _STIFF = 1e3  # weight of the rows that fix the sums of weights, against gradien
 
 def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,), mu (q,) for gradients (p, k) of objectives and (q, k) of active constraints."""
+    from scipy.optimize import nnls
+
     p, q = len(goals), len(active)
     lengths = np.linalg.norm(active, axis=1)
     lengths[lengths == 0.0] = 1.0
@@ -54,6 +55,8 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
     A design that only a zero weight makes stationary (two objectives oppose each other, a third could still be had for
     nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound.
     """
+    from scipy.optimize import nnls
+
     names = np.unique(owner)
     p, q, m = len(goals), len(active), len(names)
     lengths = np.linalg.norm(active, axis=1)

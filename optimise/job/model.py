@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Annotated, Any, cast
 
 from pydantic import AfterValidator, Field, create_model
+from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
-from ..methods.registry import Name
+from ..methods.registry import methods
 from .clearance import ClearancePart
 from .costs import CostsPart
 from .drive import DrivePart
@@ -26,10 +27,17 @@ from .values import Part
 from .variables import ChoicePart, VariablesPart, choice_with
 
 
+class _MethodName:
+    """The name of a method, as an enumeration of all methods there are."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        return core_schema.literal_schema(list(methods()))
+
+
 class OptimiserPart(Part):
     """How to search."""
 
-    method: Name = Field(
+    method: Annotated[str, _MethodName()] = Field(
         "auto",
         description="how to search: the default finds the front of any number of objectives and polishes every design; "
         "the others deliver what they find",

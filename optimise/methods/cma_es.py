@@ -23,6 +23,7 @@ from ..problem.problem import Problem
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation, generation_seed
+from .method import Method
 from .population import evolve
 from .registry import budget
 
@@ -103,3 +104,16 @@ class _Climb:
         if flat or np.ptp(u, axis=0).max() <= _CONVERGED or self.optimiser.should_stop():
             self.size *= 2
             self.begin()
+
+
+CMAES = Method(
+    name="cmaes",
+    title="CMA-ES",
+    help="Samples a normal distribution that learns the shape of the objective, with restarts.",
+    family="model-based",
+    objectives="one",
+    search=cmaes,
+    budget=10_000,
+    uses=("cmaes",),
+    gradients=False,
+)

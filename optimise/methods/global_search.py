@@ -15,6 +15,7 @@ from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
 from .local import by_slsqp, found_by
+from .method import Method
 from .registry import budget
 from .scalar import Form, Programme
 
@@ -181,3 +182,27 @@ def _basins(problem: Problem, evaluators: list[Evaluator], index: int, seen: Arc
         if optimum is not None:
             u, scaled = optimum
             yield u, scaled * span + ideal
+
+
+DIFFERENTIAL_EVOLUTION = Method(
+    name="differential_evolution",
+    title="Differential evolution",
+    help="A population of scipy that moves by differences of its members; the best is improved by SLSQP.",
+    family="global",
+    objectives="one",
+    search=differential_evolution,
+    budget=50_000,
+    uses=("scipy",),
+    equalities=False,
+)
+SHGO = Method(
+    name="shgo",
+    title="SHGO",
+    help="Simplicial homology of scipy: finds the basins of the objective; each is descended by SLSQP.",
+    family="global",
+    objectives="one",
+    search=shgo,
+    budget=50_000,
+    uses=("scipy",),
+    equalities=False,
+)

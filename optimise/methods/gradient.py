@@ -9,6 +9,7 @@ from ..search.assemble import span_of
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .local import Local, by_slsqp, by_trust_constr, found_by
+from .method import Method
 from .registry import budget
 from .scalar import Form, Programme
 from .starts import samples
@@ -54,3 +55,26 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
 def spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
     """Whether the budget of evaluations is used up."""
     return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
+
+
+SLSQP = Method(
+    name="slsqp",
+    title="SLSQP",
+    help="Sequential least squares programming of scipy from many starts; peaks are rows of the epigraph form.",
+    family="gradient",
+    objectives="one",
+    search=slsqp,
+    budget=20_000,
+    uses=("scipy",),
+)
+TRUST_CONSTR = Method(
+    name="trust_constr",
+    title="trust-constr",
+    help="Interior-point method of scipy from a few starts; peaks are rows of the epigraph form.",
+    family="gradient",
+    objectives="one",
+    search=trust_constr,
+    budget=20_000,
+    uses=("scipy",),
+    equalities=False,
+)

@@ -27,6 +27,7 @@ from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation, History, Rows, generation_seed
+from .method import Method
 from .population import evolve
 from .registry import budget
 from .trials import asked, quiet, space, stored
@@ -123,3 +124,27 @@ def _survivors(study: Any, sampler: BaseGASampler, pool: Rows) -> Rows:
     if not len(pool):
         return pool
     return pool[[trial.number for trial in sampler.get_parent_population(study, 1)]]
+
+
+NSGA2 = Method(
+    name="nsga2",
+    title="NSGA-II",
+    help="Genetic algorithm by Optuna's operators whose population is kept diverse by crowding distance.",
+    family="evolutionary",
+    objectives="any",
+    search=nsga2,
+    budget=20_000,
+    uses=("optuna",),
+    gradients=False,
+)
+NSGA3 = Method(
+    name="nsga3",
+    title="NSGA-III",
+    help="Genetic algorithm by Optuna's operators whose population is kept diverse by reference directions.",
+    family="evolutionary",
+    objectives="several",
+    search=nsga3,
+    budget=20_000,
+    uses=("optuna",),
+    gradients=False,
+)

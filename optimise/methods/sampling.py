@@ -11,6 +11,7 @@ from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation, generation_seed
+from .method import Method
 from .population import evolve
 from .registry import budget
 
@@ -53,3 +54,26 @@ def _sampled(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw
         return Brood(chosen, points[:, :dimension], np.zeros(0, np.int64))
 
     return evolve(problem, evaluators, run, breed, size=size)
+
+
+RANDOM = Method(
+    name="random",
+    title="Random points",
+    help="Uniformly random points, a baseline that every other method must beat.",
+    family="sampling",
+    objectives="any",
+    search=random,
+    budget=20_000,
+    gradients=False,
+)
+SOBOL = Method(
+    name="sobol",
+    title="Sobol points",
+    help="One scrambled Sobol sequence, a baseline that every other method must beat.",
+    family="sampling",
+    objectives="any",
+    search=sobol,
+    budget=20_000,
+    uses=("scipy",),
+    gradients=False,
+)

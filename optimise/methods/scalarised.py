@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import distance_matrix
 
 from ..front.hypervolume import nondominated, scaling
 from ..front.stationarity import Array
@@ -21,6 +20,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .gradient import spent
 from .local import by_slsqp, found_by
+from .method import Method
 from .reference import grid, simplex
 from .scalar import Form, Programme
 from .starts import Samples, samples
@@ -168,6 +168,8 @@ class _Front:
         ball between them (K. R. Gabriel and R. R. Sokal, "A new statistical approach to geographic variation analysis",
         Syst. Zool. 18(3), 1969). None is aimed at twice: what it leads to may lie elsewhere.
         """
+        from scipy.spatial import distance_matrix
+
         found = self.scaled(self.archive.values)
         missing = int(_MORE * self.problem.settings.designs) - len(found)
         if missing <= 0:
@@ -202,6 +204,8 @@ class _Front:
 
 def _middles(points: Array) -> Array:
     """Return the middles (n, m) of the edges of the Gabriel graph of points."""
+    from scipy.spatial import distance_matrix
+
     first, second = np.triu_indices(len(points), 1)
     middles = 0.5 * (points[first] + points[second])
     within = distance_matrix(middles, points) < 0.5 * np.linalg.norm(points[first] - points[second], axis=1)[:, None]
@@ -244,3 +248,35 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
         run.tell("finding the best of each objective", evaluators, front)
     shared.ideal, shared.span = scaling(shared.payoff)
     return shared
+
+
+EPSILON_CONSTRAINT = Method(
+    name="epsilon_constraint",
+    title="Epsilon-constraint",
+    help="Minimises the first objective with ceilings on all others, on a grid of ceilings.",
+    family="scalarisation",
+    objectives="several",
+    search=epsilon_constraint,
+    budget=100_000,
+    uses=("scipy",),
+)
+CHEBYSHEV = Method(
+    name="chebyshev",
+    title="Weighted Chebyshev",
+    help="Minimises the greatest weighted distance from a point below all designs, in evenly spread directions.",
+    family="scalarisation",
+    objectives="several",
+    search=chebyshev,
+    budget=100_000,
+    uses=("scipy",),
+)
+NBI = Method(
+    name="nbi",
+    title="Normal-boundary intersection",
+    help="Goes as far as designs can along the normal of the plane through the single optima.",
+    family="scalarisation",
+    objectives="several",
+    search=nbi,
+    budget=100_000,
+    uses=("scipy",),
+)

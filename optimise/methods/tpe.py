@@ -17,6 +17,7 @@ from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation, History, generation_seed
+from .method import Method
 from .population import evolve
 from .registry import budget
 from .trials import asked, quiet, space, stored
@@ -54,3 +55,16 @@ class _Parzen:
             study.add_trials(stored(self.space, history, np.arange(len(history.u)), {}))
         sheet, u = asked(study, self.space, self.size, self.poll)
         return Brood(sheet, u, np.zeros(0, np.int64))
+
+
+TPE = Method(
+    name="tpe",
+    title="TPE",
+    help="Proposes by Optuna designs that are likelier to be good, from densities fitted to all evaluated ones.",
+    family="model-based",
+    objectives="any",
+    search=tpe,
+    budget=1_000,
+    uses=("optuna",),
+    gradients=False,
+)

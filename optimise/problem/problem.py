@@ -123,10 +123,6 @@ class Settings:
                 continue
             if not _whole(value, least):
                 raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
-        if self.method == "auto" and self.evaluations is not None:
-            raise InputError(
-                f"the method auto has no budget of evaluations; got {self.evaluations}; leave it out, or name a method"
-            )
 
 
 @dataclass(frozen=True, kw_only=True)

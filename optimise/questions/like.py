@@ -22,7 +22,7 @@ from ..front.front import ParetoFront
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY, Array
 from ..methods.auto.challenge import by_sheet
-from ..methods.gradients import require_gradients
+from ..methods.registry import require_gradients
 from ..problem.problem import Constraint, Problem, Range, Settings
 from ..search.assemble import empty, only
 from ..search.candidates import Pile

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from ...objectives.analysis import analyse
 from ..front.constant import is_constant
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
@@ -17,6 +17,9 @@ from .candidates import Pile
 from .evaluation import Evaluator, constraints_of
 from .fingerprint import versions
 from .search import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
 """Stages after the rounds: the best designs are chosen, then all that is to be known of each is computed."""
@@ -90,6 +93,10 @@ def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, s
 
     variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
     """
+    import pandas as pd
+
+    from ...objectives.analysis import analyse
+
     parts, done = [], 0
     for variant in np.unique(variants).tolist():
         own = np.flatnonzero(variants == variant)
@@ -130,6 +137,8 @@ def _clear(values: Array, bound: float | None, slack: Array) -> Array:
 
 def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
     """Return a front without designs, which says why."""
+    import pandas as pd
+
     m = len(problem.objectives)
     return ParetoFront(
         problem=problem,

@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ..front.stationarity import Array
 from .evaluation import Rows
@@ -115,6 +114,8 @@ def solve_step(
 
 def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) -> tuple[Array, Array]:
     """Return d and the multipliers of all rows; zeros where rounding leaves no solution."""
+    from scipy.optimize import nnls
+
     k, size = len(hessian), rows.shape[1]
     scale = np.zeros((size, size))  # z = scale x + shift
     scale[:k, :k] = np.linalg.inv(np.linalg.cholesky(hessian)).T

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
-from scipy.stats import qmc
 
 from ..front.hypervolume import scaling
 from ..front.stationarity import Array
@@ -42,6 +40,8 @@ def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
     """Return about `count` points of the unit box (n, k), a part of them on faces, edges and corners."""
     if dimension == 0:
         return np.zeros((1, 0))
+    from scipy.stats import qmc
+
     random = generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
     points = qmc.Sobol(dimension, rng=random).random_base2(power)[:count]
@@ -55,6 +55,8 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
     values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound mostly
     stays there.
     """
+    from scipy.spatial import cKDTree
+
     ideal, span = scaling(values)
     scaled = (values - ideal) / span
     neighbours = min(len(parents), values.shape[1] + 1)

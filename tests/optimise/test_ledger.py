@@ -14,7 +14,7 @@ from slidercrank.model.errors import ForeignRecords
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.methods import starts
-from slidercrank.optimise.methods.registry import METHODS, NAMES
+from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust
 from slidercrank.optimise.search import checkpoints as ledger
@@ -54,7 +54,7 @@ def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def asked(method: str) -> Problem:
     """Return a small problem for a method."""
-    alone = method != "auto" and METHODS[method].objectives == "one"
+    alone = methods()[method].objectives == "one"
     given = problem(
         {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
         LIMITED,
@@ -104,7 +104,7 @@ def after(questions: int) -> Callable[[], bool]:
     return lambda: next(left, None) is None
 
 
-@pytest.mark.parametrize("method", NAMES)
+@pytest.mark.parametrize("method", methods())
 def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
     found, records, told, _ = whole(method)
     assert len(records) >= 6
@@ -117,7 +117,7 @@ def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
         assert [entry.round for entry in again] == [entry.round for entry in told[records[cut - 1].told :]]
 
 
-@pytest.mark.parametrize("method", [name for name in NAMES if name not in SLOW])
+@pytest.mark.parametrize("method", [name for name in methods() if name not in SLOW])
 def test_a_run_that_is_cancelled_again_and_again_ends_as_if_it_had_not_been(method: str) -> None:
     """Each time within a round: after some of the questions that a whole run is asked."""
     found, records, _, questions = whole(method)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...front.hypervolume import Stand, choose, nondominated, unheard
 from ...front.stationarity import Array
@@ -102,6 +101,8 @@ def _half_way(evaluators: list[Evaluator], pile: Pile, best: NDArray[np.int64], 
     n, m = scaled.shape
     if n < 2:
         return []
+    from scipy.spatial import cKDTree
+
     nearest = cKDTree(scaled).query(scaled, k=min(n, 1 + _NEIGHBOURS * m))[1]
     both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
     pairs = np.unique(np.sort(both), axis=0)

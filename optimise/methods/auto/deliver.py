@@ -12,11 +12,12 @@ from ...problem.problem import Problem
 from ...search.assemble import SELECTING, assemble, span_of
 from ...search.candidates import Pile
 from ...search.checkpoints import integers
-from ...search.enumeration import searched
+from ...search.enumeration import enumerate_settled, searched
 from ...search.evaluation import Evaluator
 from ...search.recorded import polished, projected
 from ...search.sampling import apart
 from ...search.search import Archive, Run
+from ..method import Method
 from .challenge import by_sheet, challengers
 
 ROUNDS = 4
@@ -26,6 +27,17 @@ BATCH = 64
 _POOL = 2000  # greedy choice among more would take longer than it gains
 _STARTS = 24  # for the best value of a single objective
 _EXTREMES = 6  # for the best value of one objective among several
+
+
+def searched_by(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
+    """Return the front that a method finds, None where nothing is feasible.
+
+    Combinations that leave nothing free are enumerated; the method searches the rest.
+    """
+    enumerate_settled(problem, evaluators, run)
+    free = searched(evaluators)
+    archive = method.search(problem, free, run) if free else Archive.empty(len(problem.objectives))
+    return (deliver if method.polishes else as_found)(problem, evaluators, archive, run)
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:

@@ -36,6 +36,7 @@ from ...search.elimination import sheets
 from ...search.evaluation import FEASIBLE, Evaluator
 from ...search.sampling import apart, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
+from ..method import Method
 from ..registry import budget
 from .scp import Descent, Point
 
@@ -252,3 +253,15 @@ def _bounds(evaluator: Evaluator, owner: int) -> tuple[float | None, float | Non
         return constraint.lower, constraint.upper, None
     span = evaluator.sheet.bounds[evaluator.owner_name(owner)]
     return span.lower, span.upper, max(span.upper, 1e-300)
+
+
+MINIMAX = Method(
+    name="minimax",
+    title="Minimax",
+    help="Sequential convex programming on all peaks over the cycle at once, without smoothing.",
+    family="gradient",
+    objectives="one",
+    search=minimax,
+    budget=50_000,
+    uses=("cvxpy",),
+)

@@ -15,7 +15,7 @@ from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.methods import nsga as evolutionary
 from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.generation import Brood, Generation, generation_seed
-from slidercrank.optimise.methods.registry import METHODS
+from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
@@ -33,7 +33,7 @@ SIZES = {"tpe": (8, 40), "cmaes": (6, 60)}
 def asked(method: str) -> Problem:
     """Return a small problem for a method: five generations or more."""
     samples, evaluations = SIZES.get(method, (16, 80))
-    alone = METHODS[method].objectives == "one"
+    alone = methods()[method].objectives == "one"
     given = problem(
         {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
         LIMITED,

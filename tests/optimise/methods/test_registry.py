@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
+import re
 import subprocess
 import sys
-from types import ModuleType
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +14,10 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
-from slidercrank.optimise.methods.registry import METHODS, NAMES, budget
+from slidercrank.optimise.job.model import Job
+from slidercrank.optimise.job.schema import schema_of
+from slidercrank.optimise.methods.method import FAMILIES, Method
+from slidercrank.optimise.methods.registry import budget, methods
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
@@ -39,41 +44,61 @@ def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 @pytest.fixture(autouse=True)
 def sobol(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put `scatter` in the place of a method."""
-    name = f"slidercrank.optimise.methods.{METHODS['sobol'].module}"
-    module = ModuleType(name)
-    vars(module)["sobol"] = scatter
-    monkeypatch.setitem(sys.modules, name, module)
+    """Put `scatter` in the place of a method's search."""
+    monkeypatch.setitem(methods(), "sobol", replace(methods()["sobol"], search=scatter))
 
 
-def test_every_name_has_a_method() -> None:
-    assert ["auto", *METHODS] == list(NAMES)
+def test_methods_are_named_family_by_family_the_default_first() -> None:
+    assert list(methods())[0] == "auto"
+    assert [method.family for method in methods().values()] == sorted(
+        (method.family for method in methods().values()), key=FAMILIES.index
+    )
+
+
+@pytest.mark.parametrize("method", methods().values(), ids=list(methods()))
+def test_a_method_tells_of_itself(method: Method) -> None:
+    assert re.fullmatch("[a-z][a-z0-9_]*", method.name)
+    assert method.help.endswith(".")
+    assert len(method.help.split()) <= 20
+    for package in method.uses:
+        assert importlib.util.find_spec(package) is not None
+
+
+def test_the_schema_of_jobs_names_every_method() -> None:
+    assert schema_of(Job)["$defs"]["OptimiserPart"]["properties"]["method"]["enum"] == list(methods())
+
+
+def test_the_documentation_lists_every_method_as_it_tells_of_itself(pytestconfig: pytest.Config) -> None:
+    page = (pytestconfig.rootpath / "docs" / "optimisers.md").read_text(encoding="utf-8")
+    takes = {"one": "one objective", "several": "several objectives", "any": "any"}
+    for method in methods().values():
+        assert f"| `{method.name}` | {takes[method.objectives]} | {method.help} |\n" in page
 
 
 def test_the_budget_is_the_one_asked_or_the_method_s_own() -> None:
     assert budget(asking(BOTH, "nbi", evaluations=123)) == 123
-    assert budget(asking(BOTH, "nbi")) == METHODS["nbi"].budget
+    assert budget(asking(BOTH, "nbi")) == methods()["nbi"].budget
 
 
 def test_a_budget_without_a_method_is_refused() -> None:
     with pytest.raises(InputError, match="auto has no budget of evaluations; got 100"):
-        Settings(evaluations=100)
+        solve(replace(BOTH, settings=Settings(evaluations=100)))
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.objectives == "one"])
+@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "one"])
 def test_several_objectives_are_refused_naming_the_methods_that_fit(method: str) -> None:
     wanted = rf"{method} takes one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
     with pytest.raises(InputError, match=wanted):
         solve(asking(BOTH, method))
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.objectives == "several"])
+@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "several"])
 def test_one_objective_is_refused_naming_the_methods_that_fit(method: str) -> None:
     with pytest.raises(InputError, match=f"{method} takes several objectives; got 1 .*; use one of auto, slsqp"):
         solve(asking(problem({"peak_torque": "minimise"}), method))
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.equalities])
+@pytest.mark.parametrize("method", [name for name, method in methods().items() if not method.equalities])
 def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method: str) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
     with pytest.raises(InputError, match=f"{method} cannot hold peak_slider_speed at one value.*use slsqp or auto"):
@@ -124,10 +149,13 @@ def test_a_contradiction_is_explained_whatever_the_method() -> None:
     assert "can be had with all else kept" in front.message
 
 
-def test_no_method_is_imported_before_it_is_used() -> None:
+def test_no_package_that_a_method_computes_with_is_imported_before_it_is_used() -> None:
     code = (
-        "import sys; from slidercrank import load_job, solve; import slidercrank.optimise.solve as _;"
-        "print([name for name in sys.modules if 'optimise.methods.' in name])"
+        "import sys; from slidercrank import load_job, solve; load_job; solve;"
+        "from slidercrank.optimise.methods.registry import methods;"
+        "used = {name for method in methods().values() for name in method.uses} - {'scipy'};"  # numba imports scipy
+        "used |= {'scipy.optimize', 'scipy.stats', 'scipy.spatial', 'pandas'};"
+        "print(sorted(used & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert done.stdout.strip() == "['slidercrank.optimise.methods.registry']"
+    assert done.stdout.strip() == "[]"

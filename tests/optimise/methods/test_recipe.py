@@ -1,0 +1,41 @@
+"""The recipe of docs/architecture.md, followed: a method in one file is taken up by the contract tests unasked."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SUITES = ("tests/optimise/test_ledger.py", "tests/optimise/methods/test_registry.py", "tests/optimise/test_enumeration.py")
+PLUGIN = """
+import slidercrank.optimise.methods as package
+package.__path__.append({folder!r})
+"""
+
+
+def test_a_method_in_one_file_is_taken_up_by_the_suites_of_all_methods(
+    pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    root = pytestconfig.rootpath
+    section = (root / "docs" / "architecture.md").read_text(encoding="utf-8").split("## A new method")[1]
+    block = re.search(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
+    assert block is not None
+    (tmp_path / "methods").mkdir()
+    (tmp_path / "methods" / "halton.py").write_text(block[1], encoding="utf-8")
+    (tmp_path / "added.py").write_text(PLUGIN.format(folder=str(tmp_path / "methods")), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "added", "-p", "no:cacheprovider", "-k", "halton", *SUITES],
+        cwd=root,
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    passed = re.search(r"(\d+) passed", done.stdout)
+    assert passed is not None
+    assert int(passed[1]) >= 5
