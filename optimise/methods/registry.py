@@ -46,7 +46,7 @@ def budget(problem: Problem) -> int:
 
 
 def require_fit(problem: Problem) -> None:
-    """Raise `InputError` if the problem's method cannot take its number of objectives, or takes no budget but has one."""
+    """Raise `InputError` if the method cannot take its number of objectives, or takes no budget but has one."""
     method, count = method_of(problem), len(problem.objectives)
     asked = problem.settings.evaluations
     if asked is not None and method.budget is None:
@@ -87,10 +87,10 @@ def require_gradients(problem: Problem, what: str | None = None) -> None:
     if what is not None or method.gradients:
         count = len(problem.objectives)
         fitting = [name for name, other in methods().items() if not other.gradients and other.takes(count)]
-        other = "" if what else f"use one of {', '.join(fitting)}, or "
+        instead = "" if what else f"use one of {', '.join(fitting)}, or "
         raise InputError(
-            f"{what or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} with "
-            f'gradient = "none"; {other}set gradient = "finite differences"'
+            f"{what or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} "
+            f'with gradient = "none"; {instead}set gradient = "finite differences"'
         )
     for constraint in constraints_anywhere(problem):
         if constraint.equality and constraint.quantity in lacking:

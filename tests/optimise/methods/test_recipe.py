@@ -10,7 +10,11 @@ from pathlib import Path
 
 import pytest
 
-SUITES = ("tests/optimise/test_ledger.py", "tests/optimise/methods/test_registry.py", "tests/optimise/test_enumeration.py")
+SUITES = ("test_ledger.py", "methods/test_registry.py", "test_enumeration.py")
+    "tests/optimise/test_ledger.py",
+    "tests/optimise/methods/test_registry.py",
+    "tests/optimise/test_enumeration.py",
+)
 PLUGIN = """
 import slidercrank.optimise.methods as package
 package.__path__.append({folder!r})
@@ -27,8 +31,9 @@ def test_a_method_in_one_file_is_taken_up_by_the_suites_of_all_methods(
     (tmp_path / "methods").mkdir()
     (tmp_path / "methods" / "halton.py").write_text(block[1], encoding="utf-8")
     (tmp_path / "added.py").write_text(PLUGIN.format(folder=str(tmp_path / "methods")), encoding="utf-8")
+    suites = [f"tests/optimise/{name}" for name in SUITES]
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "added", "-p", "no:cacheprovider", "-k", "halton", *SUITES],
+        [sys.executable, "-m", "pytest", "-q", "-p", "added", "-p", "no:cacheprovider", "-k", "halton", *suites],
         cwd=root,
         env=os.environ | {"PYTHONPATH": str(tmp_path)},
         capture_output=True,

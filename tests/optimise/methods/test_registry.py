@@ -49,7 +49,7 @@ def sobol(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_methods_are_named_family_by_family_the_default_first() -> None:
-    assert list(methods())[0] == "auto"
+    assert next(iter(methods())) == "auto"
     assert [method.family for method in methods().values()] == sorted(
         (method.family for method in methods().values()), key=FAMILIES.index
     )
