@@ -11,10 +11,6 @@ from pathlib import Path
 import pytest
 
 SUITES = ("test_ledger.py", "methods/test_registry.py", "test_enumeration.py")
-    "tests/optimise/test_ledger.py",
-    "tests/optimise/methods/test_registry.py",
-    "tests/optimise/test_enumeration.py",
-)
 PLUGIN = """
 import slidercrank.optimise.methods as package
 package.__path__.append({folder!r})
