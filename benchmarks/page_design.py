@@ -13,8 +13,8 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 
 from .browser import address_of, chromium

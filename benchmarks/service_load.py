@@ -19,8 +19,8 @@ import httpx
 
 from faults.jobs import tables
 from faults.places import place
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 
 from .report import Row, machine, show
 from .service_process import headers, service

@@ -25,11 +25,11 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.app import create_app
 from slidercrank.service.api.server import spare_imports
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
-from slidercrank.service.store.packing import cells_of, summary_of, text_of
 from slidercrank.service.store.schema import jobs
-from slidercrank.service.submission import submit
+from slidercrank.service.store.serialisation import cells_of, summary_of, text_of
 
 from .report import Row, machine, show
 

@@ -12,8 +12,8 @@ from sqlalchemy import Connection, event
 from sqlalchemy.exc import OperationalError
 
 from slidercrank.model.errors import StoreError
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 
 from .audit import keep_audit

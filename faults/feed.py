@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import random
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Job, Store
-from slidercrank.service.submission import submit
 
 from .jobs import KINDS, tables
 

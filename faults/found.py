@@ -9,10 +9,10 @@ from pathlib import Path
 
 from sqlalchemy import select
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, jobs
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 
 from .jobs import KINDS, Found, tables

@@ -33,14 +33,14 @@ from .commands.optimise import optimise
 from .commands.queue import cancel, delete, jobs, resume
 from .commands.report import report
 from .commands.runs import front
-from .commands.screen import give, say
 from .commands.sections import sections
 from .commands.serve import serve
-from .commands.streams import give_up_output, guard_streams
 from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
-from .disk_room import full_places, is_full
+from .resources.disk import full_places, is_full
+from .text.screen import give, say
+from .text.streams import give_up_output, guard_streams
 
 WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"

@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..commands.options import length_option, speed_option
 from ..designs.cycle_table import LEAST, MOST, cycle_table
-from ..designs.design_analysis import analysis_of, numbers_of
-from ..designs.topics import ALL, TOPICS, chosen_topics
 from ..runs.result import Row, finite
+from ..text.options import length_option, speed_option
+from ..topics.design_analysis import analysis_of, numbers_of
+from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .fronts import ColumnModel
 from .given_jobs import given_problem
 from .models import Whole
 from .problems import problem_responses
 from .state import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
-from .turns import READING, SIMULATING
+from .throttle import READING, SIMULATING
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage

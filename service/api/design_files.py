@@ -19,7 +19,7 @@ from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import ShownDep, ShownDesign
 from .state import StoreDep
-from .turns import DRAWING
+from .throttle import DRAWING
 
 if TYPE_CHECKING:
     from ...objectives.kinds import System

@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from ..designs.choosing import chosen_rows
 from ..designs.columns import find_columns
+from ..designs.selection import chosen_rows
 from ..runs.result import finite
 from .fronts import Cells, ColumnModel, Where, column_model
 from .models import Whole

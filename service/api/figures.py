@@ -17,12 +17,12 @@ from .problems import problem_responses
 from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
 from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
-from .turns import DRAWING
+from .throttle import DRAWING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..figures.of_front import FrontFigure
+    from ..figures.front import FrontFigure
 
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
@@ -63,7 +63,7 @@ class FiguresModel(BaseModel):
 @router.get("/jobs/{number}/figures")
 def list_figures(found: FrontDep) -> FiguresModel:
     """List the figures of the whole front; the sheet of every design is at `figures/design_{number}.png` or `.svg`."""
-    from ..figures.of_front import front_figures
+    from ..figures.front import front_figures
 
     drawn = front_figures(found.front) if found.result.designs else []
     listed = [FigureModel(name=name, title=item.title) for item in drawn for name in item.names]
@@ -98,7 +98,7 @@ def _image(
     found: StoredFront, name: str, kind: Literal["png", "svg"], lengths: Lengths | None, units: System
 ) -> tuple[bytes, dict[str, str]]:
     """Return a figure and the headers that name its file; what was drawn before is kept with the front."""
-    from ..figures.of_front import FrontFigure
+    from ..figures.front import FrontFigure
 
     single = _DESIGN.fullmatch(name)
     if single is None:
@@ -132,7 +132,7 @@ def _made(
 
 def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
     """Return a figure of a whole front. Raises `NotFound` with those that there are."""
-    from ..figures.of_front import front_figures
+    from ..figures.front import front_figures
 
     listed = front_figures(found.front, units) if found.result.designs else []
     named = next((item for item in listed if name in item.names), None)
@@ -142,7 +142,7 @@ def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
 
 
 def _sheet(shown: ShownDesign, units: System) -> Figure:
-    from ..figures.of_front import sheet_of, sheet_of_changed
+    from ..figures.front import sheet_of, sheet_of_changed
 
     variation, front = shown.variation(), shown.found.front
     if variation is None:

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, BeforeValidator, Field
 
 from ...model.errors import InputError, NotFound
-from ..designs.choosing import chosen_rows, none_meets
 from ..designs.columns import Column, find_column
 from ..designs.picking_options import picked_row
+from ..designs.selection import chosen_rows, none_meets
 from ..runs.result import finite
 from .models import JobNumber
 from .problems import problem_responses

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
+from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from .job_requests import require_no_file
 
 if TYPE_CHECKING:

@@ -62,7 +62,7 @@ def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
 def write_file(given: Tables) -> Response:
     """Give the tables of a job as a job file in TOML; reading it gives the same tables."""
     from ...optimise.job.file import require_few
-    from ..job_toml import job_toml
+    from ..jobs.job_toml import job_toml
 
     require_few(given.job)
     return Response(job_toml(given.job), media_type=TOML)

@@ -12,9 +12,9 @@ from fastapi import Path as InPath
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
-from ..job_record import job_record
+from ..jobs.record import job_record
+from ..jobs.submission import submit
 from ..store import Job, State, Store
-from ..submission import submit
 from .exports import formats
 from .given_jobs import given_problem
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, within
@@ -24,7 +24,7 @@ from .problems import problem_responses
 from .rate_limit import limit_submissions
 from .settings import Settings
 from .state import SettingsDep, StoreDep
-from .turns import READING
+from .throttle import READING
 
 router = APIRouter(tags=["jobs"])
 _SUBMITTED: dict[str, Any] = {

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from .given_jobs import given_problem
 from .schema import Understood, understood
 from .state import SettingsDep
-from .turns import READING
+from .throttle import READING
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
-    from ..preview.look import Look
+    from ..preview.preview import Look
 
 router = APIRouter(tags=["jobs"])
 
@@ -98,7 +98,7 @@ class PreviewModel(BaseModel):
 @router.post("/preview")
 def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
-    from ..preview.look import look_at
+    from ..preview.preview import look_at
 
     with READING:
         look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))

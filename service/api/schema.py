@@ -12,7 +12,7 @@ from .given_jobs import given_problem
 from .job_requests import Asked, asked_for
 from .problems import problem_responses
 from .state import SettingsDep
-from .turns import READING
+from .throttle import READING
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
@@ -56,6 +56,6 @@ def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
     """Return what was understood of the tables that state a problem."""
     from ...optimise.job.notes import notes_of
-    from ..commands.summary import summarise
+    from ..text.summary import summarise
 
     return Understood(**summarise(problem), notes=notes_of(tables))

@@ -13,7 +13,7 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from ..page.locked import locked_page
+from ..page.token_page import locked_page
 from .problems import FAULT, problem
 from .settings import Settings
 

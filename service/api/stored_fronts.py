@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
-from ..allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..designs.columns import Column, find_column
 from ..designs.stored_designs import StoredDesign, design_of, front_of
+from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..store import Job, Store
 from .models import JobNumber, Whole

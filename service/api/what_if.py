@@ -21,7 +21,7 @@ from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import LONGEST, Length
 from .stored_fronts import DesignNumber, FrontDep
-from .turns import SIMULATING
+from .throttle import SIMULATING
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 

@@ -11,10 +11,10 @@ import numpy as np
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
 from ...model.linkage.linkage import Linkage
-from ..figures.clearance import draw_clearance_speeds
 from ..figures.panels import Line, Panel, Sheet, draw_sheet
-from ..figures.polygons import both_branches, polygon_sheet
 from ..figures.style import save
+from ..topics.clearance.figure import draw_clearance_speeds
+from ..topics.polygons.figure import both_branches, polygon_sheet
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)

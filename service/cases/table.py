@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..commands.tables import print_table
+from ..text.tables import print_table
 from .published import Case, Row
 
 if TYPE_CHECKING:

@@ -10,16 +10,17 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.design_analysis import analysis_of, numbers_of
 from ..designs.judged_rules import judged, rule_in
 from ..designs.shown_units import record_in, row_in
-from ..designs.topics import ALL, TOLD_THERE, TOPICS, Topic, chosen_topics
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk
+from ..text.options import Units, length_option, speed_option, value_option
+from ..text.screen import console, give, say, waiting
+from ..text.tables import show_design, show_rules
+from ..topics.design_analysis import analysis_of, numbers_of
+from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
+from ..topics.topic import TopicOfDesign
 from .interruption import Interruption
-from .options import Units, length_option, speed_option, value_option
-from .screen import console, give, say, waiting
-from .tables import show_design, show_rules
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -156,7 +157,7 @@ def _draw(
     mechanism: Mechanism,
     linkage: Linkage,
     row: Row,
-    topics: list[Topic],
+    topics: list[TopicOfDesign],
     folder: Path,
     units: System,
 ) -> None:

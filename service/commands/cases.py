@@ -9,7 +9,7 @@ import typer
 
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from .screen import console, give, say
+from ..text.screen import console, give, say
 
 
 def cases(

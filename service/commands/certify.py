@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import RunError
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.result import Result, Row, csv_text, json_text, rows_of
 from ..runs.run_folder import runs_place, write_file
 from ..runs.stored_runs import read_run
+from ..text.screen import console, error_console, give
 from .interruption import Interruption
 from .optimise import INTERRUPTED, Json, Runs
 from .runs import Run
-from .screen import console, error_console, give
 
 if TYPE_CHECKING:
     import numpy as np

@@ -13,14 +13,14 @@ import typer
 from ...model.errors import InputError, SlidercrankError
 from ..designs.picking_options import minimised_values
 from ..designs.shown_units import result_in
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import read_run
+from ..text.options import Units
+from ..text.screen import console, give, say
+from ..text.tables import print_table
 from .optimise import Json, Runs
-from .options import Units
-from .screen import console, give, say
-from .tables import print_table
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
-from ..designs.choosing import chosen_rows, none_meets
 from ..designs.picking_options import picked_row
+from ..designs.selection import chosen_rows, none_meets
 from ..runs.result import Result
+from ..text.screen import say
 from .optimise import NOTHING_FEASIBLE
-from .screen import say
 
 Design = Annotated[int | None, typer.Option(metavar="NO", help="The design: its number in `slidercrank front RUN`.")]
 Knee = Annotated[bool, typer.Option("--knee", help="The design nearest to the ideal, objectives by their range.")]

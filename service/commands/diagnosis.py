@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ...model.errors import SlidercrankError
-from ..workers.sizes import size_text
+from ..resources.sizes import size_text
 
 if TYPE_CHECKING:
     from ..store.database import Database

@@ -9,10 +9,10 @@ from typing import Annotated
 import typer
 
 from ...model.errors import NotFound
+from ..jobs.stores import Address, has_store, is_named, store_address
 from ..runs.run_folder import runs_place
+from ..text.screen import console, give, say
 from .optimise import Json, Runs
-from .screen import console, give, say
-from .stores import Address, has_store, is_named, store_address
 
 UNHEALTHY = 1
 """Exit code where something is not in order; 2 is for wrong input."""

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.result import Result, csv_text, json_text
 from ..runs.run_folder import runs_place, write_bytes, write_file
 from ..runs.stored_runs import problem_of, read_run
+from ..text.options import Units, value_option
+from ..text.screen import give, say, waiting
 from .design_choice import Design, Knee, Lexicographic, Topsis, chosen_design
 from .optimise import Runs
-from .options import Units, value_option
 from .runs import Run, shown_result
-from .screen import give, say, waiting
 
 if TYPE_CHECKING:
     from ..designs.stored_designs import StoredDesign

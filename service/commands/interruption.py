@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
-from .screen import say
+from ..text.screen import say
 
 
 class Interruption:

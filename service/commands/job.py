@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..runs.result import json_text
-from .screen import console, give
+from ..text.screen import console, give
 
 
 def check(
@@ -19,7 +19,7 @@ def check(
     from ...objectives.own.quantity import OwnQuantity
     from ...optimise.job import load_job, read_job
     from ...optimise.job.notes import notes_of
-    from .summary import freedom_in_words, summarise
+    from ..text.summary import freedom_in_words, summarise
 
     problem = load_job(job)
     for own in problem.own:

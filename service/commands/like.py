@@ -13,15 +13,15 @@ from ..designs.columns import DIMENSIONS, find_column
 from ..designs.conditions import Condition, parse_condition
 from ..designs.picking_options import minimised_values
 from ..designs.shown_units import record_in, result_in, row_in
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.result import Result, Row, json_text, rows_of
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
+from ..text.options import Units
+from ..text.screen import console, give, say, waiting
+from ..text.tables import print_table
 from .optimise import NOTHING_FEASIBLE, Json, Runs
-from .options import Units
 from .runs import Run
-from .screen import console, give, say, waiting
-from .tables import print_table
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront

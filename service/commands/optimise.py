@@ -15,14 +15,14 @@ import typer
 
 from ...model.errors import InputError, StoreError
 from ...objectives.kinds import System
+from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import Result, json_text, result_of
 from ..runs.run_folder import RunFolder, disk, runs_place
+from ..text.options import Units
+from ..text.screen import console, give, progress_bar, say, waiting
+from ..text.tables import show_design, show_front
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
 from .interruption import Interruption
-from .options import Units
-from .screen import console, give, progress_bar, say, waiting
-from .stores import FILE, Address, open_store
-from .tables import show_design, show_front
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -66,9 +66,9 @@ def optimise(
     and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
     The run is in the store too, where `jobs` and the service see it.
     """
-    from ..runs.own_run import told
+    from ..jobs.own_run import told
     from ..store.database import without_secrets
-    from ..workers.pulse import Pulse
+    from ..workers.heartbeat import Heartbeat
     from ..workers.worker import versions_file
 
     if (job is None) == (resume is None):
@@ -89,7 +89,7 @@ def optimise(
         run, problem, claim = opened.enter_context(begin)
         again = _again_command(claim.job.run, runs, store) if listed else ""
         opened.enter_context(told(claim, again=again))
-        opened.enter_context(Pulse(claim))
+        opened.enter_context(Heartbeat(claim))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
         engine = opened.enter_context(engine_of(options))
@@ -154,7 +154,7 @@ def _new(
 ) -> Iterator[tuple[RunFolder, Problem, Claim]]:
     """Enter the run of a new job."""
     from ...optimise.job import files_beside
-    from ..runs.own_run import begin, files_of
+    from ..jobs.own_run import begin, files_of
 
     with disk(job.parent):
         files = files_of(job, files_beside(job))
@@ -166,7 +166,7 @@ def _new(
 def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Problem, Claim]]:
     """Enter a run that was stopped."""
     from ...optimise.job import parse_job
-    from ..runs.own_run import folder_of, stopped_job, take_up
+    from ..jobs.own_run import folder_of, stopped_job, take_up
 
     job = stopped_job(store, text, place)
     with folder_of(store, job, place) as folder:

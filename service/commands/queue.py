@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
-from ..standing import standing
-from .job_names import Name, find_job, store_that_is_there
+from ..jobs.job_names import Name, find_job, store_that_is_there
+from ..jobs.stores import Address, has_store, store_address, tell_idle
+from ..text.screen import console, give, say
+from ..text.search_progress import standing
 from .optimise import Json
-from .screen import console, give, say
-from .stores import Address, has_store, store_address, tell_idle
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,7 +31,7 @@ def jobs(
     json: Json = False,
 ) -> None:
     """List the jobs of a store, the latest first, with what they found."""
-    from ..job_record import job_record
+    from ..jobs.record import job_record
     from ..runs.result import json_text
     from ..store import State
 
@@ -82,7 +82,7 @@ def delete(job: Name, store: Address = None, json: Json = False) -> None:
 
 
 def _tell(job: Job, json: bool, what: str = "") -> None:
-    from ..job_record import job_record
+    from ..jobs.record import job_record
     from ..runs.result import json_text
 
     text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)

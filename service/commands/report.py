@@ -10,14 +10,14 @@ import typer
 
 from ...model.errors import InputError, RunError
 from ...objectives.kinds import System
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.run_folder import runs_place, slug, write_bytes
 from ..runs.stored_runs import problem_of, read_run
+from ..text.options import Units
+from ..text.screen import say, waiting
 from .design_choice import Design, Knee, Lexicographic, Topsis, Where, chosen_design
 from .optimise import Runs
-from .options import Units
 from .runs import Run
-from .screen import say, waiting
 
 if TYPE_CHECKING:
     from ..report.document import Report

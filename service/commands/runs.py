@@ -10,14 +10,14 @@ import typer
 
 from ...model.errors import SlidercrankError
 from ...objectives.kinds import System
-from ..runs.finding_runs import find_run
+from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
+from ..text.options import Units
+from ..text.screen import console, give, say
+from ..text.tables import ROWS, show_design, show_front
 from .optimise import NOTHING_FEASIBLE, Json, Runs, show_result
-from .options import Units
-from .screen import console, give, say
-from .tables import ROWS, show_design, show_front
 
 Run = Annotated[
     str,
@@ -77,9 +77,9 @@ def front(
 
     --knee, --topsis and --lexicographic choose among the designs that meet --where.
     """
-    from ..designs.choosing import chosen_rows, none_meets, part_of
     from ..designs.columns import find_columns, key_in
     from ..designs.picking_options import picked_row
+    from ..designs.selection import chosen_rows, none_meets, part_of
 
     folder = find_run(run, runs_place(runs))
     result = read_run(folder)

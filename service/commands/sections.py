@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..runs.result import json_text
-from .options import length_option
-from .screen import console, give, waiting
+from ..text.options import length_option
+from ..text.screen import console, give, waiting
 
 if TYPE_CHECKING:
     from ...optimise.sizing.sections import Sections

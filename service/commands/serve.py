@@ -11,10 +11,10 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
+from ..jobs.stores import Address, open_store, store_address
+from ..resources.sizes import size_of
+from ..text.screen import give
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
-from ..workers.sizes import size_of
-from .screen import give
-from .stores import Address, open_store, store_address
 from .worker_options import (
     AllowQuantity,
     Grace,
@@ -117,7 +117,7 @@ def serve(
 
 def _leave_requests() -> None:
     """End at once where requests are still at work: nobody waits for their answers, and all jobs are handed back."""
-    from ..workers.pulse import leave
+    from ..workers.heartbeat import leave
 
     if any(not thread.daemon and thread is not threading.main_thread() for thread in threading.enumerate()):
         logging.shutdown()

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import StoreError
-from ..standing import standing
-from ..workers.sizes import size_of
-from .job_names import Name, find_job, store_that_is_there
+from ..jobs.job_names import Name, find_job, store_that_is_there
+from ..jobs.stores import Address, open_store, tell_idle
+from ..resources.sizes import size_of
+from ..text.screen import console, give, progress_bar, say
+from ..text.search_progress import standing
+from ..text.streams import reader_left
 from .optimise import EXIT_CODES, Json
-from .screen import console, give, progress_bar, say
-from .stores import Address, open_store, tell_idle
-from .streams import reader_left
 
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
@@ -52,11 +52,11 @@ def submit(
     It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
     """
     from ...optimise.job import load_job, read_job
-    from ..allowed_quantities import functions_of
-    from ..job_record import job_record
+    from ..jobs.allowed_quantities import functions_of
+    from ..jobs.record import job_record
+    from ..jobs.submission import submit as put_in
     from ..runs.result import json_text
     from ..store import Limits
-    from ..submission import submit as put_in
 
     load_job(job)  # for its messages, which name the file
     tables = read_job(job)
@@ -165,7 +165,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 @contextlib.contextmanager
 def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
     """Yield what writes an event: as JSON, or in words, with a bar for the progress where there is a terminal."""
-    from .screen import error_console
+    from ..text.screen import error_console
 
     if json:
         yield lambda event: give(f"{_line(event)}\n")
@@ -188,7 +188,7 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
 
 def _line(event: Event) -> str:
     """Return an event as the API has it, on one line."""
-    from ..store.packing import text_of
+    from ..store.serialisation import text_of
 
     return text_of({"number": event.number, "at": event.at, "kind": event.kind, "data": event.data})
 
@@ -207,7 +207,7 @@ def in_words(event: Event) -> str:
 
 def _close(store: Store, job: Job) -> None:
     """Write the front of a job that has ended, if there is one."""
-    from .tables import show_front
+    from ..text.tables import show_front
 
     if job.summary is None or not job.summary["designs"]:
         return

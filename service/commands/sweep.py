@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, get_args
 
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import System, shown_in
-from ..designs.columns import key_in
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from .options import Units, length_option, value_option
-from .screen import console, give, say
+from ..text.options import Units, length_option, value_option
+from ..text.screen import give, say
+from ..topics.sweep.text import show
 
 if TYPE_CHECKING:
-    import pandas as pd
-
-    from ...objectives.quantity import Quantity
     from ...objectives.sweep import Axis
 
 _FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
@@ -70,9 +65,9 @@ def sweep(
     if json:
         give(json_text(rows_in(rows_of(table.to_dict("list")), units)))
     else:
-        _show(table, axes, [problem.quantity(name) for name in names], units)
+        show(table, axes, [problem.quantity(name) for name in names], units)
     if figures is not None:
-        from ..figures.sweep import draw_sweep
+        from ..topics.sweep.figure import draw_sweep
 
         with disk(figures):
             of_names = [problem.quantity(name) for name in names]
@@ -116,28 +111,3 @@ def parse_axis(text: str) -> Axis:
             f"a range has two different ends and 2 to {MOST_VALUES:,} values; got {text!r}; write it like {_EXAMPLE}"
         )
     return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]
-
-
-def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
-    from rich.table import Table
-
-    from .tables import print_table
-
-    screen = console()
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for axis in axes:
-        unit, _ = shown_in("rpm" if axis.parameter == "speed" else "mm", units)
-        shown.add_column(f"{axis.parameter}, {unit}", justify="right")
-    for item in quantities:
-        shown.add_column(f"{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", "), justify="right")
-    stuck = 0
-    keys = ["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm" for axis in axes]
-    for row in rows_in(rows_of(table.to_dict("list")), units):
-        at = [row[key_in(key, units)[0]] for key in keys]
-        values = [row[key_in(item.field, units)[0]] for item in quantities]
-        stuck += bool(row["reason"])
-        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
-    print_table(screen, shown)
-    if stuck:
-        first = next(reason for reason in table["reason"] if reason)
-        say(f"{stuck} of {len(table)} without a value; the first: {first}")

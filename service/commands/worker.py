@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from ..jobs.stores import Address, open_store, store_address
+from ..resources.sizes import size_of
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
-from ..workers.sizes import size_of
-from .stores import Address, open_store, store_address
 from .worker_options import (
     AllowQuantity,
     Grace,

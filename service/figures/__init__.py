@@ -12,7 +12,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
-from .of_front import front_figures
+from .front import front_figures
 from .robustness import robustness_figure
 from .sheet import design_sheet
 from .style import save

@@ -10,7 +10,7 @@ from pathlib import Path
 from fastapi import APIRouter, Request, Response
 
 from ...model.errors import NotFound
-from .joined import joined_modules, joined_styles
+from .bundle import joined_modules, joined_styles
 
 router = APIRouter(include_in_schema=False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .possible import Ends, Possible
+from .feasibility import Ends, Possible
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Constraint, Problem

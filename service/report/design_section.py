@@ -139,7 +139,7 @@ def _drawing(subject: Subject) -> Figure:
 
 
 def _sheet(subject: Subject) -> Figure:
-    from ..figures.of_front import sheet_of, sheet_of_changed
+    from ..figures.front import sheet_of, sheet_of_changed
 
     if subject.changed is None:
         return sheet_of(subject.front, subject.number - 1, "the chosen design", subject.system)

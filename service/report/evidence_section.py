@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from ...objectives.kinds import System, shown_in
-from ..analyses.tolerances import numbers
+from ..topics.tolerances.numbers import numbers
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 from .wording import rounded, with_unit
@@ -14,7 +14,7 @@ from .wording import rounded, with_unit
 
 def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
-    from ..figures.sensitivity import tornado_figure, tornado_rows
+    from ..topics.sensitivity.figure import tornado_figure, tornado_rows
 
     rows = tornado_rows(subject.design.mechanism, subject.design.linkage)
     return Section("Sensitivity", (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows)),))
@@ -25,7 +25,7 @@ def tolerance_section(subject: Subject) -> Section | None:
     import numpy as np
 
     from ...model.tolerance.sources import limits
-    from ..figures.tolerances import error_bands, tolerances_figure
+    from ..topics.tolerances.figure import error_bands, tolerances_figure
 
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     if not np.any(limits(mechanism, linkage)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..commands.summary import freedom_in_words, summarise
+from ..text.summary import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Section
 from .subject import Subject
 from .wording import rounded, unit_text

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import TracebackType
 
 from ...model.errors import InputError, RunError
-from ..disk_room import is_full, room
+from ..resources.disk import is_full, room
 from .result import Result, csv_text, json_text
 
 MARK = "UNFINISHED"

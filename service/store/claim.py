@@ -18,9 +18,9 @@ from .claiming import MOST_DELAY
 from .clock import JUMP, now
 from .database import Database, Full, Unavailable
 from .events_log import Told, add_events, state_event
-from .packing import cells_of, packed, plain, summary_of, text_of, unpacked
 from .records import NOT_DONE, Artefact, Job
 from .schema import designs, jobs, records, workers
+from .serialisation import cells_of, packed, plain, summary_of, text_of, unpacked
 from .submitting import put_files
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, Invalidate
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import InputError, StoreError
-from ..disk_room import LEAST, free, room
+from ..resources.disk import LEAST, free, room
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once

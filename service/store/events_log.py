@@ -8,8 +8,8 @@ from typing import Any
 from sqlalchemy import Connection, insert
 
 from .clock import now
-from .packing import text_of
 from .schema import events
+from .serialisation import text_of
 
 Told = tuple[str, Mapping[str, Any]]
 """Kind and data of an event."""

@@ -19,11 +19,11 @@ from .claiming import ENDED_LEASE, any_claimable, claim_next, running
 from .clock import Jumps, now
 from .database import Database
 from .events_log import add_events
-from .packing import plain, rows_of
 from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
 from .rows import become, damaged, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, jobs, workers
 from .schema_version import upgrade
+from .serialisation import plain, rows_of
 from .submitting import add_job, in_hand, require_bounds, require_room, submitted_before, take_turns
 from .watching import News, longest_wait, news_of
 

@@ -12,10 +12,10 @@ from sqlalchemy import Connection, Double, cast, delete, func, insert, literal, 
 from ...model.errors import InputError, QueueFull
 from .clock import now
 from .events_log import add_events, state_event
-from .packing import plain, text_of
 from .records import LIMITS, SHOWN, Artefact, Job, Limits, job_of
 from .schema import artefacts, jobs
 from .schema_version import LOCK
+from .serialisation import plain, text_of
 
 
 def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:

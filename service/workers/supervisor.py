@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from .pulse import DEAF, EXHAUSTED
+from .heartbeat import DEAF, EXHAUSTED
 from .worker_process import MARGIN, REFUSED, STALE, WorkerSettings
 
 _log = logging.getLogger(__name__)

@@ -15,16 +15,16 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
-from ..allowed_quantities import LONGEST_CALL, bounded, ending_own, parse_allowed
-from ..disk_room import full_places, is_full
+from ..jobs.allowed_quantities import LONGEST_CALL, bounded, ending_own, parse_allowed
+from ..resources.disk import full_places, is_full
+from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
+from .heartbeat import PULSE, Heartbeat, Stop
+from .interim_front import front_so_far
 from .job_limits import Budget, within
 from .logs import about
-from .memory import TOLERATED, Memory
-from .pulse import PULSE, Pulse, Stop
-from .so_far import front_so_far
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -46,7 +46,7 @@ class Terms:
     """What a worker lets jobs use and do.
 
     limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
-    in s that a round has to end once the worker is to stop, too; see `Pulse`. allowed_quantities: functions,
+    in s that a round has to end once the worker is to stop, too; see `Heartbeat`. allowed_quantities: functions,
     "module:function", that jobs may name as quantities. engine: where heavy work is done.
     """
 
@@ -156,7 +156,7 @@ def solve_claimed(
     budget = Budget(limits)
     with about(job=claim.job.id):
         _log.info("claimed")
-        pulse = Pulse(
+        heartbeat = Heartbeat(
             claim,
             memory=limits.memory,
             taken=memory,
@@ -166,8 +166,8 @@ def solve_claimed(
             patience=_PATIENCE,
         )
         try:
-            with pulse:
-                _end(claim, lambda: _solve(store, claim, budget, terms, engine, pulse, stop))
+            with heartbeat:
+                _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
 
@@ -206,7 +206,7 @@ def _stumble(claim: Claim, error: Exception) -> None:
 
 
 def _solve(
-    store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, pulse: Pulse, stop: Stop
+    store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, heartbeat: Heartbeat, stop: Stop
 ) -> None:
     _load(claim, 0)
     from ...optimise.solve import solve
@@ -225,7 +225,7 @@ def _solve(
         budget.count(at.evaluations)
 
     def over() -> bool:
-        return _ends(claim, pulse, stop) or budget.spent()
+        return _ends(claim, heartbeat, stop) or budget.spent()
 
     def search(past: Sequence[Record]) -> ParetoFront:
         heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
@@ -259,10 +259,10 @@ def versions_file(versions: Mapping[str, str]) -> Artefact:
     return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
-def _ends(claim: Claim, pulse: Pulse, stop: Stop) -> bool:
+def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
     """Whether the search is to end with what it has; raises what ends it without."""
-    if pulse.lost:
-        raise LeaseLost(f"job {claim.job.id}: {pulse.lost}")
+    if heartbeat.lost:
+        raise LeaseLost(f"job {claim.job.id}: {heartbeat.lost}")
     if claim.cancel_asked:
         return True
     if stop():

@@ -19,8 +19,8 @@ from pydantic import TypeAdapter
 from ...model.errors import SlidercrankError
 from ..store import LEASE, Store
 from ..store.database import Unavailable
+from .heartbeat import leave
 from .logs import Format, set_up_logs
-from .pulse import leave
 from .worker import Stale, Terms, work
 
 GRACE = 10.0
@@ -124,7 +124,7 @@ def _line() -> bytes:
 def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
     """Stop when standard input ends, and leave when more than the time for that has passed: no supervisor may be left.
 
-    That is the end of what even its pulse cannot stop, such as a database that does not answer.
+    That is the end of what even its heartbeat cannot stop, such as a database that does not answer.
     """
     while os.read(0, 64):
         pass

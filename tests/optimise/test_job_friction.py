@@ -19,7 +19,7 @@ from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
-from slidercrank.service.commands.summary import summarise
+from slidercrank.service.text.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
 TABLE = {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}

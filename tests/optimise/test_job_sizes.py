@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.file import MOST, require_few, toml_tables
-from slidercrank.service.job_toml import job_toml
+from slidercrank.service.jobs.job_toml import job_toml
 
 LONGEST = 3.0
 """s of processor time: a third is usual at most, a table that is read over and over takes some ten."""

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -77,6 +78,65 @@ def imports_within_the_project(file: Path, root: Path) -> Iterator[tuple[int, st
             path = [*package[: len(package) + 1 - node.level], *path]
             for target in path[:1] or [alias.name for alias in node.names]:
                 yield node.lineno, target
+
+
+@pytest.mark.parametrize("folder", ORDER)
+def test_no_modules_and_no_rooms_import_each_other_in_a_circle(root: Path, folder: str) -> None:
+    """Imports for types and deferred ones count. A room is a folder of the first level, or a module beside them."""
+    imports = imports_between_modules(root, folder)
+    assert circles(imports) == []
+
+    def room(module: str) -> str:
+        return ".".join(module.split(".")[:2])
+
+    rooms: dict[str, set[str]] = {}
+    for module, targets in imports.items():
+        rooms.setdefault(room(module), set()).update(room(target) for target in targets if room(target) != room(module))
+    assert circles(rooms) == []
+
+
+def test_only_the_command_line_imports_commands(root: Path) -> None:
+    importers = {
+        module
+        for module, targets in imports_between_modules(root, "service").items()
+        if not module.startswith("service.commands.") and any(t.startswith("service.commands.") for t in targets)
+    }
+    assert importers == {"service.cli"}
+
+
+def imports_between_modules(root: Path, folder: str) -> dict[str, set[str]]:
+    """Return the modules of a folder by their dotted names, each with the modules of the folder that it imports."""
+    files = {
+        ".".join((path.parent if path.name == "__init__.py" else path.with_suffix("")).parts): path
+        for path in (file.relative_to(root) for file in (root / folder).rglob("*.py"))
+    }
+    found: dict[str, set[str]] = {}
+    for module, path in files.items():
+        package = path.parent.parts
+        targets = found.setdefault(module, set())
+        for node in ast.walk(ast.parse((root / path).read_bytes())):
+            if not (isinstance(node, ast.ImportFrom) and node.level):
+                continue
+            source = ".".join([*package[: len(package) + 1 - node.level], *(node.module or "").split(".")]).rstrip(".")
+            for alias in node.names:
+                inner = f"{source}.{alias.name}"
+                targets.add(inner if inner in files else source)
+        targets &= files.keys() - {module}
+    return found
+
+
+def circles(imports: dict[str, set[str]]) -> list[list[str]]:
+    """Return a circle of imports, as its modules in order, or none."""
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        return [error.args[1]]
+    return []
+
+
+def test_circles_of_imports_are_found() -> None:
+    assert circles({"a": {"b"}, "b": {"c"}, "c": set()}) == []
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}})
 
 
 def test_public_names_are_listed_and_importable() -> None:

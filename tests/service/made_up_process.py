@@ -22,10 +22,10 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.search.checkpoints import Identity, Record
 from slidercrank.service.runs.result import Result, Wanted
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.workers import pulse as pulses
+from slidercrank.service.workers import heartbeat as pulses
 from slidercrank.service.workers import worker
+from slidercrank.service.workers.heartbeat import Heartbeat, Stop
 from slidercrank.service.workers.job_limits import Budget
-from slidercrank.service.workers.pulse import Pulse, Stop
 from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20
@@ -34,13 +34,13 @@ _WANTED = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", t
 
 
 def solve(
-    store: Store, claim: Claim, budget: Budget, terms: worker.Terms, engine: object, pulse: Pulse, stop: Stop
+    store: Store, claim: Claim, budget: Budget, terms: worker.Terms, engine: object, heartbeat: Heartbeat, stop: Stop
 ) -> None:
     """Go on with a job, to its end."""
     for number in range(claim.job.records, ROUNDS):
         if claim.job.name == "loads":
             time.sleep(1000.0)
-        if worker._ends(claim, pulse, stop):
+        if worker._ends(claim, heartbeat, stop):
             claim.finish(_result("cancelled"))
             return
         time.sleep(0.05)

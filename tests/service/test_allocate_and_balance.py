@@ -20,9 +20,9 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, balance
 from slidercrank.optimise.sizing.error_rows import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
-from slidercrank.service.figures.allocation import allocation_curves, allocation_figure
-from slidercrank.service.figures.balancing import balancing_sheet
 from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.topics.allocation.figure import allocation_curves, allocation_figure
+from slidercrank.service.topics.counterweight.figure import balancing_sheet
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps
 

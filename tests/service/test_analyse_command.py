@@ -12,7 +12,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import load_job
-from slidercrank.service.designs.topics import TOLD_THERE
+from slidercrank.service.topics.discovery import TOLD_THERE
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -16,18 +17,21 @@ from slidercrank.model.classical.static_forces import static_forces
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.service.analyses import approximations as approximations_analysis
-from slidercrank.service.analyses import polygons as polygons_analysis
-from slidercrank.service.analyses import static_forces as static_analysis
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
-from slidercrank.service.commands.screen import console
-from slidercrank.service.figures.approximations import approximations_sheet, draw_approximations
 from slidercrank.service.figures.panels import Line, Panel, Sheet, draw_sheet
-from slidercrank.service.figures.polygons import both_branches, draw_polygons, polygon_sheet
-from slidercrank.service.figures.static_forces import draw_static_forces, static_forces_sheet
 from slidercrank.service.runs.result import json_text
+from slidercrank.service.text.screen import console
+from slidercrank.service.topics.approximations import numbers as approximations_analysis
+from slidercrank.service.topics.approximations import text as approximations_text
+from slidercrank.service.topics.approximations.figure import approximations_sheet, draw_approximations
+from slidercrank.service.topics.polygons import numbers as polygons_analysis
+from slidercrank.service.topics.polygons import text as polygons_text
+from slidercrank.service.topics.polygons.figure import both_branches, draw_polygons, polygon_sheet
+from slidercrank.service.topics.static_forces import numbers as static_analysis
+from slidercrank.service.topics.static_forces import text as static_forces_text
+from slidercrank.service.topics.static_forces.figure import draw_static_forces, static_forces_sheet
 from tests.model.virtual_work import path
 from tests.service import fronts
 from tests.service.test_figures import overlaps
@@ -127,11 +131,20 @@ def test_polygon_numbers_are_the_vertices() -> None:
     np.testing.assert_allclose(numbers["open"]["acceleration_m_s2"]["b11"], expected.acceleration[3], rtol=1e-14)
 
 
-@pytest.mark.parametrize("analysis", [static_analysis, approximations_analysis, polygons_analysis])
-def test_analyses_are_json_and_short_tables(analysis: object, capsys: pytest.CaptureFixture[str]) -> None:
-    numbers = analysis.numbers(MACHINE, LINKAGE)  # type: ignore[attr-defined]
+@pytest.mark.parametrize(
+    ("analysis", "words"),
+    [
+        (static_analysis, static_forces_text),
+        (approximations_analysis, approximations_text),
+        (polygons_analysis, polygons_text),
+    ],
+)
+def test_analyses_are_json_and_short_tables(
+    analysis: ModuleType, words: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    numbers = analysis.numbers(MACHINE, LINKAGE)
     json_text(numbers)
-    analysis.show(console(), numbers)  # type: ignore[attr-defined]
+    words.show(console(), numbers)
     text = capsys.readouterr().out
     assert 8 <= len(text.splitlines()) <= 22
     assert "nan" not in text

@@ -19,8 +19,9 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.service.analyses.clearance import numbers, show, simulated
-from slidercrank.service.figures.clearance import draw_clearance, draw_clearance_speeds, loose_curves, speed_runs
+from slidercrank.service.topics.clearance.figure import draw_clearance, draw_clearance_speeds, loose_curves, speed_runs
+from slidercrank.service.topics.clearance.numbers import numbers, simulated
+from slidercrank.service.topics.clearance.text import show
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
 LINKAGE = Linkage(0.14, 0.31, -0.06)

@@ -22,10 +22,15 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.service.analyses import balance, friction, motor
-from slidercrank.service.figures.balance import balance_curves, draw_balance
-from slidercrank.service.figures.friction import draw_friction, friction_curves
-from slidercrank.service.figures.motor import draw_motor, motor_curves
+from slidercrank.service.topics.balance import numbers as balance
+from slidercrank.service.topics.balance import text as balance_text
+from slidercrank.service.topics.balance.figure import balance_curves, draw_balance
+from slidercrank.service.topics.friction import numbers as friction
+from slidercrank.service.topics.friction import text as friction_text
+from slidercrank.service.topics.friction.figure import draw_friction, friction_curves
+from slidercrank.service.topics.motor import numbers as motor
+from slidercrank.service.topics.motor import text as motor_text
+from slidercrank.service.topics.motor.figure import draw_motor, motor_curves
 
 LINKAGE = Linkage(0.04, 0.1, 0.02)
 PIN = Pin(radius=0.01, coefficient=0.08)
@@ -40,11 +45,12 @@ MACHINE = Mechanism(
 )
 LOCKED = replace(MACHINE, friction=Friction(guide=1.5))
 TOPICS = (friction, motor, balance)
+TEXTS = {friction: friction_text, motor: motor_text, balance: balance_text}
 
 
 def written(topic: ModuleType, numbers: dict[str, Any]) -> str:
     stream = io.StringIO()
-    topic.show(Console(file=stream, width=140), numbers)
+    TEXTS[topic].show(Console(file=stream, width=140), numbers)
     return stream.getvalue()
 
 

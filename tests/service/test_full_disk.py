@@ -11,9 +11,9 @@ import pytest
 from sqlalchemy import text
 
 from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database, Full
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.conftest import Command

@@ -15,7 +15,7 @@ import pytest
 
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.service.commands.submit import events_until_end
-from slidercrank.service.job_record import job_record
+from slidercrank.service.jobs.record import job_record
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.workers.worker import work
 from tests.service import fronts

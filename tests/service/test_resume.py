@@ -16,10 +16,10 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import read_job
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.runs.run_folder import MARK, RunFolder
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.conftest import Command

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.submission import submit
-from slidercrank.service.workers.so_far import MOST, front_so_far
+from slidercrank.service.workers.interim_front import MOST, front_so_far
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 

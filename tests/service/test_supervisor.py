@@ -17,7 +17,7 @@ import pytest
 
 from slidercrank.service.store import Job, Limits, Store
 from slidercrank.service.workers.engines import EngineOptions
-from slidercrank.service.workers.pulse import EXHAUSTED
+from slidercrank.service.workers.heartbeat import EXHAUSTED
 from slidercrank.service.workers.supervisor import WORKER, Supervisor, reason_of
 from slidercrank.service.workers.worker import Terms
 from slidercrank.service.workers.worker_process import REFUSED, WorkerSettings

@@ -25,11 +25,13 @@ from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
 from slidercrank.objectives.sensitivity import DIMENSIONS, sensitivity
-from slidercrank.service.analyses import sensitivity as sensitivity_analysis
-from slidercrank.service.analyses import tolerances as tolerance_analysis
-from slidercrank.service.figures.sensitivity import draw_sensitivity, tornado_figure, tornado_rows
-from slidercrank.service.figures.tolerances import PERCENTS, draw_tolerances, error_bands, tolerances_figure
 from slidercrank.service.figures.variation import draw_variation, variation_figure, variation_panels
+from slidercrank.service.topics.sensitivity import numbers as sensitivity_analysis
+from slidercrank.service.topics.sensitivity import text as sensitivity_text
+from slidercrank.service.topics.sensitivity.figure import draw_sensitivity, tornado_figure, tornado_rows
+from slidercrank.service.topics.tolerances import numbers as tolerance_analysis
+from slidercrank.service.topics.tolerances import text as tolerances_text
+from slidercrank.service.topics.tolerances.figure import PERCENTS, draw_tolerances, error_bands, tolerances_figure
 from tests.model.cases import SMOOTH
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT
 from tests.service.test_figures import overlaps
@@ -92,13 +94,13 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
 
 def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
     found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
-    text = text_of(tolerance_analysis.show, found)
+    text = text_of(tolerances_text.show, found)
     assert len(text.splitlines()) <= 30
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
         assert f"{found[key]:.4g} mm" in text
     assert "crank pin clearance" in text
     assert "scatter wider" in text
-    assert "scatter wider" not in text_of(tolerance_analysis.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
+    assert "scatter wider" not in text_of(tolerances_text.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
 
 
 def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
@@ -106,7 +108,7 @@ def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_cas
     json.dumps(found, allow_nan=False)
     assert found["exact_worst_case_mm"] is None
     assert found["monte_carlo"]["stuck"] > 0
-    text = text_of(tolerance_analysis.show, found)
+    text = text_of(tolerances_text.show, found)
     assert "does not turn fully" in text
     bands = error_bands(TIGHT, CLOSE, samples=500)
     assert bands.least is None
@@ -153,8 +155,8 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
     in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
-    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 30
-    assert "peak torque" in text_of(sensitivity_analysis.show, in_line)
+    assert len(text_of(sensitivity_text.show, found).splitlines()) <= 30
+    assert "peak torque" in text_of(sensitivity_text.show, in_line)
 
 
 @pytest.mark.parametrize("offset", [0.06, 0.0])

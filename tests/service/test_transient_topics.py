@@ -20,9 +20,12 @@ from slidercrank.model.machine.loads import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
-from slidercrank.service.analyses import flywheel, start_up
-from slidercrank.service.figures.flywheel import draw_flywheel, flywheel_data
-from slidercrank.service.figures.start_up import draw_start_up, start_up_data
+from slidercrank.service.topics.flywheel import numbers as flywheel
+from slidercrank.service.topics.flywheel import text as flywheel_text
+from slidercrank.service.topics.flywheel.figure import draw_flywheel, flywheel_data
+from slidercrank.service.topics.start_up import numbers as start_up
+from slidercrank.service.topics.start_up import text as start_up_text
+from slidercrank.service.topics.start_up.figure import draw_start_up, start_up_data
 from tests.model.cases import STROKES
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)
@@ -32,11 +35,14 @@ STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
 RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
 
 
+TEXTS = {start_up: start_up_text, flywheel: flywheel_text}
+
+
 def shown(topic: ModuleType, machine: Mechanism) -> str:
     numbers = topic.numbers(machine, LINKAGE)
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
-    topic.show(Console(file=stream, width=100), numbers)
+    TEXTS[topic].show(Console(file=stream, width=100), numbers)
     assert 2 < len(stream.getvalue().splitlines()) <= 20
     return stream.getvalue()
 
@@ -98,7 +104,7 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
     assert numbers["fluctuation_without_flywheel"] == pytest.approx(6.3286239 if least else 63.3867047, rel=1e-7)
     assert numbers["least_speed_without_flywheel_rpm"] == pytest.approx(least, rel=1e-7)
     stream = io.StringIO()
-    flywheel.show(Console(file=stream, width=400), numbers)
+    flywheel_text.show(Console(file=stream, width=400), numbers)
     assert words in stream.getvalue()
 
 

@@ -15,9 +15,9 @@ import pytest
 from slidercrank.model.errors import ForeignRecords, InputError, JobError, StoreError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.submission import submit
-from slidercrank.service.workers.pulse import Pulse
+from slidercrank.service.workers.heartbeat import Heartbeat
 from slidercrank.service.workers.worker import solve_claimed, work, worker_name
 from tests.service import fronts
 from tests.service.made_up_search import Search, found, search, until
@@ -252,7 +252,7 @@ def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> 
     submit(store, TABLES)
     claim = store.claim("first", lease=1.0)
     assert claim is not None
-    with Pulse(claim) as pulse:
+    with Heartbeat(claim) as heartbeat:
         first = until_after = store.job(claim.job.id).lease_until
         assert first is not None
 
@@ -262,7 +262,7 @@ def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> 
             return until_after is not None and until_after > first + 1.5
 
         until(renewed)
-        assert not pulse.lost
+        assert not heartbeat.lost
     claim.tell(progress(1))
 
 

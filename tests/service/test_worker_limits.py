@@ -11,8 +11,8 @@ import pytest
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Limits, Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.engines import EngineOptions
 from slidercrank.service.workers.worker import Terms, work
 from tests.service import fronts

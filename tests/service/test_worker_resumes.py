@@ -10,9 +10,9 @@ import pytest
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.solve import solve
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import csv_text
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import solve_claimed, work
 from tests.service import fronts
 from tests.service.store.contents import end_lease

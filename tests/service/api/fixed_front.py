@@ -16,10 +16,10 @@ from typer.testing import CliRunner
 from slidercrank.service.api.app import create_app
 from slidercrank.service.api.settings import DEFAULT, Settings
 from slidercrank.service.cli import app as command_line
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, Row
 from slidercrank.service.runs.stored_runs import read_run
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 from tests.service import fronts as made
 from tests.service.api.serving import serving

@@ -24,9 +24,9 @@ from pathlib import Path
 from slidercrank.service.api.app import create_app
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.api.settings import Settings
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result
 from slidercrank.service.store import Limits, Store
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 from tests.service.api.serving import TOKEN, serving
 from tests.service.store.contents import progress

@@ -19,7 +19,8 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from slidercrank.service.api import exports, turns
+from slidercrank.service.api import exports
+from slidercrank.service.api import throttle as turns
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client

@@ -33,7 +33,7 @@ def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reaso
     client: httpx.Client, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     add(store)
-    monkeypatch.setattr("slidercrank.service.disk_room.shutil.disk_usage", lambda _: SimpleNamespace(free=4096))
+    monkeypatch.setattr("slidercrank.service.resources.disk.shutil.disk_usage", lambda _: SimpleNamespace(free=4096))
     refused = client.get("/health/ready")
     assert refused.status_code == 503
     reason = client.get("/jobs/1").json()["reason"]

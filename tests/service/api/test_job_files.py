@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from slidercrank.model.errors import JobError
 from slidercrank.objectives.motion_deviation import DEVIATIONS
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.service.job_toml import job_toml
+from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
 TOML = {"Content-Type": "application/toml"}

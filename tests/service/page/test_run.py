@@ -12,9 +12,9 @@ from urllib.parse import urlsplit
 from playwright.sync_api import Browser, expect
 from sqlalchemy import delete
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.store.schema import jobs
-from slidercrank.service.submission import submit
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in, served

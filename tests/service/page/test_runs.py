@@ -7,8 +7,8 @@ import tomllib
 
 from playwright.sync_api import Page, expect
 
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
-from slidercrank.service.submission import submit
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
 from tests.service.page.accessibility import require_accessible

@@ -12,7 +12,7 @@ from sqlalchemy import Engine, event
 from slidercrank.model.errors import LeaseLost
 from slidercrank.service.store import Store
 from slidercrank.service.store.clock import JUMP, SETTLING, Jumps
-from slidercrank.service.workers.pulse import Pulse
+from slidercrank.service.workers.heartbeat import Heartbeat
 from tests.service.store.contents import add, progress, result, search_record, taken
 
 HOURS = [7200.0, -7200.0, 1200.0, -1200.0]
@@ -45,7 +45,7 @@ def clock() -> Iterator[Clock]:
 
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let claims settle within a moment of a jump, but not before a pulse has looked."""
+    """Let claims settle within a moment of a jump, but not before a heartbeat has looked."""
     monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.8)
 
 
@@ -56,7 +56,7 @@ def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: 
     store.greet("first")
     claim = taken(store, "first", lease=30.0)
     assert store.claim("second") is None  # it has seen the clock as it was
-    with Pulse(claim):
+    with Heartbeat(claim):
         clock.ahead = step
         for _ in range(6):
             assert store.claim("second") is None

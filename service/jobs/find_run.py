@@ -1,0 +1,101 @@
+"""Finding a run: a folder on the disk, or a job of the store, which gets its folder when it is asked for."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError, NotFound
+from ..runs.run_folder import MARK, RunFolder
+from .stores import has_store, open_store
+
+if TYPE_CHECKING:
+    from ..store import Job, State, Store
+
+_FOUND: tuple[State, ...] = ("done", "infeasible", "cancelled")
+
+
+def find_run(text: str, place: Path) -> Path:
+    """Return the folder of a run: a path, a name in the place of runs, the unique start of one, or "latest".
+
+    The number of a job in the store will do, too; a job that has no folder yet gets it. Raises `InputError` when
+    nothing, or more than one run, answers to it, `RunError` for a job that has found nothing yet.
+    """
+    if (text == "latest" or not Path(text).exists()) and has_store(None, place):
+        with open_store(None, place) as store:
+            job = _asked(store, text, place)
+            if job is not None:
+                return export_job(store, job, place)
+    return find_folder(text, place)
+
+
+def export_job(store: Store, job: Job, place: Path) -> Path:
+    """Write the run folder of a job that has a result, unless it is there, and return it."""
+    path = place / job.run
+    if path.is_dir():
+        return path
+    result = store.result(job.id)
+    files = {name: store.artefact(job.id, name).content for name in store.artefacts(job.id)}
+    versions = json.loads(files.pop("versions.json", b"{}"))
+    with RunFolder(place, job.name) as folder:
+        folder.rename(job.run)
+        folder.keep_files(files)
+        folder.keep_result(replace(result, run=str(path)), versions)
+    return path
+
+
+def _asked(store: Store, text: str, place: Path) -> Job | None:
+    """Return the job that is meant, None if a folder is."""
+    if text.isdecimal():
+        try:
+            return store.job(int(text))
+        except NotFound:
+            return None
+    if text == "latest":
+        latest = store.jobs(states=_FOUND, limit=1)
+        names = [folder.name for folder in _runs(place)]
+        return latest[0] if latest and latest[0].run > max(names, default="") else None
+    return store.find(text)
+
+
+def find_folder(text: str, place: Path) -> Path:
+    """Return the folder of a run that is on the disk, see `find_run`.
+
+    Raises `InputError` when nothing, or more than one run, answers to it.
+    """
+    names = sorted((run.name for run in _runs(place)), key=lambda name: (name[:15], _age(place, name)))
+    if text == "latest":
+        if not names:
+            raise InputError(f"there is no run in {place} yet; run `slidercrank optimise JOB` first")
+        return place / names[-1]
+    if text in names:
+        return place / text
+    path = Path(text)
+    if text and path.is_dir():
+        return path
+    if text and path.exists():
+        raise InputError(f"a run is a folder; got the file {text}; name its folder")
+    matches = [name for name in names if name.startswith(text)] if text else []
+    if len(matches) == 1:
+        return place / matches[0]
+    if matches:
+        some = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
+        raise InputError(f"the start of a run's name must be unique; {text!r} fits {some}; give more of it")
+    last = f"; the latest is {names[-1]}" if names else ""
+    raise InputError(f"there is no run {text!r}, neither as a folder nor in {place}{last}")
+
+
+def _runs(place: Path) -> list[Path]:
+    if not place.is_dir():
+        return []
+    return [
+        folder
+        for folder in place.iterdir()
+        if not folder.name.startswith(".") and ((folder / MARK).is_file() or (folder / "front.json").is_file())
+    ]
+
+
+def _age(place: Path, name: str) -> int:
+    return (place / name).stat().st_mtime_ns

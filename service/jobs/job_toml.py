@@ -1,0 +1,71 @@
+"""Jobs as TOML: the tables of a job written so that reading them gives the same again."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ...model.errors import JobError
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_WIDEST = 100
+
+
+def job_toml(tables: Mapping[str, Any]) -> str:
+    """Return the tables of a job as the text of a job file.
+
+    Tables get a heading, what is within them stays in braces, as in the shipped jobs. Raises `JobError` for what TOML
+    has no word for: null, and numbers that are not finite.
+    """
+    plain = [f"{_key(key)} = {_value(value)}" for key, value in tables.items() if not _is_table(value)]
+    parts = ["\n".join(plain)] if plain else []
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            parts.append(_table(f"[{_key(key)}]", value))
+        elif _is_table(value):
+            parts += [_table(f"[[{_key(key)}]]", item) for item in value]
+    return "\n\n".join(parts) + "\n"
+
+
+def _is_table(value: object) -> bool:
+    return isinstance(value, Mapping) or (
+        isinstance(value, list) and bool(value) and all(isinstance(item, Mapping) for item in value)
+    )
+
+
+def _table(heading: str, table: Mapping[str, Any]) -> str:
+    return "\n".join([heading, *(f"{_key(key)} = {_value(value)}" for key, value in table.items())])
+
+
+def _key(key: str) -> str:
+    return key if _BARE.fullmatch(key) else _text(key)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float) and math.isfinite(value):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return (
+            "{ " + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + " }" if value else "{}"
+        )
+    if isinstance(value, list):
+        items = [_value(item) for item in value]
+        line = "[" + ", ".join(items) + "]"
+        # Only a list may go on over several lines.
+        return line if len(line) <= _WIDEST else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
+    word = "null" if value is None else str(value)[:60]
+    raise JobError(f"a job has texts, finite numbers, lists and tables; got {word}; leave the key out instead")
+
+
+def _text(text: str) -> str:
+    # JSON escapes are TOML's, but for characters beyond 16 bits, which stay as they are, and DEL.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,112 @@
+"""A job that the command line solves itself: claimed in the store, and exported to its run folder as it goes."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError, LeaseLost, RunError, StoreError
+from ..runs.run_folder import RunFolder
+from ..store import Artefact, Claim, Store
+from .find_run import find_folder
+
+if TYPE_CHECKING:
+    from ..store import Job
+
+LEASE = 3600.0
+"""s. A run that is stopped by Ctrl-Z for less goes on where it was; one that was killed is free again after this, or
+when it is resumed."""
+_PATIENCE = 2.0  # s that it waits for room on the disk of the store: somebody sits before it
+_WORKER = "command line"
+_MEDIA = {".toml": "application/toml", ".json": "application/json"}
+
+
+def files_of(job: Path, beside: Sequence[Path]) -> list[Artefact]:
+    """Return a job file and the files beside it that it names, as they are kept in the store."""
+    kept = {f"job{job.suffix.lower()}": job, **{file.relative_to(job.parent).as_posix(): file for file in beside}}
+    return [
+        Artefact(name=name, media_type=_MEDIA.get(file.suffix.lower(), "text/plain"), content=file.read_bytes())
+        for name, file in kept.items()
+    ]
+
+
+def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]) -> Claim:
+    """Put the job of a new folder into the store and return its claim; the folder takes the name that it has there."""
+    worker = _worker()
+    claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
+    claim.most_full = _PATIENCE
+    folder.rename(claim.job.run)
+    folder.keep_files({file.name: file.content for file in files})
+    return claim
+
+
+def stopped_job(store: Store, text: str, place: Path) -> Job:
+    """Return the job of a run that is to go on: the number of the job, or a run as `find_run` takes it.
+
+    Raises `InputError` for a run that is not in the store.
+    """
+    if text.isdecimal():
+        return store.job(int(text))
+    folder = find_folder(text, place)
+    job = store.find(folder.name)
+    if job is None:
+        raise InputError(
+            f"a run goes on from what the store has of it; {folder.name} is not in {store.name}; run its job again"
+        )
+    return job
+
+
+def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
+    """Return the folder of a job that is to go on, a new one if it has none in this place."""
+    path = place / job.run
+    if path.is_dir():
+        return RunFolder.again(path)
+    folder = RunFolder(place, job.name)
+    folder.rename(job.run)
+    folder.keep_files({name: store.artefact(job.id, name).content for name in store.artefacts(job.id)})
+    return folder
+
+
+def take_up(store: Store, job: Job) -> Claim:
+    """Claim a job again that was stopped. Its folder is open, so no other process of the command line has it.
+
+    Raises `RunError` for a job that cannot go on.
+    """
+    alone = (job.worker or "").startswith(_WORKER)
+    try:
+        claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=alone)
+    except InputError:
+        state = store.job(job.id).state
+        raise RunError(
+            f"only an interrupted or cancelled run can go on; {job.run} is {state}; run its job anew"
+        ) from None
+    claim.most_full = _PATIENCE
+    return claim
+
+
+@contextlib.contextmanager
+def told(claim: Claim, *, again: str = "") -> Iterator[None]:
+    """While entered, an error ends the job in the store too, so that it can be resumed at once.
+
+    again: the command that goes on with the run; none where its store lasts no longer than the run.
+    """
+    try:
+        yield
+    except StoreError as error:
+        if not again:
+            raise
+        raise StoreError(f"{error}; what was found until then is kept; then go on with: {again}") from error
+    except LeaseLost:
+        raise
+    except BaseException as error:
+        with contextlib.suppress(LeaseLost, StoreError):  # the error that is under way matters more
+            claim.fail(str(error) or "interrupted", again=False)
+        raise
+
+
+def _worker() -> str:
+    return f"{_WORKER} on {socket.gethostname()}, process {os.getpid()}"

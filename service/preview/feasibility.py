@@ -1,0 +1,303 @@
+"""What the ranges of a job allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
+
+A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
+samples lie where the search looks. Extremes are looked for around the best samples and polished: a design has each.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from .partial_job import is_closed
+from .time_limit import within
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...optimise.problem.problem import Constraint, Problem
+    from ...optimise.search.elimination import Sheet
+
+    Array = NDArray[np.float64]
+
+Ends = tuple[float, float]
+
+_SAMPLES = 512
+_BATCH = 64
+_MOMENT = 0.06  # s, for the designs of quantities that take a cycle
+_PATIENCE = 0.12  # s, until these are left out
+_WIDTHS = (0.1, 0.05, 0.025, 0.012, 0.006, 0.003, 0.0015)
+_ON_EDGE = 128
+_PARENTS, _CHILDREN = 12, 12
+_STAYS = 0.4
+_POLISHED = 4  # of the best designs found for an end
+_FLATTEST = math.radians(0.1)
+"""Least transmission angle that is looked for: nearer to locking there is nothing to know."""
+_CLOSE = 1e-6
+"""Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Possible:
+    """What the ranges allow. turning: share of the designs in the box that turn fully.
+
+    stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
+    the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
+    feasible: share of the `sampled` designs that meet every requirement that was checked. hardest: the requirement that
+    the fewest designs meet which turn fully, and that share. example: crank, rod and offset, m, near the middle of what
+    is feasible, else the nearest to it; None if nothing turns. unchecked: requirements that would have taken longer
+    than a moment.
+    """
+
+    turning: float
+    stroke: Ends | None
+    time_ratio: Ends | None
+    transmission_angle: Ends | None
+    feasible: float
+    sampled: int
+    hardest: tuple[str, float] | None
+    example: tuple[float, float, float] | None
+    example_feasible: bool
+    unchecked: tuple[str, ...]
+
+
+def possible(problem: Problem) -> Possible:
+    """Return what the ranges of a problem of `stated.geometry` allow."""
+    import numpy as np
+
+    from ...optimise.search.evaluation import FEASIBLE
+
+    free = replace(problem, constraints=())
+    box = _designs(free, _SAMPLES)
+    turning = _turns(box)
+    light, costly = _light(problem)
+    screened = within(_PATIENCE, lambda: _screened(problem)) if costly else None
+    found, violation = _screened(light) if screened is None else screened
+    feasible = violation <= FEASIBLE
+    example, nearest = None, np.flatnonzero(np.isfinite(violation))
+    if len(nearest):
+        best = np.flatnonzero(feasible) if feasible.any() else nearest[[int(np.argmin(violation[nearest]))]]
+        example = _middle(found[best])
+    elif turning.any():
+        example = _middle(box[turning])
+    return Possible(
+        turning=float(turning.mean()),
+        stroke=_reach(problem, "stroke"),
+        time_ratio=_reach(problem, "time_ratio"),
+        transmission_angle=_reach(problem, "transmission_angle"),
+        feasible=float(feasible.mean()) if len(feasible) else 0.0,
+        sampled=len(feasible),
+        hardest=_hardest(problem, box[turning]),
+        example=example,
+        example_feasible=bool(feasible.any()),
+        unchecked=costly if screened is None else (),
+    )
+
+
+def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
+    """Return the problem with the requirements on the dimensions alone, and the names of the others."""
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.search.evaluation import constraints_of
+
+    machine = Mechanism(speed=problem.mechanism.speed, branch=problem.mechanism.branch)
+    closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
+    costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
+    return replace(problem, mechanism=machine, constraints=closed), costly
+
+
+def _designs(problem: Problem, count: int) -> Array:
+    """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
+    import numpy as np
+
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.sampling import first_samples
+
+    parts = []
+    for index, sheet in enumerate(sheets(problem)):
+        parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, :3])
+    return np.concatenate(parts)
+
+
+def _turns(designs: Array) -> NDArray[np.bool_]:
+    import numpy as np
+
+    crank, rod, offset = designs.T
+    with np.errstate(invalid="ignore"):
+        return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
+
+
+def _screened(problem: Problem) -> tuple[Array, Array]:
+    """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
+    import numpy as np
+
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.evaluation import Evaluator
+    from ...optimise.search.sampling import first_samples
+
+    end = time.monotonic() + _MOMENT
+    designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
+    for index, sheet in enumerate(sheets(problem)):
+        evaluator = Evaluator(problem, sheet)
+        points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
+        for begin in range(0, len(points), _BATCH):
+            found, _, violation = evaluator.screen(points[begin : begin + _BATCH])
+            designs.append(found[:, :3])
+            violations.append(violation)
+            if time.monotonic() > end:
+                break
+    return np.concatenate(designs), np.concatenate(violations)
+
+
+def _reach(problem: Problem, name: str) -> Ends | None:
+    """Return the ends of a closed form while the other requirements on the dimensions hold."""
+    from ...optimise.problem.problem import Constraint
+    from ...optimise.search.elimination import sheets
+    from ...optimise.search.evaluation import constraints_of
+
+    others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
+    if name == "transmission_angle":
+        others = (*others, Constraint(quantity=name, lower=_FLATTEST))
+    alone = replace(problem, constraints=others)
+    ends = [_ends(alone, name, sheet, index) for index, sheet in enumerate(sheets(alone))]
+    found = [pair for pair in ends if pair is not None]
+    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
+
+
+def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
+    """Return the least and the greatest value on a sheet, sampled, then nearer and nearer around the best."""
+    import numpy as np
+
+    from ...optimise.search.sampling import first_samples, generator
+
+    points = np.concatenate([first_samples(_SAMPLES, len(sheet.free), 1, index), *_on_edges(problem, sheet)])
+    values = _values(problem, name, sheet.dimensions(points)[:, :3])
+    if not np.isfinite(values).any():
+        return None
+    random = generator(1, 100 + index)
+    found = []
+    for sign in (-1.0, 1.0):
+        best, worth = points, np.where(np.isfinite(values), sign * values, -np.inf)
+        for width in _WIDTHS if len(sheet.free) else ():
+            rows = np.argsort(-worth, kind="stable")[:_PARENTS]
+            rows = rows[np.isfinite(worth[rows])]
+            children = np.repeat(best[rows], _CHILDREN, axis=0)
+            step = width * random.standard_normal(children.shape)
+            stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges, along which one moves
+            children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
+            more = _values(problem, name, sheet.dimensions(children)[:, :3])
+            best = np.concatenate([best[rows], children])
+            worth = np.concatenate([worth[rows], np.where(np.isfinite(more), sign * more, -np.inf)])
+        start = best[np.argsort(-worth, kind="stable")[:_POLISHED]]
+        found.append(sign * max(float(worth.max()), _polished(problem, name, sheet, sign, start)))
+    return found[0], found[1]
+
+
+def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Array) -> float:
+    """Return the greatest of `sign` times a closed form near points (n, k) of a sheet; minus infinity if there is none.
+
+    Its own requirement apart, all others of the problem hold.
+    """
+    import numpy as np
+
+    from ...optimise.problem.problem import Objective
+    from ...optimise.search.evaluation import FEASIBLE, Evaluator
+    from ...optimise.search.polish import polish
+
+    wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
+    evaluator = Evaluator(replace(problem, objectives=(wanted,)), sheet)
+    start = start[evaluator.valid(start)]
+    if not sheet.free or not len(start):
+        return -np.inf
+    found = polish(evaluator, start, np.ones(1))
+    good = found.violation <= FEASIBLE
+    return float(-found.values[good, 0].min()) if good.any() else -np.inf
+
+
+def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
+    """Yield points of a sheet (n, k) at which a requirement is met just so: extremes lie there, and bands are thin."""
+    import numpy as np
+
+    from ...optimise.search.elimination import UNKNOWNS, sheets
+    from ...optimise.search.sampling import first_samples
+
+    for place, constraint in enumerate(problem.constraints):
+        for end in (constraint.lower, constraint.upper):
+            if end is None or constraint.equality or not sheet.free:
+                continue
+            edge = replace(constraint, lower=end, upper=end)
+            rest = (*problem.constraints[:place], edge, *problem.constraints[place + 1 :])
+            for other in sheets(replace(problem, constraints=rest)):
+                designs = other.dimensions(first_samples(_ON_EDGE, len(other.free), 1, place))[:, :3]
+                designs = designs[_turns(designs) & _inside(problem, designs)]
+                if other.sign == sheet.sign and len(designs):
+                    columns = [np.abs(designs[:, UNKNOWNS.index(free)]) for free in sheet.free]
+                    points = (np.stack(columns, axis=1) - sheet.lower) / (sheet.upper - sheet.lower)
+                    yield np.clip(points, 0.0, 1.0)
+
+
+def _values(problem: Problem, name: str, designs: Array) -> Array:
+    """Return a closed form of designs (n, 3); NaN where they do not turn or miss a requirement on the dimensions."""
+    import numpy as np
+
+    from ...objectives.registry import QUANTITIES
+
+    values = np.full(len(designs), np.nan)
+    rows = np.flatnonzero(_turns(designs) & _inside(problem, designs))
+    for constraint in problem.constraints:
+        own = QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs[rows]).values
+        rows = rows[_meets(constraint, own)]
+    values[rows] = QUANTITIES[name].evaluate(problem.mechanism, designs[rows]).values
+    return values
+
+
+def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
+    """Whether dimensions that were computed from equalities lie in their ranges."""
+    import numpy as np
+
+    good = np.ones(len(designs), dtype=bool)
+    for column, name in enumerate(("crank", "rod", "offset")):
+        ends = getattr(problem, name)
+        slack = _CLOSE * max(abs(ends.lower), abs(ends.upper))
+        with np.errstate(invalid="ignore"):
+            good &= (designs[:, column] >= ends.lower - slack) & (designs[:, column] <= ends.upper + slack)
+    return good
+
+
+def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
+    import numpy as np
+
+    good = np.isfinite(values)
+    if constraint.lower is not None:
+        good &= values >= constraint.lower - _CLOSE * abs(constraint.lower)
+    if constraint.upper is not None:
+        good &= values <= constraint.upper + _CLOSE * abs(constraint.upper)
+    return np.asarray(good)
+
+
+def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
+    """Return the requirement on the dimensions, equalities aside, that the fewest designs meet, and their share."""
+    from ...objectives.registry import QUANTITIES
+
+    shares = {
+        constraint.quantity: float(
+            _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
+        )
+        for constraint in problem.constraints
+        if is_closed(constraint.quantity) and not constraint.equality and len(designs)
+    }
+    return min(shares.items(), key=lambda item: item[1]) if shares else None
+
+
+def _middle(designs: Array) -> tuple[float, float, float]:
+    """Return the design nearest to the middle of some, in each dimension on its own scale."""
+    import numpy as np
+
+    size = np.abs(designs).max(axis=0) + 1e-300
+    scaled = designs / size
+    row = int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))
+    crank, rod, offset = designs[row].tolist()
+    return crank, rod, offset

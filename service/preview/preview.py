@@ -1,0 +1,75 @@
+"""A look at a job while it is being written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from .feasibility import Possible, possible
+from .partial_job import geometry, left_out
+from .places import Wrong, places
+from .sentences import said
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
+
+
+@dataclass(frozen=True)
+class Look:
+    """wrong: what is wrong with the job, nothing if it can be solved. problem: of the whole job, if it is valid.
+
+    stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
+    requirements that were not looked at. said: sentences on what cannot be had.
+    """
+
+    wrong: list[Wrong]
+    problem: Problem | None
+    stated: Problem | None
+    possible: Possible | None
+    unchecked: list[str]
+    said: list[str]
+
+
+def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+    """Return what can be said of a job. read: gives its problem, or raises what is wrong with it."""
+    from ...optimise.job.file import require_few
+
+    wrong: list[Wrong] = []
+    whole = None
+    try:
+        require_few(tables)
+    except InputError as error:
+        return Look(places(error), None, None, None, [], [])
+    try:
+        stated = geometry(tables, None)
+    except InputError:
+        stated = None
+    beyond = None if stated is None else _beyond(stated)
+    try:
+        # It is said once; the rest of the job is checked without it.
+        whole = read(tables if beyond is None else _without_time_ratio(tables))
+        if beyond is None and stated is not None:
+            stated = geometry(tables, whole)
+    except InputError as error:
+        wrong = places(error)
+    if beyond is not None:
+        wrong, whole = [beyond, *wrong], None
+    if stated is None:
+        return Look(wrong, whole, None, None, [], [])
+    found = possible(stated)
+    return Look(wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found))
+
+
+def _beyond(stated: Problem) -> Wrong | None:
+    """Return what is wrong if no linkage at all has the time ratio with the transmission angle that are asked."""
+    from ...optimise.job.box import beyond_both
+
+    sentence = beyond_both(stated)
+    return None if sentence is None else Wrong("constraints.time_ratio", sentence)
+
+
+def _without_time_ratio(tables: Mapping[str, Any]) -> dict[str, Any]:
+    constraints = {name: item for name, item in tables["constraints"].items() if name != "time_ratio"}
+    return {**tables, "constraints": constraints}

@@ -1,0 +1,56 @@
+"""Room on disks: whether an error says that there is none, and how much a place has."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from .sizes import size_text
+
+LEAST = 256_000
+"""Bytes below which a disk counts as full: less than a database takes to write where a search stands."""
+_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+
+def is_full(error: BaseException) -> bool:
+    """Whether an error says that a disk is full, or what a user may have of it."""
+    return isinstance(error, OSError) and error.errno in _FULL
+
+
+def free(place: Path) -> int:
+    """Return how much room there is where a file or folder is or would be, in bytes; very much if that is not told."""
+    there = place.absolute()
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    try:
+        return shutil.disk_usage(there).free
+    except OSError:
+        return 1 << 62
+
+
+def room(place: Path) -> str:
+    """Return how much room a place has, in words."""
+    return f"{place} has {size_text(free(place))} free"
+
+
+def full_places(error: OSError) -> str:
+    """Return which places an error of a full disk is of: the one that it names, else those without room."""
+    if isinstance(error.filename, str | os.PathLike):
+        return room(Path(error.filename))
+    places = [place for place in _written() if free(place) < LEAST]
+    return ", ".join(map(room, places)) or "a disk is full"
+
+
+def _written() -> list[Path]:
+    """Return where this software writes beside its runs and its store: compiled kernels and temporary files."""
+    from ... import model
+
+    cache = os.environ.get("NUMBA_CACHE_DIR") or Path(model.__path__[0]) / "__pycache__"
+    folders = [Path(cache), Path(os.environ.get("TMPDIR") or "/tmp")]
+    with contextlib.suppress(OSError):  # nothing can be written in any of its folders
+        folders.append(Path(tempfile.gettempdir()))
+    return [*dict.fromkeys(folders), Path.cwd()]

@@ -1,0 +1,1 @@
+"""Tolerances of least cost: numbers, text and figure."""

@@ -1,0 +1,172 @@
+"""Allocated tolerances: what each adds to the position error over the cycle, and what each costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.tolerance.first_order import FirstOrder, first_order
+from ....model.tolerance.sources import SOURCES, counted_angles
+from ....optimise.problem.costs import Costs
+from ....optimise.sizing.tolerance_allocation import Allocation
+from ...figures.style import (
+    BLUE,
+    INK,
+    MUTED,
+    SHADE,
+    SMALL,
+    TEXT,
+    TITLE,
+    VERMILION,
+    dress,
+    new_figure,
+    place,
+    save,
+    shown,
+    write,
+)
+from .numbers import costs_before
+
+Array = NDArray[np.float64]
+
+_GREYS = ("#4a4a4a", "#b4b4b4", "#7a7a7a", "#dcdcdc", "#969696", "#c8c8c8", "#5c5c5c", "#efefef")
+_HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
+_SAMPLES = 721
+
+
+@dataclass(frozen=True)
+class AllocationCurves:
+    """The figure's data: errors in mm over crank angles (m,), deg.
+
+    sources: (s,), of those that add to the error; parts: (s, m), what each adds (worst case) or its share of the
+    squares times the error (root-sum-square), so that both add up to the error. before: (m,), with the tolerances that
+    the mechanism had; None if it had not all of them. limit: mm. counted: crank angles (from, to), deg, of the parts of
+    the cycle that count. active: crank angles, deg. names, costs, costs_before: of the tolerances that were chosen.
+    """
+
+    angles: Array
+    sources: tuple[str, ...]
+    parts: Array
+    before: Array | None
+    limit: float
+    counted: tuple[tuple[float, float], ...]
+    active: Array
+    names: tuple[str, ...]
+    costs: Array
+    costs_before: Array | None
+    kind: str
+
+
+def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
+    """Return the figure's data. before: the mechanism with the tolerances that it had."""
+    theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
+    now = first_order(found.mechanism, linkage, theta)
+    share, error = _summed(now, found.kind)
+    there = now.contributions.max(axis=1) > 0.0
+    was = costs_before(costs, linkage, before)
+    spans = [(float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in counted_angles(before, linkage)]
+    return AllocationCurves(
+        np.degrees(theta),
+        tuple(name for name, adds in zip(SOURCES, there, strict=True) if adds),
+        1e3 * (share * error)[there],
+        None if was is None else 1e3 * _summed(first_order(before, linkage, theta), found.kind)[1],
+        1e3 * found.limit,
+        tuple(spans),
+        np.degrees(found.angles),
+        tuple(part.name.replace("_", " ") for part in found.parts),
+        np.array([part.cost for part in found.parts]),
+        None if was is None else np.array(list(was.values())),
+        "worst case" if found.kind == "worst case" else "root-sum-square",
+    )
+
+
+def _summed(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
+    """Return shares of the sources (8, m) and the error (m,), m, as errors add up in an allocation."""
+    if kind == "worst case":
+        return linear.share_of_worst_case, linear.worst_case
+    return linear.share_of_variance, linear.root_sum_square
+
+
+def allocation_figure(data: AllocationCurves) -> Figure:
+    """Return the figure: above the error over the cycle, below the costs."""
+    count = len(data.names)
+    foot = 0.55 + 0.42 * count
+    figure = new_figure(9.2, foot + 4.25)
+    write(figure, 0.3, foot + 3.95, "Tolerances of least cost", fontsize=TITLE, weight="bold")
+    error = place(figure, 0.8, foot + 0.85, 5.9, 2.7)
+    dress(error, up=6)
+    error.set_xlim(0, 360)
+    error.set_xticks(range(0, 361, 45))
+    stack = error.stackplot(
+        data.angles, data.parts, labels=data.sources, colors=_GREYS, edgecolor="white", linewidth=0.4
+    )
+    for part, hatch in zip(stack, _HATCHES, strict=False):
+        part.set_hatch(hatch)
+    if data.before is not None:
+        error.plot(data.angles, data.before, color=BLUE, linewidth=1.3, linestyle=":", label="as in the job")
+    error.axhline(data.limit, color=VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
+    error.plot(
+        data.active, np.full(len(data.active), data.limit), linestyle="none", marker="o", markersize=6,
+        markerfacecolor="white", markeredgecolor=VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
+    )  # fmt: skip
+    for start, end in _gaps(data.counted):
+        error.axvspan(start, end, color=SHADE, alpha=0.8, linewidth=0, zorder=4)
+    tops = [float(data.parts.sum(axis=0).max()), data.limit, *([] if data.before is None else [data.before.max()])]
+    error.set_ylim(0.0, 1.06 * max(tops))
+    error.set_ylabel("position error, mm", fontsize=TEXT)
+    error.set_xlabel("crank angle, deg", fontsize=TEXT)
+    note = f"{data.kind} within {shown(data.limit)} mm" + ("; pale: not counted" if _gaps(data.counted) else "")
+    write(figure, 0.8, foot + 3.66, note, color=MUTED, fontsize=SMALL)
+    handles, labels = error.get_legend_handles_labels()
+    sources = len(data.sources)
+    order = [*reversed(range(sources)), *range(sources, len(handles))]  # sources as stacked
+    error.legend(
+        [handles[i] for i in order], [labels[i] for i in order], loc="upper left", bbox_to_anchor=(1.02, 1.0),
+        fontsize=SMALL, frameon=False, borderaxespad=0.0, handlelength=2.4, handleheight=1.1,
+    )  # fmt: skip
+
+    cost = place(figure, 1.3, 0.5, 5.4, foot - 0.35)
+    dress(cost, across=8)
+    cost.grid(False, axis="y")
+    rows = np.arange(count)[::-1]
+    thick = 0.36 if data.costs_before is not None else 0.55
+    shift = 0.2 if data.costs_before is not None else 0.0
+    bars = cost.barh(rows + shift, data.costs, height=thick, color=_GREYS[0], label=f"now, {shown(data.costs.sum())}")
+    cost.bar_label(bars, [shown(value) for value in data.costs], padding=3, fontsize=SMALL, color=INK)
+    if data.costs_before is not None:
+        label = f"as in the job, {shown(data.costs_before.sum())}"
+        bars = cost.barh(
+            rows - shift, data.costs_before, height=thick, color="white", edgecolor=BLUE, hatch="///", label=label
+        )
+        cost.bar_label(bars, [shown(value) for value in data.costs_before], padding=3, fontsize=SMALL, color=INK)
+    cost.set_yticks(rows, data.names, fontsize=TEXT)
+    cost.set_ylim(-0.6, count - 0.4)
+    cost.margins(x=0.12)
+    cost.set_xlim(left=0.0)
+    cost.set_xlabel("cost", fontsize=TEXT)
+    cost.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), fontsize=SMALL, frameon=False, borderaxespad=0.0)
+    return figure
+
+
+def _gaps(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
+    """Return the crank angles from 0 to 360 deg that are not counted."""
+    inside = sorted(
+        (max(start + shift, 0.0), min(end + shift, 360.0))
+        for start, end in counted
+        for shift in (-360.0, 0.0, 360.0)
+        if start + shift < 360.0 and end + shift > 0.0
+    )
+    edges = [0.0, *(end for span in inside for end in span), 360.0]
+    return [(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True) if end - start > 1e-6]
+
+
+def draw_allocation(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism, path: Path) -> Path:
+    """Write the figure as PNG; return the file."""
+    save(allocation_figure(allocation_curves(found, linkage, costs, before)), path)
+    return path

@@ -1,0 +1,133 @@
+"""Simulation of a loose joint over some turns of the crank, and its statistics."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from ...text.screen import error_console
+
+if TYPE_CHECKING:
+    from ....model.clearance.run import ClearanceProgress, ClearanceRun
+    from ....model.linkage.linkage import Linkage
+    from ....model.machine.mechanism import Mechanism
+
+CYCLES, DISCARD = 12, 4
+
+# Field of the summary, key without unit, unit in the key, factor from SI, title and unit for people.
+ROWS = (
+    ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", "m/s^2"),
+    ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  over that of ideal joints", ""),
+    (
+        "displacement_deviation",
+        "displacement_deviation",
+        "_percent",
+        100.0,
+        "slider displacement off by",
+        "% of stroke",
+    ),
+    ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity off by", "m/s"),
+    ("impacts", "impacts_per_turn", "", 1.0, "impacts per turn", ""),
+    ("contact_share", "contact_share", "_percent", 100.0, "time in contact", "%"),
+    ("peak_contact_force", "peak_contact_force", "_N", 1.0, "peak contact force", "N"),
+    ("penetration", "penetration", "_mm", 1e3, "greatest penetration", "mm"),
+    ("input_work", "input_work", "_J", 1.0, "work of the drive per turn", "J"),
+    ("load_work", "load_work", "_J", 1.0, "work of the loads per turn", "J"),
+    ("dissipated", "dissipated", "_J", 1.0, "lost in the joint per turn", "J"),
+    ("stored", "stored", "_J", 1.0, "gain of stored energy per turn", "J"),
+)
+
+
+def simulated(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    cycles: int = CYCLES,
+    discard: int = DISCARD,
+    cancelled: Callable[[], bool] | None = None,
+) -> ClearanceRun:
+    """Return the simulation of the joint that the mechanism has loose, its progress shown where there is a terminal.
+
+    Raises `InputError` if no joint is loose, and as `model.clearance.run.simulate` does.
+    """
+    from ....model.clearance.run import simulate
+    from ....model.errors import InputError
+
+    if mechanism.clearance is None:
+        raise InputError(
+            "a simulation of joint clearance needs a loose joint; got ideal joints only; add to the job for example "
+            '[clearance] with joint = "crank pin", radial_clearance = "0.2 mm" and journal_radius = "10 mm"'
+        )
+    with _turns_bar() as tell:
+        return simulate(
+            mechanism,
+            linkage,
+            mechanism.clearance,
+            cycles=cycles,
+            discard=discard,
+            progress=tell,
+            cancelled=cancelled,
+        )
+
+
+def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool]) -> dict[str, Any]:
+    """Return one simulation for numbers and figure."""
+    return {"run": simulated(mechanism, linkage, cancelled=cancelled)}
+
+
+def numbers(
+    mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any
+) -> dict[str, Any]:
+    """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None for what is not defined.
+
+    run: one that was done before; else `simulated` with the options does it.
+    """
+    from ....model.clearance.statistics import summarise
+
+    run = run or simulated(mechanism, linkage, **options)
+    clearance = run.clearance
+    summary = summarise(run) if run.cycles > run.discard else None
+    found: dict[str, Any] = {
+        "joint": clearance.joint,
+        "radial_clearance_mm": 1e3 * clearance.radius,
+        "law": clearance.law,
+        "restitution": clearance.restitution,
+        "friction": clearance.friction,
+        "contact_stiffness_N_per_m_to_1_5": clearance.contact_stiffness,
+        "status": run.status,
+        "turns": 0 if summary is None else summary.turns,
+        "turns_discarded": min(run.discard, run.cycles),
+    }
+    for field, key, unit, factor, _, _ in ROWS:
+        estimate = None if summary is None else getattr(summary, field)
+        certain = None if estimate is None else estimate.uncertainty
+        found[f"{key}{unit}"] = None if estimate is None else factor * estimate.value
+        found[f"{key}_uncertainty{unit}"] = None if certain is None else factor * certain
+    found["fastest_impact_m_s"] = None if summary is None else summary.fastest_impact
+    found["energy_residual_J"] = None if summary is None else summary.energy_residual
+    return found
+
+
+@contextlib.contextmanager
+def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
+    """Show a live bar of the turns done on standard error if it is a terminal; yield what is called after each.
+
+    Threads other than the main one show nothing: a service simulates for others.
+    """
+    screen = error_console()
+    if not screen.is_terminal or threading.current_thread() is not threading.main_thread():
+        yield None
+        return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(bar_width=24), TimeElapsedColumn())
+    with Progress(*columns, console=screen, transient=True) as bar:
+        task = bar.add_task("loose joint, turn 1", total=None)
+
+        def tell(at: ClearanceProgress) -> None:
+            text = f"loose joint, turn {at.cycle} of {at.cycles}, {at.impacts} impacts"
+            bar.update(task, description=text, completed=at.cycle, total=at.cycles)
+
+        yield tell

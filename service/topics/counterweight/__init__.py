@@ -1,0 +1,1 @@
+"""The counterweight of least shaking: numbers, text and figure."""

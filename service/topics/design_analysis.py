@@ -1,0 +1,72 @@
+"""All numbers of one design, and of the topics that are asked for: what `analyse` prints and the API sends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from ..runs.result import Row, rows_of
+from .discovery import TOPICS
+from .topic import TopicOfDesign
+
+if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...objectives.quantity import Quantity
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """row: all numbers of a design. found: those of its topics. topics: which. notes: what is left out, and why."""
+
+    row: Row
+    found: dict[str, dict[str, Any]]
+    topics: tuple[TopicOfDesign, ...]
+    notes: list[str]
+
+    def record(self) -> dict[str, Any]:
+        """Return what JSON has."""
+        return self.row | self.found
+
+
+def numbers_of(mechanism: Mechanism, values: Sequence[float], own: Sequence[Quantity] = ()) -> Row:
+    """Return every quantity of one design. values: crank, rod, offset, m. own: quantities of its job."""
+    import numpy as np
+
+    from ...objectives.analysis import analyse
+
+    return rows_of(analyse(mechanism, np.array([values]), own=own).to_dict("list"))[0]
+
+
+def analysis_of(
+    row: Row,
+    mechanism: Mechanism,
+    linkage: Linkage,
+    topics: Sequence[str],
+    *,
+    options: Mapping[str, dict[str, Any]] | None = None,
+    notes: Sequence[str] = (),
+    cancelled: Callable[[], bool],
+    lenient: bool,
+) -> Analysis:
+    """Return the analysis of one design.
+
+    row: of `numbers_of`. topics: of `chosen_topics`, each with its options. cancelled: asked now and then; when it says
+    so, the topics left are left out. lenient: a topic that this design does not have is a note, not an error.
+    """
+    design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
+    found: dict[str, dict[str, Any]] = {}
+    said = list(notes)
+    for topic in design:
+        if cancelled():
+            said.append(f"interrupted; left out: {', '.join(t.name for t in design if t.name not in found)}")
+            break
+        try:
+            found[topic.name] = topic.numbers(cancelled)
+        except InputError as error:
+            if not lenient:
+                raise
+            said.append(f"{topic.name}: {error}")
+    return Analysis(row, found, design, said)

@@ -1,0 +1,43 @@
+"""Topics, found by looking into their folders, and those that somebody asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from pkgutil import iter_modules
+
+from ...model.errors import InputError
+from .topic import Topic
+
+ALL = "all"
+
+
+def _found() -> dict[str, Topic]:
+    package = __name__.rpartition(".")[0]
+    folders = [item.name for item in iter_modules(import_module(package).__path__) if item.ispkg]
+    declared = [getattr(import_module(f"{package}.{folder}"), "TOPIC", None) for folder in folders]
+    return {topic.name: topic for topic in sorted((t for t in declared if t is not None), key=lambda t: t.place)}
+
+
+TOPICS = _found()
+"""By name, in the order in which they are shown."""
+TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
+"""Columns that topics show; the table of a design leaves them out."""
+
+
+def chosen_topics(names: Iterable[str], *, job: bool) -> tuple[str, ...]:
+    """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job."""
+    import difflib
+
+    asked = [name.strip().replace("-", "_") for text in names for name in text.split(",")]
+    possible = tuple(name for name, topic in TOPICS.items() if job or not topic.needs_job)
+    for name in asked:
+        if name not in TOPICS and name != ALL:
+            near = difflib.get_close_matches(name, TOPICS, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(TOPICS)}, {ALL}"
+            raise InputError(f"--show must name a topic; got {name!r}; {hint}")
+        if name not in (*possible, ALL):
+            raise InputError(
+                f"--show {name} needs masses, loads or tolerances; got no job file; give one: analyse JOB --show {name}"
+            )
+    return possible if ALL in asked else tuple(dict.fromkeys(asked))

@@ -1,0 +1,10 @@
+"""What sizes the motor: numbers, text and figure."""
+
+from ..topic import Topic
+
+TOPIC = Topic(
+    __name__,
+    30,
+    "power, RMS torque, reflected inertia",
+    tells=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
+)

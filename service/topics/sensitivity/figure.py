@@ -1,0 +1,111 @@
+"""The tornado figure: by how many percent each quantity changes for one percent more of each dimension."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....objectives.sensitivity import DIMENSIONS, sensitivity
+from ...figures.style import (
+    BLUE,
+    FRAME,
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    TITLE,
+    VERMILION,
+    dress,
+    new_figure,
+    place,
+    save,
+    shown,
+    write,
+)
+
+
+def tornado_rows(mechanism: Mechanism, linkage: Linkage) -> pd.DataFrame:
+    """Return what is drawn: title and percentages of every quantity that has them, the most sensitive first.
+
+    Of an offset of zero the percentages are for 1 mm. <dimension>_percent_below: on the side of smaller values.
+    """
+    table = sensitivity(mechanism, np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)]))
+    columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
+    if float(linkage.offset) == 0.0:
+        # Those that have percentages: not zero, and no crank angle of a dead centre.
+        sizes = table["value"].where(table["crank_percent"].notna())
+        for side in ("", "_below"):
+            table[f"offset_percent{side}"] = 100.0 * table[f"offset_per_mm{side}"] / sizes
+    rows = table[["title", *columns]].dropna(subset=columns, how="all")
+    rows.attrs["offset per mm"] = float(linkage.offset) == 0.0
+    most = rows[columns].abs().max(axis=1).sort_values(ascending=False, kind="stable")
+    return rows.loc[most.index].reset_index(drop=True)
+
+
+def tornado_figure(rows: pd.DataFrame) -> Figure:
+    """Return the figure: a panel for each dimension, a bar for each quantity."""
+    count = max(1, len(rows))
+    height = 1.55 + 0.24 * count
+    figure = new_figure(10.6, height)
+    write(figure, 0.3, height - 0.3, "Sensitivity", fontsize=TITLE, weight="bold")
+    note = (
+        "change in % for 1 % more of each dimension (of the offset: of its size); bars to the right grow with it; "
+        "at a kink the derivatives below and above"
+    )
+    write(figure, 0.3, height - 0.5, note, color=MUTED)
+    columns = [f"{name}_percent" for name in DIMENSIONS]
+    both = [*columns, *(f"{column}_below" for column in columns)]
+    reach = 1.5 * float(np.nanmax(np.abs(rows[both].to_numpy()))) if len(rows) else 1.0
+    reach = reach or 1.0
+    places = np.arange(count)[::-1]
+    for n, (name, column) in enumerate(zip(DIMENSIONS, columns, strict=True)):
+        panel = place(figure, 2.55 + 2.68 * n, 0.55, 2.5, height - 1.5)
+        dress(panel)
+        panel.grid(False, axis="y")
+        panel.set_xlim(-reach, reach)
+        panel.set_ylim(-0.7, count - 0.3)
+        panel.set_yticks(places, list(rows["title"]) if len(rows) else [""])
+        panel.tick_params(labelleft=n == 0, left=False)
+        panel.axvline(0.0, color=FRAME, linewidth=0.8)
+        per_mm = name == "offset" and rows.attrs.get("offset per mm", False)
+        panel.set_title(f"{name}, for 1 mm" if per_mm else name, fontsize=TEXT, color=INK, pad=4)
+        panel.set_xlabel("%", fontsize=SMALL)
+        for at, above, below in zip(places, rows[column], rows[f"{column}_below"], strict=False):
+            if np.isnan(above):
+                continue
+            if abs(above - below) <= 1e-9 * max(abs(above), abs(below)):
+                _bar(panel, at, 0.62, float(above), reach)
+            else:  # a kink: below its own half of the row
+                _bar(panel, at - 0.19, 0.3, float(below), reach, "below ")
+                _bar(panel, at + 0.19, 0.3, float(above), reach, "above ")
+        if rows[column].isna().all():
+            panel.text(0.0, 0.5 * (count - 1), f"no {name}:\nnot defined", ha="center", fontsize=SMALL, color=MUTED)
+    return figure
+
+
+def _bar(panel: Axes, at: float, height: float, value: float, reach: float, side: str = "") -> None:
+    up = value >= 0.0
+    panel.barh(at, value, height=height, color=BLUE if up else "white", edgecolor=BLUE if up else VERMILION)
+    text = side + (f"{'+' if up else ''}{shown(value, 3)}" if abs(value) >= 5e-4 else "0")
+    size = SMALL - (2.5 if side else 1.0)
+    panel.text(
+        value + (0.02 if up else -0.02) * reach,
+        at,
+        text,
+        ha="left" if up else "right",
+        va="center",
+        fontsize=size,
+        color=INK,
+    )
+
+
+def draw_sensitivity(mechanism: Mechanism, linkage: Linkage, path: Path) -> Path:
+    """Write the tornado figure of one linkage as PNG; return the file."""
+    save(tornado_figure(tornado_rows(mechanism, linkage)), path)
+    return path

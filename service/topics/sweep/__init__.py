@@ -1,0 +1,1 @@
+"""Quantities over one or two parameters: text and figure."""

@@ -1,0 +1,171 @@
+"""Sweeps as figures: lines over one parameter, filled contours over two."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ....objectives.kinds import System, shown_in
+from ....objectives.quantity import Quantity
+from ....objectives.sweep import Axis
+from ....optimise.front.constant import is_constant
+from ...figures.style import (
+    BLUE,
+    INK,
+    MUTED,
+    SHADE,
+    SMALL,
+    TEXT,
+    TITLE,
+    colours,
+    dress,
+    limits,
+    new_figure,
+    place,
+    save,
+    with_unit,
+    write,
+)
+
+Array = NDArray[np.float64]
+MOST = 6
+"""Quantities drawn at most."""
+_LEVELS = 12
+_WIDTH, _SIDE = 5.4, 2.6  # inches of a panel of two parameters with its scale, and of the height of any panel
+
+
+def column_of(axis: Axis) -> str:
+    """Return the column of the table that an axis fills."""
+    return "speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"
+
+
+def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tuple[list[Array], Array]:
+    """Return the values of each axis as shown, ascending, and those of the quantity over them; NaN where none."""
+    shape = [len(axis.values) for axis in axes]
+    values = table[item.field].to_numpy(dtype=np.float64).reshape(shape)
+    values = np.where(np.isfinite(values), values, np.nan)
+    grids = []
+    for n, axis in enumerate(axes):
+        along = np.moveaxis(table[column_of(axis)].to_numpy(dtype=np.float64).reshape(shape), n, 0)
+        first = along.reshape(shape[n], -1)[:, 0]
+        order = np.argsort(first, kind="stable")
+        grids.append(first[order])
+        values = np.take(values, order, axis=n)
+    return grids, values
+
+
+def sweep_figure(
+    table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], *, title: str, system: System = "metric"
+) -> Figure:
+    """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
+
+    An axis of a single value is named in the heading and not drawn. system: of the units that all is shown in.
+    """
+    items = list(of)[:MOST]
+    drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
+    columns = 2 if len(items) > 1 else 1
+    rows = -(-len(items) // columns)
+    figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
+    height = figure.get_size_inches()[1]
+    write(figure, 0.3, height - 0.3, textwrap.shorten(title, 60, placeholder=" ..."), fontsize=TITLE, weight="bold")
+    names = " and ".join(axes[n].parameter for n in drawn)
+    held = [
+        f"{with_unit(*_title(axis, system))} = {table[column_of(axis)].iloc[0] * _factor(axis, system):.6g}"
+        for n, axis in enumerate(axes)
+        if n not in drawn
+    ]
+    write(figure, 0.3, height - 0.5, "; ".join([f"sweep over {names}", *held]), color=MUTED)
+    for n, item in enumerate(items):
+        left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
+        grids, values = sweep_grid(table, axes, item)
+        grids = [grid * _factor(axis, system) for grid, axis in zip(grids, axes, strict=True)]
+        symbol, factor = shown_in(item.unit.symbol, system)
+        head = with_unit(item.title, symbol)
+        values = factor * values.reshape([len(grids[k]) for k in drawn])
+        panel = place(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
+        dress(panel)
+        panel.set_xlabel(with_unit(*_title(axes[drawn[0]], system)), fontsize=TEXT)
+        if np.isnan(values).all():
+            nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
+            panel.text(0.5, 0.5, "no value anywhere", **nowhere)
+            panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
+        elif len(drawn) == 1:
+            _line(panel, grids[drawn[0]], values, head)
+        else:
+            scale = place(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
+            _contour(panel, scale, grids, values, head)
+            panel.set_ylabel(with_unit(*_title(axes[1], system)), fontsize=TEXT)
+    return figure
+
+
+def _title(axis: Axis, system: System) -> tuple[str, str]:
+    return axis.parameter, shown_in(_metric(axis), system)[0]
+
+
+def _factor(axis: Axis, system: System) -> float:
+    return shown_in(_metric(axis), system)[1]
+
+
+def _metric(axis: Axis) -> str:
+    return "rpm" if axis.parameter == "speed" else "mm"
+
+
+def _line(panel: Axes, x: Array, values: Array, head: str) -> None:
+    few = {"marker": "o", "markersize": 3.5} if len(x) <= 40 else {}
+    panel.plot(x, values, color=BLUE, linewidth=1.5, **few)  # type: ignore[arg-type]
+    panel.set_xlim(limits(x.min(), x.max(), 0.02))
+    panel.set_ylim(limits(np.nanmin(values), np.nanmax(values)))
+    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
+    missing = [int(n) for n in np.flatnonzero(np.isnan(values))]
+    for start in missing:
+        low = 0.5 * (x[start] + x[max(start - 1, 0)])
+        high = 0.5 * (x[start] + x[min(start + 1, len(x) - 1)])
+        panel.axvspan(low, high, color=SHADE, linewidth=0, zorder=0)
+    if missing:
+        panel.set_title("shaded: no value", fontsize=SMALL, loc="right", color=MUTED)
+
+
+def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, head: str) -> None:
+    panel.set_facecolor(SHADE)
+    panel.grid(False)
+    shown: Any = np.ma.masked_invalid(values.T)
+    if is_constant(shown.compressed()):
+        panel.figure.colorbar(panel.pcolormesh(*grids, shown, cmap=colours(), shading="nearest"), cax=scale)
+    else:
+        filled = panel.contourf(*grids, shown, levels=_LEVELS, cmap=colours())
+        lines = panel.contour(*grids, shown, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
+        # Instead of labels, which crowd near locking.
+        panel.figure.colorbar(filled, cax=scale).add_lines(lines)
+    panel.set_xlim(grids[0].min(), grids[0].max())
+    panel.set_ylim(grids[1].min(), grids[1].max())
+    dress(scale)
+    scale.grid(False)
+    scale.xaxis.set_visible(False)
+    scale.yaxis.tick_right()
+    scale.spines[:].set_visible(False)
+    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
+    if np.isnan(values).any():
+        panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)
+
+
+def draw_sweep(
+    table: pd.DataFrame,
+    axes: Sequence[Axis],
+    of: Sequence[Quantity],
+    folder: Path,
+    *,
+    title: str,
+    system: System = "metric",
+) -> Path:
+    """Write the figure of a sweep as sweep.png, in the units of a system; return the file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    save(sweep_figure(table, axes, of, title=title, system=system), folder / "sweep.png")
+    return folder / "sweep.png"

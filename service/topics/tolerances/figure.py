@@ -1,0 +1,136 @@
+"""Position error of one design over the cycle: worst case, root-sum-square and Monte Carlo bands; its sources."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ....model.cycle.cycle import cycle
+from ....model.errors import AssemblyError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.tolerance.exact import extremes
+from ....model.tolerance.first_order import shares
+from ....model.tolerance.monte_carlo import simulate, variances
+from ....model.tolerance.sources import SOURCES, limits
+from ...figures.style import (
+    BLUE,
+    FRAME,
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    TITLE,
+    VERMILION,
+    dress,
+    new_figure,
+    place,
+    save,
+    write,
+)
+
+Array = NDArray[np.float64]
+SAMPLES, ANGLES = 10_000, 181
+PERCENTS = (0.135, 5.0, 95.0, 99.865)
+_GREYS = ("#404040", "#a8a8a8", "#6e6e6e", "#d4d4d4", "#8c8c8c", "#c0c0c0", "#565656", "#ebebeb")
+_HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
+
+
+@dataclass(frozen=True)
+class Bands:
+    """Deviations of the slider over the cycle, mm, each (m,), at crank angles, deg.
+
+    least, greatest: exact; None where a linkage within the tolerances does not turn. percentiles: (4, m), `PERCENTS`.
+    shares: (s, m), of the variance, in percent, of the sources named.
+    """
+
+    angles: Array
+    worst_case: Array
+    root_sum_square: Array
+    least: Array | None
+    greatest: Array | None
+    percentiles: Array
+    sources: tuple[str, ...]
+    shares: Array
+
+
+def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLES, seed: int = 1) -> Bands:
+    """Return the bands of one fully turning linkage over a whole turn, whatever part of it counts."""
+    theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
+    least = greatest = None
+    with contextlib.suppress(AssemblyError):
+        exact = extremes(mechanism, linkage, theta)
+        least, greatest = 1e3 * exact.least, 1e3 * exact.greatest
+    linear = cycle(mechanism, linkage, theta)
+    errors = simulate(mechanism, linkage, theta, samples=samples, seed=seed).errors
+    there = limits(mechanism, linkage) > 0.0
+    return Bands(
+        np.degrees(theta),
+        1e3 * linear.position_error,
+        1e3 * linear.position_error_rss,
+        least,
+        greatest,
+        1e3 * np.nanpercentile(errors, PERCENTS, axis=0),
+        tuple(name for name, given in zip(SOURCES, there, strict=True) if given),
+        100.0 * shares(variances(mechanism, linkage, theta))[there],
+    )
+
+
+def tolerances_figure(bands: Bands) -> Figure:
+    """Return the figure: above the bands, below where they come from."""
+    figure = new_figure(9.2, 7.2)
+    write(figure, 0.3, 6.9, "Position error of the slider from tolerances", fontsize=TITLE, weight="bold")
+    upper, lower = place(figure, 0.8, 3.35, 5.9, 3.25), place(figure, 0.8, 0.65, 5.9, 2.2)
+    for panel in (upper, lower):
+        dress(panel, up=6)
+        panel.set_xlim(0, 360)
+        panel.set_xticks(range(0, 361, 45))
+    low, inner_low, inner_high, high = bands.percentiles
+    upper.fill_between(bands.angles, low, high, color="#e4e4e4", linewidth=0, label="Monte Carlo, 99.73 %")
+    upper.fill_between(bands.angles, inner_low, inner_high, color="#bdbdbd", linewidth=0, label="Monte Carlo, 90 %")
+    for sign, label in ((1.0, "worst case, first order"), (-1.0, None)):
+        upper.plot(bands.angles, sign * bands.worst_case, color=BLUE, linewidth=1.6, label=label)
+    if bands.least is not None and bands.greatest is not None:
+        exact = {"color": VERMILION, "linewidth": 1.2, "linestyle": (0, (5, 3))}
+        upper.plot(bands.angles, bands.greatest, **exact, label="worst case, exact")  # type: ignore[arg-type]
+        upper.plot(bands.angles, bands.least, **exact)  # type: ignore[arg-type]
+    for sign, label in ((1.0, "root-sum-square"), (-1.0, None)):
+        upper.plot(bands.angles, sign * bands.root_sum_square, color=INK, linewidth=1.2, linestyle=":", label=label)
+    upper.axhline(0.0, color=FRAME, linewidth=0.8)
+    upper.set_ylabel("deviation along the line, mm", fontsize=TEXT)
+    lower.set_ylabel("share of the variance, %", fontsize=TEXT)
+    lower.set_xlabel("crank angle, deg", fontsize=TEXT)
+    lower.set_ylim(0, 100)
+    stack = lower.stackplot(
+        bands.angles, bands.shares, labels=bands.sources, colors=_GREYS, edgecolor="white", linewidth=0.4
+    )
+    for part, hatch in zip(stack, _HATCHES, strict=False):
+        part.set_hatch(hatch)
+    for panel in (upper, lower):
+        handles, labels = panel.get_legend_handles_labels()
+        order = slice(None, None, -1) if panel is lower else slice(None)  # as stacked
+        panel.legend(
+            handles[order],
+            labels[order],
+            loc="upper left",
+            bbox_to_anchor=(1.02, 1.0),
+            fontsize=SMALL,
+            frameon=False,
+            borderaxespad=0.0,
+            handlelength=2.4,
+            handleheight=1.1,
+        )
+    note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
+    write(figure, 0.8, 6.68, note, color=MUTED, fontsize=SMALL)
+    return figure
+
+
+def draw_tolerances(mechanism: Mechanism, linkage: Linkage, path: Path) -> Path:
+    """Write the figure of one linkage as PNG; return the file."""
+    save(tolerances_figure(error_bands(mechanism, linkage)), path)
+    return path

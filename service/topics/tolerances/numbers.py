@@ -1,0 +1,113 @@
+"""Position error of one design from tolerances: worst case, root-sum-square, exact, Monte Carlo, contributions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ....model.errors import AssemblyError, InputError
+
+if TYPE_CHECKING:
+    from ....model.linkage.linkage import Linkage
+    from ....model.machine.mechanism import Mechanism
+    from ....optimise.front.stationarity import Array
+
+SAMPLES = 20_000
+BINS = 40  # of the histogram
+
+
+def numbers(
+    mechanism: Mechanism, linkage: Linkage, *, limit: float | None = None, samples: int = SAMPLES, seed: int = 1
+) -> dict[str, Any]:
+    """Return what the tolerances of a mechanism do to the slider position of one linkage, ready for JSON.
+
+    limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
+    case are given. Shares are those at the crank angle of the first-order worst case, of the variance as simulated.
+    The exact worst case is None where a linkage within the tolerances does not turn. The histogram counts machines by
+    their greatest error, in even bins from 0. Raises `InputError` if there are
+    no tolerances.
+    """
+    import numpy as np
+
+    from ....model.signals.peaks import find_peaks
+    from ....model.signals.signals import Signal
+    from ....model.tolerance.exact import worst
+    from ....model.tolerance.first_order import shares
+    from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
+    from ....model.tolerance.sources import SOURCES, limits, source_influences
+
+    reach = limits(mechanism, linkage)
+    if not np.any(reach):
+        raise InputError(
+            'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+        )
+    design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+    first, square = (
+        find_peaks(mechanism, signal, design, kept=1) for signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+    )
+    worst_case, rss = float(first.values[0, 0]), float(square.values[0, 0])
+    try:
+        exact = worst(mechanism, linkage)
+    except AssemblyError:
+        exact = None
+    parts = (np.abs(source_influences(mechanism, linkage, first.angles[0])) * reach[:, None])[:, :1]
+    of_worst, of_variance = (
+        100.0 * shares(parts)[:, 0],
+        100.0 * shares(variances(mechanism, linkage, first.angles[0]))[:, 0],
+    )
+    simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
+    spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
+    limits_wanted = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
+    yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in limits_wanted.items()]
+    return {
+        "worst_case_mm": 1e3 * worst_case,
+        "worst_case_angle_deg": float(np.degrees(first.angles[0, 0])),
+        "exact_worst_case_mm": None if exact is None else 1e3 * exact.size,
+        "exact_worst_case_angle_deg": None if exact is None else float(np.degrees(exact.crank_angle)),
+        "root_sum_square_mm": 1e3 * rss,
+        "root_sum_square_angle_deg": float(np.degrees(square.angles[0, 0])),
+        "contributions": [
+            {
+                "source": name,
+                "limit_mm": None if name == "crank angle" else 1e3 * float(reach[n]),
+                "limit_deg": float(np.degrees(reach[n])) if name == "crank angle" else None,
+                "contribution_mm": 1e3 * float(parts[n, 0]),
+                "share_of_worst_case_percent": float(of_worst[n]),
+                "share_of_variance_percent": float(of_variance[n]),
+            }
+            for n, name in enumerate(SOURCES)
+            if reach[n] > 0.0
+        ],
+        "monte_carlo": {
+            "samples": len(simulation.greatest),
+            "seed": seed,
+            "stuck": simulation.stuck,
+            "mean_greatest_mm": None if spread is None else 1e3 * spread.mean,
+            "standard_deviation_greatest_mm": None if spread is None else 1e3 * spread.deviation,
+            "percentiles_greatest_mm": {
+                f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
+            },
+            "histogram": _histogram(simulation.greatest),
+        },
+        "yields": [
+            {
+                "limit": name,
+                "limit_mm": 1e3 * value,
+                "yield_percent": 100.0 * found.share,
+                "yield_low_percent": 100.0 * found.low,
+                "yield_high_percent": 100.0 * found.high,
+                "confidence_percent": 100.0 * found.confidence,
+            }
+            for name, value, found in yields
+        ],
+    }
+
+
+def _histogram(greatest: Array) -> dict[str, list[float] | list[int]] | None:
+    """Return edges, mm, and counts of the machines that turn; None if none does."""
+    import numpy as np
+
+    turning = 1e3 * greatest[np.isfinite(greatest)]
+    if not len(turning) or not turning.max() > 0.0:
+        return None
+    counts, edges = np.histogram(turning, bins=BINS, range=(0.0, float(turning.max())))
+    return {"edges_mm": edges.tolist(), "counts": counts.tolist()}

@@ -1,0 +1,80 @@
+"""A topic of one design: what `analyse --show` can add."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic, declared by its folder, which has the modules `numbers`, `text` and `figure`.
+
+    package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
+    shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
+    the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. prepares:
+    whether `numbers.prepare` gives further options for numbers and figure.
+    """
+
+    package: str
+    place: int
+    shows: str
+    needs_job: bool = True
+    tells: tuple[str, ...] = ()
+    of_numbers_only: tuple[str, ...] = ()
+    prepares: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name in `--show`, in JSON and of the figure's file."""
+        return self.package.rpartition(".")[2]
+
+    def of(self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None) -> TopicOfDesign:
+        """Return the topic of one design. options: of the topic's `numbers`."""
+        return TopicOfDesign(self, mechanism, linkage, dict(options or {}))
+
+
+@dataclass(frozen=True)
+class TopicOfDesign:
+    """A topic of one design, with its options."""
+
+    topic: Topic
+    mechanism: Mechanism
+    linkage: Linkage
+    options: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Name of the topic."""
+        return self.topic.name
+
+    def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
+        """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
+        module = self._module("numbers")
+        if self.topic.prepares:
+            self.options.update(module.prepare(self.mechanism, self.linkage, cancelled))
+        found: dict[str, Any] = module.numbers(self.mechanism, self.linkage, **self.options)
+        return found
+
+    def show(self, screen: Console, numbers: dict[str, Any]) -> None:
+        """Write the topic's numbers for people."""
+        self._module("text").show(screen, numbers)
+
+    def draw(self, folder: Path) -> Path:
+        """Write the topic's figure into a folder; return the file."""
+        options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
+        draw = getattr(self._module("figure"), f"draw_{self.name}")
+        file: Path = draw(self.mechanism, self.linkage, folder / f"{self.name}.png", **options)
+        return file
+
+    def _module(self, part: str) -> Any:
+        return import_module(f"{self.topic.package}.{part}")

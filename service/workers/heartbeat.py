@@ -1,0 +1,162 @@
+"""The heartbeat of a claimed job: a thread beside its search that keeps the lease and sees what the search cannot."""
+
+from __future__ import annotations
+
+import contextlib
+import contextvars
+import logging
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+
+from ...model.errors import LeaseLost, StoreError
+from ..resources.memory import Memory
+from ..resources.sizes import size_text
+from ..store import NOT_DONE, Claim
+
+_log = logging.getLogger(__name__)
+PULSE = 0.25
+"""Time between two beats, s: a cancelled job has to end within 2 s, of which its search takes up to one to hear."""
+EXHAUSTED = 75
+"""Exit code of a process whose job took more memory than it may; another process is to take its place."""
+DEAF = 76
+"""Exit code of a process whose search did not end when it was told to; another process is to take its place."""
+_HEARS = 60.0  # s that a search has to end once it is told to: a kernel that is being compiled hears of nothing
+Stop = Callable[[], bool]
+
+
+class Heartbeat:
+    """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
+
+    lost: why the job is not this worker's any more, in words; empty as long as it is.
+    """
+
+    def __init__(
+        self,
+        claim: Claim,
+        *,
+        memory: int | None = None,
+        taken: Memory | None = None,
+        over: Callable[[], str] | None = None,
+        stop: Stop | None = None,
+        grace: float | None = None,
+        patience: float | None = None,
+    ) -> None:
+        """Care for a claim.
+
+        memory: what the job may take, in bytes, as `taken` measures it. Beyond it the job is set aside as failed and
+        the process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
+        over: says why the search is to end with what it has, nothing as long as it is not. Where it does not within a
+        minute, also after a cancellation, the job ends without it and the process with the exit code `DEAF`; only where
+        there is a grace, too.
+        grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
+        ends with 0. For as long as it takes, if None.
+        patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
+        does one whose worker is to stop: nothing is lost. While a search loads or compiles what it computes with, it
+        hears of nothing. For as long as it takes, if None.
+        """
+        self.claim = claim
+        self.lost = ""
+        self._memory = memory
+        self._taken = taken or Memory()
+        self._over = over or (lambda: "")
+        self._told: float | None = None
+        self._stop = stop or (lambda: False)
+        self._grace = grace
+        self._patience = patience
+        self._cancelled: float | None = None
+        self._asked: float | None = None
+        self._end = threading.Event()
+        beat = contextvars.copy_context().run  # so that its logs are about the same job
+        self._thread = threading.Thread(
+            target=beat, args=(self._beat,), name=f"heartbeat of job {claim.job.id}", daemon=True
+        )
+
+    def __enter__(self) -> Heartbeat:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end.set()
+        self._thread.join()
+
+    def _beat(self) -> None:
+        lease = self.claim.lease
+        while not self.lost and not self._end.wait(min(PULSE, lease / 10.0)):
+            self._look_at_memory()
+            self._look_at_stop()
+            self._look_at_deaf()
+            try:
+                if self.claim.age > lease / 3.0 or self.claim.astray:
+                    self.claim.renew()
+                else:
+                    self.claim.look()
+                self._look_at_cancel()
+            except LeaseLost:
+                if not self._end.is_set():  # at the end of a job it is given up as it should be
+                    self.lost = "its lease has ended; another worker goes on from what was committed"
+            except StoreError:
+                pass  # the writes of the search find out whether it stays so
+
+    def _look_at_cancel(self) -> None:
+        if self._patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
+            return
+        self._cancelled = time.monotonic() if self._cancelled is None else self._cancelled
+        if time.monotonic() - self._cancelled >= self._patience:
+            self.claim.give_up()
+            self.lost = "it was cancelled before its search began"
+
+    def _look_at_memory(self) -> None:
+        taken = self._taken.of_the_job() if self._memory is not None else 0
+        if self._memory is None or taken <= self._memory or self._end.is_set():
+            return
+        reason = (
+            f"it may take {size_text(self._memory)} of memory; its worker took {size_text(taken)}; "
+            "give it a higher limit, or ask for less"
+        )
+        _log.error("set aside: %s", reason)
+        with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends, and it counts as an attempt
+            self.claim.fail(reason, again=False)
+        leave(EXHAUSTED)
+
+    def _look_at_deaf(self) -> None:
+        reason = NOT_DONE if self.claim.cancel_asked else self._over()
+        if self._grace is None or not reason:
+            return
+        self._told = time.monotonic() if self._told is None else self._told
+        if time.monotonic() - self._told < _HEARS or self._end.is_set():
+            return
+        _log.error("ended: its search did not within %g s of being told to", _HEARS)
+        try:
+            self.claim.give_up(f"{reason}; its search did not end when it was told to")
+        except (LeaseLost, StoreError):
+            return  # it has ended after all; or its writes find out
+        leave(DEAF)
+
+    def _look_at_stop(self) -> None:
+        if self._grace is None or not self._stop():
+            return
+        self._asked = time.monotonic() if self._asked is None else self._asked
+        begun = self.claim.begun or self._patience is None
+        grace = self._grace if begun else min(self._grace, self._patience or 0.0)
+        if time.monotonic() - self._asked < grace or self._end.is_set():
+            return
+        where = "in the middle of a round" if begun else "before its search began"
+        _log.warning("handed back: its worker stopped %s", where)
+        with contextlib.suppress(LeaseLost, StoreError):
+            self.claim.hand_back(f"its worker stopped {where}; another one goes on")
+        leave(0)
+
+
+def leave(code: int) -> None:
+    """End this process at once, whatever its other threads do, and before it its children with their groups."""
+    import psutil
+
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error, OSError):
+            if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:
+                os.killpg(child.pid, signal.SIGKILL)
+            child.kill()
+    os._exit(code)
