@@ -39,11 +39,11 @@ requests: $(VENV)/.installed-test
 
 # Kills, pauses, crashes of databases, full disks: about half an hour.
 faults: $(VENV)/.installed-test
-	$(BIN)/python -m faults
+	$(BIN)/python -m tests.faults
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
-	find .package model objectives optimise service tests benchmarks faults -name __pycache__ -prune -exec rm -rf {} +
+	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \

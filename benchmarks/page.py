@@ -15,9 +15,9 @@ from statistics import quantiles
 from playwright.sync_api import Browser, Page
 
 from slidercrank.service.store import Store
+from tests.service.page.browser import chromium
 from tests.service.page.large_front import put_large
 
-from .browser import address_of, chromium
 from .report import Row, machine, show
 from .service_process import service
 
@@ -74,7 +74,7 @@ def measure() -> list[Row]:
             number = put_large(store, DESIGNS)
         for _ in range(REPEATS):
             with service(str(file), Path(place), workers=0) as running:
-                view = address_of(running, f"jobs/{number}")
+                view = running.address_of(f"jobs/{number}")
                 cold.append(_first_view(browser, view)[0])
                 taken, page = _first_view(browser, view)
                 warm.append(taken)

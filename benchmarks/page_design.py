@@ -16,8 +16,8 @@ from playwright.sync_api import Browser, Page
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
+from tests.service.page.browser import chromium
 
-from .browser import address_of, chromium
 from .report import Row, machine, show
 from .service_process import Service, service
 
@@ -79,7 +79,7 @@ def measure(browser: Browser, running: Service, job: int) -> list[Row]:
     page = browser.new_page(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
     found = []
     for what, query in (("one design", ""), ("three designs and their forces", "?beside=2,3")):
-        page.goto(address_of(running, f"jobs/{job}/designs/1{query}"))
+        page.goto(running.address_of(f"jobs/{job}/designs/1{query}"))
         page.locator(".trade-offs li").first.wait_for()
         page.get_by_role("checkbox", name="Forces").set_checked(bool(query))
         page.wait_for_timeout(500)

@@ -21,8 +21,8 @@ from slidercrank.service.figures import draw_front
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
+from tests.service.page.browser import chromium
 
-from .browser import address_of, chromium
 from .service_process import service
 
 FOLDER = Path(__file__).parents[1] / "docs"
@@ -90,7 +90,7 @@ def _feeder() -> Iterator[tuple[Callable[[str, int, Callable[[Page], None]], Pag
                     viewport={"width": 1280, "height": height}, reduced_motion="reduce", color_scheme="light"
                 )
                 shown = context.new_page()
-                shown.goto(address_of(running, view))
+                shown.goto(running.address_of(view))
                 ready(shown)
                 return shown
 

@@ -17,10 +17,10 @@ from typing import Any
 
 import httpx
 
-from faults.jobs import tables
-from faults.places import place
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
+from tests.faults.jobs import tables
+from tests.faults.places import place
 
 from .report import Row, machine, show
 from .service_process import headers, service

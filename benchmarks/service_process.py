@@ -14,7 +14,7 @@ from pathlib import Path
 import httpx
 import psutil
 
-from faults.lifeline import die_with_parent
+from tests.faults.lifeline import die_with_parent
 
 TOKEN = "a-token-of-the-benchmarks"
 _PATIENCE = 120.0  # s to start
@@ -31,6 +31,10 @@ class Service:
         """Return how much time of the processor the API has taken, s."""
         times = self.process.cpu_times()
         return float(times.user + times.system)
+
+    def address_of(self, view: str) -> str:
+        """Return the address of a view, such as "jobs/1", for a browser that has not been there yet."""
+        return f"{self.url.removesuffix('api/v1/')}?token={TOKEN}#/{view}"
 
 
 @contextmanager

@@ -205,7 +205,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
 
 def main() -> None:
     """Measure both kinds of store and print the figures."""
-    from faults.places import place
+    from tests.faults.places import place
 
     print(machine())
     kinds = sys.argv[1:] or ("sqlite", "postgresql")

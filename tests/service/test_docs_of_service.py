@@ -22,9 +22,9 @@ import pytest
 from distributed import Client
 from sqlalchemy import create_engine
 
-from faults.dask_faults import ROBUST
 from slidercrank.service.api.server import listen
 from slidercrank.service.store import Store
+from tests.faults.dask_faults import ROBUST
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.store import postgresql

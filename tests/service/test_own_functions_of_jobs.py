@@ -13,10 +13,10 @@ from pathlib import Path
 import psutil
 import pytest
 
-from faults.serving import Serving, alive, says
 from slidercrank.objectives.own.worker import Worker
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import Terms, work
+from tests.faults.serving import Serving, alive, says
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")
 BUSY = 1.0  # s that a busy machine may add

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from faults.dask_cluster import DaskCluster
 from slidercrank.optimise.engine.cluster import Cluster
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.engine.serial import Serial
+from tests.faults.dask_cluster import DaskCluster
 
 
 @pytest.fixture(scope="session")

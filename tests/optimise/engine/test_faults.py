@@ -12,10 +12,10 @@ from pathlib import Path
 import psutil
 import pytest
 
-from faults.dask_cluster import DaskCluster
 from slidercrank.model.errors import EngineError, InputError
 from slidercrank.optimise.engine.cluster import Cluster, Tls
 from slidercrank.optimise.engine.processes import Processes
+from tests.faults.dask_cluster import DaskCluster
 from tests.optimise.engine import work
 
 

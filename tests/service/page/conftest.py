@@ -10,10 +10,10 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, Page
 
-from benchmarks.browser import BROWSERS, browser_path, chromium
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import served
+from tests.service.page.browser import BROWSERS, browser_path, chromium
 
 Open = Callable[..., Page]
 

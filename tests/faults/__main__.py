@@ -1,6 +1,6 @@
-"""Inject faults and print what came of the jobs: `make faults`, or `python -m faults` in the project's folder.
+"""Inject faults and print what came of the jobs: `make faults`, or `python -m tests.faults` in the project's folder.
 
-    python -m faults kills --store sqlite --count 200 --seed 1
+    python -m tests.faults kills --store sqlite --count 200 --seed 1
 
 Exits with 1 if anything is not as it has to be.
 """

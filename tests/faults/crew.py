@@ -25,7 +25,7 @@ class Crew:
         self.deaths: dict[str, float] = {}
         self._options = (address, lease, journal, pause)
         self._context = get_context("forkserver")
-        self._context.set_forkserver_preload(["faults.warm", main.__module__])
+        self._context.set_forkserver_preload(["tests.faults.warm", main.__module__])
         self._names = (f"w{number}" for number in count(1))
         self._workers: dict[str, BaseProcess] = {}
         self.fill()

@@ -6,17 +6,17 @@ import sys
 
 import pytest
 
-from faults.commits import commits
-from faults.dask_faults import strike
-from faults.disk import disk
-from faults.flood import flood
-from faults.full import full
-from faults.kills import kills
-from faults.pauses import pauses
-from faults.places import Kind
-from faults.restarts import restarts
-from faults.runaway import runaway
-from faults.small_disk import small_disk
+from tests.faults.commits import commits
+from tests.faults.dask_faults import strike
+from tests.faults.disk import disk
+from tests.faults.flood import flood
+from tests.faults.full import full
+from tests.faults.kills import kills
+from tests.faults.pauses import pauses
+from tests.faults.places import Kind
+from tests.faults.restarts import restarts
+from tests.faults.runaway import runaway
+from tests.faults.small_disk import small_disk
 from tests.service.store import postgresql
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux")

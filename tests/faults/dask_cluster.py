@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Self
 
 START = 120.0
-_HERE = str(Path(__file__).parents[1])  # what is given out may be a function of the harness or of the tests
+_HERE = str(Path(__file__).parents[2])  # what is given out may be a function of the harness or of the tests
 _QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 

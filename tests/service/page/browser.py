@@ -8,8 +8,6 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, sync_playwright
 
-from .service_process import TOKEN, Service
-
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -28,8 +26,3 @@ def chromium() -> Iterator[Browser]:
         browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox", "--disable-dev-shm-usage"])
         yield browser
         browser.close()
-
-
-def address_of(running: Service, view: str) -> str:
-    """Return the address of a view, such as "jobs/1", for a browser that has not been there yet."""
-    return f"{running.url.removesuffix('api/v1/')}?token={TOKEN}#/{view}"
