@@ -4,16 +4,25 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test test-rounding lint benchmark pictures requests faults clean
+.PHONY: run test test-slow test-rounding lint check benchmark pictures requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed
 	$(BIN)/slidercrank optimise runs/feeder.toml
 
+# Tests start hundreds of processes, and each would compile all sources.
+export PYTHONDONTWRITEBYTECODE :=
+
 # One more than processors, since many tests wait for processes and pages; at most 8: each one loads its own numba.
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8
+	@$(BIN)/python -m tests.kernels
+	$(PYTEST) -m 'not slow'
+
+# Faults, installed copies, long walks through API and documentation: minutes for a few tests.
+test-slow: $(VENV)/.installed-test
+	$(PYTEST) -m slow
 
 # The numbers with another rounding: neither fused multiply-add nor this processor's wide vectors. A part that takes a
 # minute and a half; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"
@@ -26,11 +35,18 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# While working: lint, types, and the tests of what differs from a branch. tests/changed.py says which these are.
+BASE ?= main
+check: $(VENV)/.installed-test lint
+	@files=$$($(BIN)/python -m tests.changed $(BASE)) || exit; \
+	if test -z "$$files"; then echo 'no test belongs to what differs from $(BASE)'; \
+	else $(BIN)/python -m pytest -q -m 'not slow' $$files; code=$$?; test $$code -eq 5 || exit $$code; fi
+
 benchmark: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks
 
 # The pictures of README and docs, on a quiet machine: their times are seen.
-pictures: $(VENV)/.installed-benchmark $(VENV)/.kernels
+pictures: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks.pictures
 
 # Requests made from the description of the API: about twenty minutes.

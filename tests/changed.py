@@ -1,0 +1,52 @@
+"""Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
+
+They are the test files that differ, and for every source file that differs those of its name in the mirrored folder:
+`optimise/solve.py` has `tests/optimise/test_solve*.py`, a package all tests of its mirrored folder.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+SOURCES = ("model", "objectives", "optimise", "service", "benchmarks")
+
+
+def tests_of(file: Path, root: Path) -> list[Path]:
+    """Return the test files that belong to a file, by paths from the top."""
+    if file.suffix != ".py":
+        return []
+    if file.parts[0] == "tests" and file.name.startswith("test_"):
+        return [file] if (root / file).is_file() else []
+    if file.parts[0] not in SOURCES:
+        return []
+    pattern = "test_*.py" if file.name == "__init__.py" else f"test_{file.stem}*.py"
+    if file.parts[1:] == ("__init__.py",):  # a whole folder at the top: `make test`
+        return []
+    return sorted(found.relative_to(root) for found in (root / "tests" / file.parent).glob(pattern))
+
+
+def changed(branch: str, root: Path) -> list[Path]:
+    """Return the files that differ from where a branch was left, those not yet committed or added among them."""
+    base = _git(root, "merge-base", branch, "HEAD")
+    names = _git(root, "diff", "--name-only", *base, "--"), _git(root, "ls-files", "--others", "--exclude-standard")
+    return [Path(name) for found in names for name in found]
+
+
+def _git(root: Path, *arguments: str) -> list[str]:
+    done = subprocess.run(["git", *arguments], cwd=root, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"git {' '.join(arguments)}: {done.stderr.strip()}")
+    return done.stdout.splitlines()
+
+
+def main(branch: str) -> None:
+    """Print them."""
+    root = Path.cwd()
+    for test in sorted({test for file in changed(branch, root) for test in tests_of(file, root)}):
+        print(test)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,61 @@
+"""Compile the kernels that tests need, several at a time: `python -m tests.kernels`.
+
+Workers of a test run would come to the same kernel together, and all but one would wait for it. What is missing here
+is compiled by the first test that needs it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+
+from slidercrank.model.cycle import cycle
+from slidercrank.model.linkage import Linkage
+from slidercrank.model.self_locking import locking_margin
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.solve import solve
+from tests.faults.jobs import tables
+from tests.model.cases import SMOOTH, random_designs, random_friction, random_machine
+
+_DESIGNS = random_designs(4, seed=1, least_margin=0.5)
+
+
+def smooth() -> None:
+    """Evaluate every quantity of a machine without friction."""
+    for quantity in QUANTITIES.values():
+        quantity.evaluate(SMOOTH, _DESIGNS, gradients=True)
+
+
+def rubbing() -> None:
+    """Evaluate every quantity of a machine with friction."""
+    import dataclasses
+
+    random = np.random.default_rng(9)
+    machine = dataclasses.replace(random_machine(random), friction=random_friction(random))
+    for quantity in reversed(QUANTITIES.values()):
+        quantity.evaluate(machine, _DESIGNS, gradients=True)
+    locking_margin(random_friction(random), _DESIGNS)
+    cycle(machine, Linkage(*_DESIGNS[0]), np.linspace(0.0, 6.0, 8))
+
+
+def search() -> None:
+    """Solve a small job."""
+    cycle(SMOOTH, Linkage(*_DESIGNS[0]), np.linspace(0.0, 6.0, 8))
+    solve(parse_job(tables("auto")))
+
+
+def main() -> None:
+    """Run them at the same time, as many as there are processors."""
+    parts: tuple[Callable[[], None], ...] = (rubbing, smooth, search)
+    with ProcessPoolExecutor(os.cpu_count(), get_context("spawn")) as pool:
+        for done in [pool.submit(part) for part in parts]:
+            done.result()
+
+
+if __name__ == "__main__":
+    main()
