@@ -15,7 +15,7 @@ export PYTHONDONTWRITEBYTECODE :=
 
 # One more than processors, since many tests wait for processes and pages; at most 8: each one loads its own numba.
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
-PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
 test: $(VENV)/.installed-test
 	@$(BIN)/python -m tests.kernels
 	$(PYTEST) -m 'not slow'

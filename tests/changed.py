@@ -1,7 +1,7 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
-They are the test files that differ, and for every source file that differs those of its name in the mirrored folder:
-`optimise/solve.py` has `tests/optimise/test_solve*.py`, a package all tests of its mirrored folder.
+They are the test files that differ, and those named after a source file that differs, anywhere under the mirror of its
+folder at the top: `optimise/solve.py` has `tests/optimise/**/test_solve*.py`. A package goes by the name of its folder.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 SOURCES = ("model", "objectives", "optimise", "service", "benchmarks")
 
 
-def tests_of(file: Path, root: Path) -> list[Path]:
+def belonging(file: Path, root: Path) -> list[Path]:
     """Return the test files that belong to a file, by paths from the top."""
     if file.suffix != ".py":
         return []
@@ -21,10 +21,8 @@ def tests_of(file: Path, root: Path) -> list[Path]:
         return [file] if (root / file).is_file() else []
     if file.parts[0] not in SOURCES:
         return []
-    pattern = "test_*.py" if file.name == "__init__.py" else f"test_{file.stem}*.py"
-    if file.parts[1:] == ("__init__.py",):  # a whole folder at the top: `make test`
-        return []
-    return sorted(found.relative_to(root) for found in (root / "tests" / file.parent).glob(pattern))
+    name = file.parent.name if file.name == "__init__.py" else file.stem
+    return sorted(found.relative_to(root) for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
 
 
 def changed(branch: str, root: Path) -> list[Path]:
@@ -44,7 +42,7 @@ def _git(root: Path, *arguments: str) -> list[str]:
 def main(branch: str) -> None:
     """Print them."""
     root = Path.cwd()
-    for test in sorted({test for file in changed(branch, root) for test in tests_of(file, root)}):
+    for test in sorted({test for file in changed(branch, root) for test in belonging(file, root)}):
         print(test)
 
 

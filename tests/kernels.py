@@ -6,6 +6,7 @@ is compiled by the first test that needs it.
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -13,14 +14,13 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from slidercrank.model.cycle import cycle
-from slidercrank.model.linkage import Linkage
-from slidercrank.model.self_locking import locking_margin
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.self_locking import locking_margin
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from tests.faults.jobs import tables
 from tests.model.cases import SMOOTH, random_designs, random_friction, random_machine
+from tests.optimise.problems import problem
 
 _DESIGNS = random_designs(4, seed=1, least_margin=0.5)
 
@@ -33,8 +33,6 @@ def smooth() -> None:
 
 def rubbing() -> None:
     """Evaluate every quantity of a machine with friction."""
-    import dataclasses
-
     random = np.random.default_rng(9)
     machine = dataclasses.replace(random_machine(random), friction=random_friction(random))
     for quantity in reversed(QUANTITIES.values()):
@@ -46,7 +44,7 @@ def rubbing() -> None:
 def search() -> None:
     """Solve a small job."""
     cycle(SMOOTH, Linkage(*_DESIGNS[0]), np.linspace(0.0, 6.0, 8))
-    solve(parse_job(tables("auto")))
+    solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=6, samples=128))
 
 
 def main() -> None:

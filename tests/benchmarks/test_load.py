@@ -12,6 +12,7 @@ from benchmarks.service_load import load
 from benchmarks.store_scale import measure
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="workers of the benchmark are stopped by signals of POSIX systems")
 def test_clients_at_once_see_no_errors_and_miss_no_events(tmp_path: Path) -> None:
     address = str(tmp_path / "store.db")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.changed import changed, main, tests_of
+from tests.changed import belonging, changed, main
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in (
         *("optimise/solve.py", "optimise/job/__init__.py", "optimise/job/text.py", "optimise/__init__.py"),
         *("tests/optimise/test_solve.py", "tests/optimise/test_solve_robust.py", "tests/optimise/test_other.py"),
-        *("tests/optimise/job/test_text.py", "tests/optimise/job/test_box.py", "tests/optimise/problems.py"),
+        *("tests/optimise/job/test_text.py", "tests/optimise/test_job_box.py", "tests/optimise/problems.py"),
     ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
@@ -35,7 +35,7 @@ def git(folder: Path, *arguments: str) -> None:
     ("file", "tests"),
     [
         ("optimise/solve.py", ["tests/optimise/test_solve.py", "tests/optimise/test_solve_robust.py"]),
-        ("optimise/job/__init__.py", ["tests/optimise/job/test_box.py", "tests/optimise/job/test_text.py"]),
+        ("optimise/job/__init__.py", ["tests/optimise/test_job_box.py"]),
         ("optimise/job/text.py", ["tests/optimise/job/test_text.py"]),
         ("tests/optimise/test_other.py", ["tests/optimise/test_other.py"]),
         ("tests/optimise/test_deleted.py", []),
@@ -45,7 +45,7 @@ def git(folder: Path, *arguments: str) -> None:
     ],
 )
 def test_a_file_has_its_own_tests_and_those_of_its_name(project: Path, file: str, tests: list[str]) -> None:
-    assert [str(found) for found in tests_of(Path(file), project)] == tests
+    assert [str(found) for found in belonging(Path(file), project)] == tests
 
 
 def test_what_is_committed_edited_or_new_since_main_was_left_differs(

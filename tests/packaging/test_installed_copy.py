@@ -22,6 +22,8 @@ print(slidercrank.__file__, round(float(stroke[0]), 12))
 
 COMPILES = "slidercrank compiles its formulas, once after installation: up to a minute\n"
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def copy(tmp_path: Path, pytestconfig: pytest.Config) -> Path:

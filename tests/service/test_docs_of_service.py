@@ -113,6 +113,7 @@ def asked(url: str, token: str, *, job: str | None = None) -> object:
         return json.load(response)
 
 
+@pytest.mark.slow
 def test_the_service_in_five_lines_with_backup_and_restore(docs: Path, tmp_path: Path) -> None:
     terminal = Terminal(tmp_path)
     serve, *others = commands(docs, "")[:5]
@@ -173,6 +174,7 @@ def finished(dask_scheduler: Any) -> int:
     return sum(sum(group.all_durations.values()) > 0 for group in groups if group.name.startswith("slidercrank"))
 
 
+@pytest.mark.slow
 def test_postgresql_with_two_workers_and_a_dask_cluster(
     docs: Path, server: tuple[str, Path], tmp_path: Path, free_port: int
 ) -> None:

@@ -19,7 +19,10 @@ from tests.faults.runaway import runaway
 from tests.faults.small_disk import small_disk
 from tests.service.store import postgresql
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux"),
+]
 needs_server = pytest.mark.skipif(postgresql.why_not() is not None, reason=str(postgresql.why_not()))
 both = pytest.mark.parametrize("kind", ["sqlite", pytest.param("postgresql", marks=needs_server)])
 

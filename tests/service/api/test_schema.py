@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import httpx
+import pytest
 
 from tests.service.api import schema_cases
 
@@ -13,6 +14,7 @@ CASES = "SLIDERCRANK_CASES"
 """How many cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000 1`."""
 
 
+@pytest.mark.slow
 def test_every_answer_is_as_described(tmp_path: Path) -> None:
     each = int(os.environ.get(CASES, "5"))
     outcome = schema_cases.run(tmp_path, each, "examples,fuzzing,stateful")
