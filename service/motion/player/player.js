@@ -1,29 +1,43 @@
 "use strict";
-const data = JSON.parse(document.getElementById("data").textContent);
-const at = (id) => document.getElementById(id);
+/** @type {(id: string) => HTMLElement} */
+const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id)); // player.html has them all
+/**
+ * Curves have a value each degree; lengths are mm, angles deg.
+ * @type {{ crank: number, offset: number, direction: number, turnsPerSecond: number, slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
+ */
+const data = JSON.parse(at("data").textContent ?? "");
+const slide = /** @type {HTMLInputElement} */ (at("angle"));
+const speed = /** @type {HTMLSelectElement} */ (at("speed"));
 const count = data.slider.length;
 const cursors = [...document.querySelectorAll(".strip .now")];
-const outputs = [...document.querySelectorAll("output[data-curve]")];
+const outputs = /** @type {HTMLOutputElement[]} */ ([...document.querySelectorAll("output[data-curve]")]);
 let angle = 0;
 let playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+/** @type {number | null} */
 let before = null;
 
-/** A value between those one degree apart; none beside a gap. */
+/**
+ * A value between those one degree apart; none next to a gap.
+ * @type {(values: (number | null)[], degrees: number) => number | null}
+ */
 function between(values, degrees) {
   const place = (degrees / 360) * count;
   const low = Math.floor(place) % count;
   const high = (low + 1) % count;
-  if (values[low] === null || values[high] === null) return null;
-  let step = values[high] - values[low];
+  const [from, to] = [values[low], values[high]];
+  if (from === null || to === null) return null;
+  let step = to - from;
   if (values === data.rod && Math.abs(step) > 180) step -= 360 * Math.sign(step);
-  return values[low] + (place - Math.floor(place)) * step;
+  return from + (place - Math.floor(place)) * step;
 }
 
+/** @type {(value: number | null) => string} */
 function shown(value) {
   if (value === null) return "\u2013";
   return String(Number(value.toPrecision(4))).replace("-", "\u2212");
 }
 
+/** @type {(id: string, x: number, y: number, turn?: number) => void} */
 function put(id, x, y, turn = 0) {
   at(id).setAttribute("transform", `translate(${x} ${-y}) rotate(${-turn})`);
 }
@@ -32,25 +46,26 @@ function draw() {
   const radians = (angle * Math.PI) / 180;
   const x = data.crank * Math.cos(radians);
   const y = data.crank * Math.sin(radians);
-  const slider = between(data.slider, angle);
+  const slider = between(data.slider, angle) ?? NaN;
   put("crank", 0, 0, angle);
   put("crank-pin", x, y);
-  put("rod", x, y, between(data.rod, angle));
+  put("rod", x, y, between(data.rod, angle) ?? NaN);
   put("slider", slider, data.offset);
   put("slider-pin", slider, data.offset);
   for (const cursor of cursors) {
-    cursor.setAttribute("x1", angle);
-    cursor.setAttribute("x2", angle);
+    cursor.setAttribute("x1", String(angle));
+    cursor.setAttribute("x2", String(angle));
   }
-  for (const output of outputs) output.textContent = shown(between(data.curves[output.dataset.curve], angle));
+  for (const output of outputs) output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
   at("angle-now").textContent = `${angle.toFixed(0)}\u00b0`;
-  if (document.activeElement !== at("angle") || playing) at("angle").value = angle;
+  if (document.activeElement !== slide || playing) slide.value = String(angle);
 }
 
+/** @type {(now: number) => void} */
 function frame(now) {
   if (!playing) return;
   if (before !== null) {
-    const turns = ((now - before) / 1000) * Number(at("speed").value) * data.direction;
+    const turns = ((now - before) / 1000) * Number(speed.value) * data.direction;
     angle = (((angle + 360 * turns) % 360) + 360) % 360;
     draw();
   }
@@ -58,6 +73,7 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 
+/** @type {(on: boolean) => void} */
 function play(on) {
   playing = on;
   before = null;
@@ -67,14 +83,14 @@ function play(on) {
 
 if (data.turnsPerSecond > 0 && data.turnsPerSecond <= 5) {
   const option = document.createElement("option");
-  option.value = data.turnsPerSecond;
+  option.value = String(data.turnsPerSecond);
   option.textContent = `as it runs, ${Number((60 * data.turnsPerSecond).toPrecision(4))} turns a minute`;
-  at("speed").append(option);
+  speed.append(option);
 }
 at("play").addEventListener("click", () => play(!playing));
-at("angle").addEventListener("input", () => {
+slide.addEventListener("input", () => {
   play(false);
-  angle = Number(at("angle").value) % 360;
+  angle = Number(slide.value) % 360;
   draw();
 });
 draw();

@@ -1,13 +1,15 @@
 /** The shell: header, preferences, and the view that the address names. */
 
+import { isAbort, sentenceOf } from "./lib/api.js";
 import { read } from "./lib/address.js";
-import { fill, h } from "./lib/dom.js";
+import { byId, fill, h } from "./lib/dom.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
  * and ends what it began once `signal` is aborted. Problems that it throws are shown in its place.
+ * @type {{ name: string, match: (parts: string[]) => boolean, load: () => Promise<Page.View> }[]}
  */
 const VIEWS = [
   { name: "runs", match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
@@ -26,7 +28,7 @@ async function showView() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { parts, query } = read();
-  const main = document.getElementById("main");
+  const main = byId("main");
   markNavigation();
   const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
   const changed = main.childElementCount > 0;
@@ -41,16 +43,16 @@ async function showView() {
     await module.show(place, { parts, query, signal });
     if (changed && !signal.aborted) main.focus({ preventScroll: true });
   } catch (error) {
-    if (signal.aborted || error.name === "AbortError") return;
+    if (signal.aborted || isAbort(error)) return;
     document.title = "slidercrank";
-    fill(place, h("h1", {}, "This cannot be shown"), h("p", {}, error.message), h("p", {}, h("a", { href: "#/" }, "All runs")));
+    fill(place, h("h1", {}, "This cannot be shown"), h("p", {}, sentenceOf(error)), h("p", {}, h("a", { href: "#/" }, "All runs")));
   }
 }
 
 function markNavigation() {
   const here = `#/${read().parts[0] ?? ""}`;
   fill(
-    document.getElementById("nav"),
+    byId("nav"),
     NAVIGATION.map(([title, href]) => h("a", { href, "aria-current": href === here || (href === "#/" && here === "#/jobs") ? "page" : null }, title)),
   );
 }
@@ -58,11 +60,17 @@ function markNavigation() {
 function showPreferences() {
   const scheme = localStorage.getItem("scheme") ?? "auto";
   document.documentElement.dataset.scheme = scheme;
+  /**
+   * @param {string} label
+   * @param {[string, string][]} options
+   * @param {string} value
+   * @param {(value: string) => unknown} choose
+   */
   const choice = (label, options, value, choose) =>
-    h("label", {}, h("span", { class: "hidden" }, label), h("select", { onchange: (event) => choose(event.target.value) },
+    h("label", {}, h("span", { class: "hidden" }, label), h("select", { onchange: (event) => choose(event.currentTarget.value) },
       options.map(([key, title]) => h("option", { value: key, selected: key === value }, title))));
   fill(
-    document.getElementById("preferences"),
+    byId("preferences"),
     choice("Units", [["si", "mm, N"], ["inch", "inch, lbf"]], system(), (name) => chooseSystem(name).catch(sayProblem)),
     choice("Colours", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], scheme, (name) => {
       localStorage.setItem("scheme", name);
@@ -72,9 +80,9 @@ function showPreferences() {
   );
 }
 
-document.querySelector(".skip").addEventListener("click", (event) => {
+document.querySelector(".skip")?.addEventListener("click", (event) => {
   event.preventDefault(); // the address belongs to the views
-  document.getElementById("main").focus();
+  byId("main").focus();
 });
 window.addEventListener("hashchange", showView);
 showPreferences();

@@ -2,7 +2,16 @@
 
 import { headed } from "../front/columns.js";
 
-/** Draw axes {at, ticks: [[value, text]], column} around an area. */
+/** Return the ticks of an axis of words: each at its place. @type {(words: string[]) => [number, string][]} */
+export function wordTicks(words) {
+  return words.map((word, place) => [place, word]);
+}
+
+/**
+ * Draw axes {at, ticks: [[value, text]], column} around an area.
+ * @param {Page.Canvas} context
+ * @param {{ x: Page.Axis, y: Page.Axis, area: Page.Room, width: number, height: number, ink: Page.Ink }} given
+ */
 export function drawAxes(context, { x, y, area, width, height, ink }) {
   const [right, bottom] = [width - area.right, height - area.bottom];
   context.font = "12px system-ui, sans-serif";

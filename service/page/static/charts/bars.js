@@ -9,6 +9,8 @@ const [HEIGHT, ROOM] = [200, { left: 12, right: 12, top: 26, bottom: 22 }];
  * Return a table of signed bars, the longest first. rows: each {title, value, text} and kink where neither way is better; values that are null have no bar; largest: what
  * a whole bar is; good(value): true, false, or null where neither way is better; caption: what the table is called; signed: whether
  * bars go both ways.
+ * @param {{ title: string, value: number | null, text: string, kink?: boolean }[]} rows
+ * @param {{ largest: number, good: (value: number) => boolean | null, caption: string, signed?: boolean }} looks
  */
 export function tornado(rows, { largest, good, caption, signed = true }) {
   const ordered = [...rows].sort((one, other) => Math.abs(other.value ?? 0) - Math.abs(one.value ?? 0));
@@ -18,7 +20,7 @@ export function tornado(rows, { largest, good, caption, signed = true }) {
       const share = largest > 0 && value ? Math.min(Math.abs(value) / largest, 1) : 0;
       const whole = signed ? 50 : 100;
       bar.style.width = `${whole * share}%`;
-      bar.style.left = signed ? `${value < 0 ? 50 - 50 * share : 50}%` : "0";
+      bar.style.left = signed ? `${value && value < 0 ? 50 - 50 * share : 50}%` : "0";
       const way = value && !kink ? good(value) : null;
       if (way !== null) bar.classList.add(way ? "better" : "worse");
       return h("tr", {}, h("th", { scope: "row" }, title), h("td", { class: signed ? "bars" : "bars plain", "aria-hidden": "true" }, bar), h("td", { class: "number" }, text));
@@ -28,6 +30,8 @@ export function tornado(rows, { largest, good, caption, signed = true }) {
 /**
  * Put a histogram into `place`. edges: of the bins; counts: in them; marks: each {value, title}, drawn as lines; axis(value): text
  * of a value; label: for screen readers. It fills the width of its place; returns {close()}.
+ * @param {HTMLElement} place
+ * @param {{ edges: number[], counts: number[], marks: { value: number, title: string }[], label: string }} given
  */
 export function histogram(place, { edges, counts, marks, label }) {
   const picture = svg("svg", { class: "chart histogram", role: "img", "aria-label": label });

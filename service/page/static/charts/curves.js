@@ -5,6 +5,13 @@ import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { between, extremes } from "./cycle.js";
 import { range, scale } from "./scale.js";
 
+/**
+ * What a chart shows of a design: its curves under a name; series: which colour it has.
+ * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "centres">} Shown
+ * @typedef {{ key: string } & Page.Heading} Panel
+ * @typedef {Shown & { values: (number | null)[] }} Drawn
+ */
+
 const HEIGHT = 170;
 const ROOM = { left: 52, right: 12, top: 18, bottom: 22 };
 const QUARTERS = [0, 90, 180, 270, 360];
@@ -15,17 +22,23 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
  * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
  * - show(series, panels): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
  *   panels: each {key, title, unit}, a curve of the API. - turn({angle, settled}). - close().
+ * @param {HTMLElement} place
+ * @param {(angle: number, taken: boolean) => void} turned
  */
 export function curveCharts(place, turned) {
   const grid = h("div", { class: "curves" });
   place.append(grid);
+  /** @type {{ series: Shown[], panels: Panel[] } | null} */
   let shown = null;
+  /** @type {ReturnType<typeof chart>[]} */
   let charts = [];
   let width = 0;
   let at = 0;
   let told = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
   let observed = false;
+  /** @type {Set<Element>} */
   const inSight = new Set(); // charts that the reader sees
 
   function arrange() {
@@ -50,13 +63,17 @@ export function curveCharts(place, turned) {
     later = setTimeout(() => charts.forEach(drawn), SOON);
   }
 
-  /** Draw a chart that has changed. */
+  /**
+   * Draw a chart that has changed.
+   * @param {ReturnType<typeof chart>} one
+   */
   function drawn(one) {
     one.stale?.();
     if (one.stale) one.turn(at, true);
     one.stale = null;
   }
 
+  /** @param {{ angle: number, settled: boolean }} turn */
   function turn({ angle, settled }) {
     at = angle;
     if (!width) return;
@@ -75,6 +92,10 @@ export function curveCharts(place, turned) {
   const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].plot.clientWidth) !== width && arrange());
   watcher.observe(grid);
   return {
+    /**
+     * @param {Shown[]} series
+     * @param {Panel[]} panels
+     */
     show(series, panels) {
       shown = { series, panels };
       arrange();
@@ -87,6 +108,10 @@ export function curveCharts(place, turned) {
   };
 }
 
+/**
+ * @param {Panel} panel
+ * @param {(angle: number, taken: boolean) => void} turned
+ */
 function chart(panel, turned) {
   const readout = h("span", { class: "readout number" });
   const title = h("span", { class: "title" });
@@ -96,10 +121,19 @@ function chart(panel, turned) {
   const plot = h("div", { class: "plot" }, picture);
   const figure = h("figure", { "data-key": panel.key }, h("figcaption", {}, title, readout), plot);
   cursor.style.height = `${HEIGHT - ROOM.top - ROOM.bottom}px`;
-  let [x, y, series, dots] = [null, null, [], []];
+  /** @type {Page.Scale & { width: number } | null} */
+  let x = null;
+  /** @type {Page.Scale} */
+  let y;
+  /** @type {Drawn[]} */
+  let series = [];
+  /** @type {HTMLElement[]} */
+  let dots = [];
   let lit = false;
 
+  /** @param {PointerEvent} event */
   const move = (event) => {
+    if (!x) return;
     const box = picture.getBoundingClientRect();
     turned(Math.min(Math.max(x.value(((event.clientX - box.left) * x.width) / box.width), 0), 359.99), lit);
   };
@@ -115,18 +149,30 @@ function chart(panel, turned) {
     panel,
     figure,
     plot,
+    /** @type {(() => void) | null} */
+    stale: null, // draws what has changed
+    /**
+     * @param {Panel} given
+     * @param {Shown[]} all
+     * @param {number} width
+     */
     draw({ key, title: words, unit }, all, width) {
       series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)) }));
       title.textContent = `${words} (${unitOf(unit)})`;
       const { low, high } = range(series.flatMap(({ values }) => values), 0.14);
-      x = { ...scale(0, 360, ROOM.left, width - ROOM.right), width };
+      const across = { ...scale(0, 360, ROOM.left, width - ROOM.right), width };
+      x = across;
       y = scale(low, high, HEIGHT - ROOM.bottom, ROOM.top, 4);
       picture.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
       picture.setAttribute("aria-label", summary(words, unit, series, key));
       dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
-      fill(picture, axes(x, y, width), centreLines(x, series[0]), series.map((one) => line(one, x, y)).reverse(), series[0] && peaks(series[0], x, y));
+      fill(picture, axes(across, y, width), centreLines(across, series[0]), series.map((one) => line(one, across, y)).reverse(), series[0] && peaks(series[0], across, y));
       fill(plot, picture, cursor, dots.toReversed());
     },
+    /**
+     * @param {number} angle
+     * @param {boolean} read
+     */
     turn(angle, read) {
       if (!x) return;
       const across = x.at(angle).toFixed(1);
@@ -138,6 +184,11 @@ function chart(panel, turned) {
   };
 }
 
+/**
+ * @param {Page.Scale} x
+ * @param {Page.Scale} y
+ * @param {number} width
+ */
 function axes(x, y, width) {
   return svg(
     "g",
@@ -150,6 +201,10 @@ function axes(x, y, width) {
   );
 }
 
+/**
+ * @param {Page.Scale} x
+ * @param {Shown | undefined} first
+ */
 function centreLines(x, first) {
   return (first?.centres ?? []).map((angle, n) =>
     svg("g", { class: "centre" },
@@ -157,6 +212,11 @@ function centreLines(x, first) {
       svg("text", { x: x.at(angle), y: ROOM.top - 4, "text-anchor": angle < 20 ? "start" : angle > 340 ? "end" : "middle" }, n ? "outer" : "inner")));
 }
 
+/**
+ * @param {Drawn} given
+ * @param {Page.Scale} x
+ * @param {Page.Scale} y
+ */
 function line({ values, series }, x, y) {
   let path = "";
   let pen = "M";
@@ -173,10 +233,15 @@ function line({ values, series }, x, y) {
   return svg("path", { class: "curve", "data-series": series, d: path });
 }
 
+/**
+ * @param {Drawn} given
+ * @param {Page.Scale} x
+ * @param {Page.Scale} y
+ */
 function peaks({ values, series }, x, y) {
   const found = extremes(values);
   if (!found || found.low.value === found.high.value) return null;
-  return ["low", "high"].map((end) => {
+  return /** @type {const} */ (["low", "high"]).map((end) => {
     const { angle, value } = found[end];
     const anchor = angle > 300 ? "end" : angle < 40 ? "start" : "middle";
     return svg("g", { class: "peak" },
@@ -185,11 +250,18 @@ function peaks({ values, series }, x, y) {
   });
 }
 
-/** Return a sentence for a curve: its least and greatest value, and where. */
+/**
+ * Return a sentence for a curve: its least and greatest value, and where.
+ * @param {string} words
+ * @param {string} unit
+ * @param {Shown[]} series
+ * @param {string} key
+ */
 function summary(words, unit, series, key) {
   const each = series.map(({ name, curves }) => {
     const found = extremes(curves[key]);
     if (!found) return `${name}: not defined`;
+    /** @param {{ value: number, angle: number }} given */
     const at = ({ value, angle }) => `${withUnit(value, unit, 4)} at ${text(angle, "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
   });

@@ -1,11 +1,19 @@
 /** Curves over a turn of the crank, as the API gives them: values at evenly spaced angles from 0 deg. */
 
-/** Return an angle in [0, 360). */
+/**
+ * Return an angle in [0, 360).
+ * @param {number} angle
+ */
 export function turned(angle) {
   return ((angle % 360) + 360) % 360;
 }
 
-/** Return the value of a curve at a crank angle, deg, straight between its points; null where it has none. */
+/**
+ * Return the value of a curve at a crank angle, deg, straight between its points; null where it has none.
+ * @param {readonly (number | null)[]} values
+ * @param {number} angle
+ * @returns {number | null}
+ */
 export function between(values, angle) {
   const place = (turned(angle) / 360) * values.length;
   const first = Math.floor(place);
@@ -14,15 +22,19 @@ export function between(values, angle) {
   return from + (place - first) * (to - from);
 }
 
-/** Return {low, high} of a curve, each with its {angle, value}; null for a curve without values. */
+/**
+ * Return {low, high} of a curve, each with its {angle, value}; null for a curve without values.
+ * @param {readonly (number | null)[]} values
+ */
 export function extremes(values) {
-  let low = null;
-  let high = null;
+  let [low, high] = [-1, -1]; // where they are
+  let [least, most] = [Infinity, -Infinity];
   values.forEach((value, n) => {
     if (value === null) return;
-    const point = { angle: (360 * n) / values.length, value };
-    if (low === null || value < low.value) low = point;
-    if (high === null || value > high.value) high = point;
+    if (low < 0 || value < least) [low, least] = [n, value];
+    if (high < 0 || value > most) [high, most] = [n, value];
   });
-  return low && { low, high };
+  /** @type {(n: number, value: number) => { angle: number, value: number }} */
+  const at = (n, value) => ({ angle: (360 * n) / values.length, value });
+  return low < 0 ? null : { low: at(low, least), high: at(high, most) };
 }

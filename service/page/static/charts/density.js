@@ -5,6 +5,12 @@
  * line, -1 where it has none there. A line can be taken away again, so that a change costs only the lines that it is about.
  */
 export class Density {
+  /**
+   * @param {number} width
+   * @param {number} height
+   * @param {number[]} across
+   * @param {Int16Array} heights
+   */
   constructor(width, height, across, heights) {
     this.width = width;
     this.height = height;
@@ -15,7 +21,11 @@ export class Density {
     this.pixels = new Uint32Array(this.image.data.buffer);
   }
 
-  /** Add a line (by 1) or take it away (by -1). */
+  /**
+   * Add a line (by 1) or take it away (by -1).
+   * @param {number} line
+   * @param {1 | -1} by
+   */
   add(line, by) {
     const { across, heights, counts, width } = this;
     const axes = across.length;
@@ -47,7 +57,12 @@ export class Density {
     this.counts.fill(0);
   }
 
-  /** Draw on a canvas in a colour [r, g, b]; `strength` is how much of it one line has. */
+  /**
+   * Draw on a canvas in a colour [r, g, b]; `strength` is how much of it one line has.
+   * @param {Page.Canvas} context
+   * @param {number[]} colour
+   * @param {number} strength
+   */
   paint(context, [red, green, blue], strength) {
     const { counts, pixels } = this;
     const colour = (blue << 16) | (green << 8) | red;

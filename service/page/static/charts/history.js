@@ -1,20 +1,27 @@
 /** A value over rounds, as a line that grows. */
 
 import { svg } from "../lib/dom.js";
+import { text } from "../lib/numbers.js";
+import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 200];
 const AREA = { left: 64, right: 14, top: 12, bottom: 40 };
 
-/** Return a picture of points [[round, value], ...] under a heading. */
+/**
+ * Return a picture of points [[round, value], ...] under a heading.
+ * @param {readonly [number, number | null][]} points
+ * @param {string} heading
+ * @param {number} rounds
+ */
 export function history(points, heading, rounds) {
   const up = range(points.map(([, value]) => value), 0.08);
   const x = scale(1, Math.max(2, rounds), AREA.left, WIDTH - AREA.right, 8);
   const y = scale(up.low, up.high, HEIGHT - AREA.bottom, AREA.top, 4);
   const bottom = HEIGHT - AREA.bottom;
-  const at = points.filter(([, value]) => Number.isFinite(value)).map(([round, value]) => `${x.at(round).toFixed(1)} ${y.at(value).toFixed(1)}`);
+  const at = points.filter(isPoint).map(([round, value]) => `${x.at(round).toFixed(1)} ${y.at(value).toFixed(1)}`);
   const [last] = points.slice(-1);
-  return svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${heading}: ${last ? `${y.text(last[1])} after round ${last[0]}` : "none yet"}` },
+  return svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${heading}: ${last ? `${text(last[1])} after round ${last[0]}` : "none yet"}` },
     x.ticks.filter(Number.isInteger).map((tick) => svg("text", { x: x.at(tick), y: bottom + 18, "text-anchor": "middle" }, `${tick}`)),
     y.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${y.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick))]),
     svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, "round"),

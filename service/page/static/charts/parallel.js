@@ -1,9 +1,33 @@
 /** Parallel coordinates on canvas: every design a line, every axis a quantity; dragging on an axis sets limits. */
 
 import { inShown } from "../lib/numbers.js";
+import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
 import { layers, rgb } from "./paint.js";
 import { colours, scale } from "./scale.js";
+
+/** @import { FrontData } from "../front/data.js" */
+/** @import { Limits } from "../front/limits.js" */
+/**
+ * @typedef {object} Chart What is drawn, and what is done with what the reader does.
+ * @property {FrontData} data
+ * @property {Limits} limits
+ * @property {() => { key: string, flipped: boolean }[]} axes
+ * @property {() => Page.Mark[]} marks
+ * @property {(key: string, limit: Page.Limit | null) => void} limit
+ *
+ * @typedef {object} View
+ * @property {number} width
+ * @property {number} height
+ * @property {{ key: string, flipped: boolean }[]} axes
+ * @property {number[]} across
+ * @property {Page.Scale[]} scales
+ * @property {Int16Array} heights
+ * @property {Density | null} all of all designs, where there are many
+ * @property {boolean} backed
+ * @property {{ density: Density, mask: Uint8Array } | null} chosen as it was drawn last
+ * @property {Page.Ink} ink
+ */
 
 const ROOM = 12; // pixels above and below the axes
 const NEAR = 22; // pixels from an axis within which a drag is about it
@@ -14,11 +38,14 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
 /**
  * Return {place, draw(what)}. `chart` gives what is drawn: data, limits, axes() [{key, flipped}], marks() [{row, colour}], and
  * takes what the reader does: limit(key, limit), point(row or null), open(row).
+ * @param {Chart} chart
  */
 export function parallel(chart) {
   const stack = layers(3, "Parallel coordinates. The fields below set the same limits as dragging on an axis.");
   const { place, contexts } = stack;
-  let view = null;
+  /** @type {View} */
+  let view; // nothing until it is drawn first
+  /** @type {{ axis: number, from: number, span: number[] | null, moved: boolean } | null} */
   let dragged = null;
 
   /** Lay out: where the axes are, and where every design is on them. */
@@ -30,8 +57,7 @@ export function parallel(chart) {
     const across = axes.map((_, index) => ((index + 0.5) * width) / Math.max(1, axes.length));
     const scales = axes.map(({ key, flipped }) => {
       const { low, high } = data.range(key);
-      const ends = flipped ? [ROOM, height - ROOM] : [height - ROOM, ROOM];
-      return scale(low, high, ...ends);
+      return flipped ? scale(low, high, ROOM, height - ROOM) : scale(low, high, height - ROOM, ROOM);
     });
     const heights = new Int16Array(data.count * axes.length).fill(-1);
     axes.forEach(({ key }, axis) => {
@@ -42,24 +68,27 @@ export function parallel(chart) {
         if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(zero + factor * numbers[row]);
       }
     });
-    const many = data.count > FEW;
-    stack.resize(width, height, many ? [BACK, FRONT] : []);
-    view = { width, height, axes, across, scales, heights, many, all: null, backed: false, density: null, drawn: null, ink: colours() };
-    if (many) {
-      view.all = new Density(width, height, across, heights);
-      for (let row = 0; row < data.count; row += 1) view.all.add(row, 1);
-    } else {
-      lines(contexts[BACK], (row) => row >= 0, view.ink.line, 1);
-    }
+    const all = data.count > FEW ? new Density(width, height, across, heights) : null;
+    stack.resize(width, height, all ? [BACK, FRONT] : []);
+    view = { width, height, axes, across, scales, heights, all, backed: false, chosen: null, ink: colours() };
+    if (all) for (let row = 0; row < data.count; row += 1) all.add(row, 1);
+    else lines(contexts[BACK], (row) => row >= 0, view.ink.line, 1);
   }
 
   /** Draw all designs behind the chosen ones, once; of many, they are seen only while some are left out. */
   function drawBack() {
-    if (!view.many || view.backed) return;
+    if (!view.all || view.backed) return;
     view.backed = true;
     view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
   }
 
+  /**
+   * @param {Page.Canvas} context
+   * @param {(row: number) => boolean} wanted
+   * @param {string} colour
+   * @param {number} width
+   * @param {number} alpha
+   */
   function lines(context, wanted, colour, width, alpha = 1) {
     const { axes, across, heights } = view;
     context.strokeStyle = colour;
@@ -73,29 +102,28 @@ export function parallel(chart) {
   function drawChosen() {
     const { mask, chosen } = chart.limits;
     const some = chosen < chart.data.count;
-    stack.show(BACK, some || !view.many);
+    stack.show(BACK, some || !view.all);
     if (some) drawBack();
-    if (!view.many) {
+    if (!view.all) {
       stack.clear(FRONT);
-      lines(contexts[FRONT], (row) => mask[row], view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
+      lines(contexts[FRONT], (row) => mask[row] === 1, view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
       return;
     }
-    if (!view.density) {
-      view.density = new Density(view.width, view.height, view.across, view.heights);
-      view.density.counts.set(view.all.counts);
-      view.drawn = new Uint8Array(mask.length).fill(1);
+    if (!view.chosen) {
+      view.chosen = { density: new Density(view.width, view.height, view.across, view.heights), mask: new Uint8Array(mask.length).fill(1) };
+      view.chosen.density.counts.set(view.all.counts);
     }
-    const before = view.drawn;
+    const { density, mask: before } = view.chosen;
     let changed = 0;
-    for (let row = 0; row < mask.length; row += 1) changed += mask[row] !== before[row];
+    for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) changed += 1;
     if (changed <= chosen) {
-      for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) view.density.add(row, mask[row] ? 1 : -1);
+      for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) density.add(row, mask[row] ? 1 : -1);
     } else {
-      view.density.clear();
-      for (let row = 0; row < mask.length; row += 1) if (mask[row]) view.density.add(row, 1);
+      density.clear();
+      for (let row = 0; row < mask.length; row += 1) if (mask[row]) density.add(row, 1);
     }
-    view.drawn = mask.slice();
-    view.density.paint(contexts[FRONT], rgb(view.ink.accent), strength(chosen));
+    view.chosen.mask = mask.slice();
+    density.paint(contexts[FRONT], rgb(view.ink.accent), strength(chosen));
   }
 
   /** Draw axes, limits and marked designs. */
@@ -116,7 +144,7 @@ export function parallel(chart) {
       context.stroke();
       drawLimit(context, axis, chart.limits.of.get(key));
       const unit = chart.data.column(key).unit;
-      for (const [value, label] of words ? words.map((word, index) => [index, word]) : ticks(chart.data.range(key), unit)) {
+      for (const [value, label] of words ? wordTicks(words) : ticks(chart.data.range(key), unit)) {
         const y = scales[axis].at(value);
         context.lineWidth = 3;
         context.strokeStyle = ink.panel;
@@ -133,6 +161,11 @@ export function parallel(chart) {
     }
   }
 
+  /**
+   * @param {Page.Canvas} context
+   * @param {number} axis
+   * @param {Page.Limit | undefined} limit
+   */
   function drawLimit(context, axis, limit) {
     if (!limit) return;
     const { ink, across } = view;
@@ -146,18 +179,33 @@ export function parallel(chart) {
     }
   }
 
-  /** Return the pixels [top, bottom] that a limit lets through. */
+  /**
+   * Return the pixels [top, bottom] that a limit lets through.
+   * @param {number} axis
+   * @param {Page.Limit} limit
+   * @returns {number[][]}
+   */
   function spans(axis, limit) {
     const { at, low, high } = view.scales[axis];
+    /**
+     * @param {number} a
+     * @param {number} b
+     * @returns {number[]}
+     */
     const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
     if (limit.words) {
       const words = chart.data.words(view.axes[axis].key) ?? [];
       return limit.words.filter((word) => words.includes(word)).map((word) => [at(words.indexOf(word)) - 9, at(words.indexOf(word)) + 9]);
     }
+    /**
+     * @param {number | null} value
+     * @param {number} end
+     */
     const inside = (value, end) => at(Math.min(high, Math.max(low, value ?? end)));
     return [sorted(inside(limit.low, low), inside(limit.high, high))];
   }
 
+  /** @param {MouseEvent} event */
   function axisAt(event) {
     const box = stack.top.getBoundingClientRect();
     const x = event.clientX - box.left;
@@ -166,6 +214,7 @@ export function parallel(chart) {
     return { axis, x, y };
   }
 
+  /** @param {PointerEvent} event */
   function begin(event) {
     if (!view || event.button !== 0) return;
     const { axis, y } = axisAt(event);
@@ -180,6 +229,7 @@ export function parallel(chart) {
     else if (span && y > span[0] && y < span[1]) dragged = { ...dragged, from: y, span };
   }
 
+  /** @param {PointerEvent} event */
   function move(event) {
     if (!view) return;
     if (!dragged) {
@@ -203,6 +253,7 @@ export function parallel(chart) {
       return;
     }
     const step = (high - low) / 500;
+    /** @param {number} number */
     const tidy = (number) => Number(number.toPrecision(Math.max(3, 1 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / step)))));
     chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= high - step ? null : tidy(second) });
   }
@@ -210,6 +261,7 @@ export function parallel(chart) {
   const end = () => {
     dragged = null;
   };
+  /** @param {MouseEvent} event */
   const clear = (event) => {
     const { axis } = axisAt(event);
     if (axis >= 0) chart.limit(view.axes[axis].key, null);
@@ -222,7 +274,10 @@ export function parallel(chart) {
 
   return {
     place,
-    /** Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks". */
+    /**
+     * Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks".
+     * @param {"all" | "chosen" | "marks"} what
+     */
     draw(what) {
       if (what === "all" || !view) {
         lay();
@@ -234,6 +289,13 @@ export function parallel(chart) {
   };
 }
 
+/**
+ * @param {Page.Canvas} context
+ * @param {number} row
+ * @param {number} axes
+ * @param {number[]} across
+ * @param {Int16Array} heights
+ */
 function line(context, row, axes, across, heights) {
   context.beginPath();
   let down = false;
@@ -247,11 +309,19 @@ function line(context, row, axes, across, heights) {
   context.stroke();
 }
 
-/** Return how much colour one of so many lines has. */
+/**
+ * Return how much colour one of so many lines has.
+ * @param {number} count
+ */
 function strength(count) {
   return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
 }
 
+/**
+ * @param {Page.Range} given
+ * @param {string} unit
+ * @returns {[number, string][]}
+ */
 function ticks({ low, high }, unit) {
   const shown = scale(inShown(low, unit), inShown(high, unit), 0, 1, 4);
   const factor = inShown(1, unit);

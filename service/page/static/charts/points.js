@@ -7,6 +7,7 @@ import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 340];
 const AREA = { left: 64, right: 14, top: 12, bottom: 46 };
+/** @type {((x: number, y: number) => SVGElement)[]} */
 const SHAPES = [
   (x, y) => svg("circle", { cx: x, cy: y, r: 3.6 }),
   (x, y) => svg("rect", { x: x - 3.2, y: y - 3.2, width: 6.4, height: 6.4 }),
@@ -14,9 +15,22 @@ const SHAPES = [
   (x, y) => svg("path", { d: `M${x} ${y - 4.8} ${x + 4.8} ${y} ${x} ${y + 4.8} ${x - 4.8} ${y}Z` }),
 ];
 
-/** Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape. */
+/**
+ * Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape.
+ * @param {{ points: Api.Row[string][][], name?: string }[]} series
+ * @param {Page.Heading} x
+ * @param {Page.Heading} y
+ * @param {string} label
+ */
 export function points(series, x, y, label) {
-  const places = series.flatMap((one) => one.points);
+  const drawn = series.map((one) => one.points.filter(isPoint));
+  const places = drawn.flat();
+  /**
+   * @param {0 | 1} index
+   * @param {Page.Heading} column
+   * @param {number} start
+   * @param {number} end
+   */
   const axis = (index, column, start, end) => {
     const values = places.map((point) => inShown(point[index], column.unit));
     const { low, high } = range(values);
@@ -31,15 +45,24 @@ export function points(series, x, y, label) {
     up.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick))]),
     svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, headed(x)),
     svg("text", { class: "title", x: 14, y: middle, transform: `rotate(-90 14 ${middle})`, "text-anchor": "middle" }, headed(y)),
-    series.map((one, index) => svg("g", { class: `series-${1 + (index % 6)}` }, one.points.filter((point) => point.every(Number.isFinite))
+    drawn.map((own, index) => svg("g", { class: `series-${1 + (index % 6)}` }, own
       .map(([a, b]) => SHAPES[index % SHAPES.length](round(across.at(inShown(a, x.unit))), round(up.at(inShown(b, y.unit))))))));
 }
 
-/** Return the sign of a series for a legend. */
+/** Whether a point has a place: what is not defined has none. @type {(point: readonly unknown[]) => point is Page.Point} */
+export function isPoint(point) {
+  return point.every(Number.isFinite);
+}
+
+/**
+ * Return the sign of a series for a legend.
+ * @param {number} index
+ */
 export function sign(index) {
   return svg("svg", { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" }, svg("g", { class: `series-${1 + (index % 6)}` }, SHAPES[index % SHAPES.length](6, 6)));
 }
 
+/** @param {number} pixel */
 function round(pixel) {
   return Math.round(10 * pixel) / 10;
 }

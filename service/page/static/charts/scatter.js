@@ -1,10 +1,29 @@
 /** Two quantities against each other on canvas, coloured by a third. */
 
 import { inShown } from "../lib/numbers.js";
-import { drawAxes } from "./axes.js";
+import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
 import { layers, palette, ramp, squares } from "./paint.js";
 import { colours, range, scale } from "./scale.js";
+
+/** @import { FrontData } from "../front/data.js" */
+/** @import { Limits } from "../front/limits.js" */
+/**
+ * @typedef {object} Chart What is drawn, and what is done with what the reader does.
+ * @property {FrontData} data
+ * @property {Limits} limits
+ * @property {() => string} x
+ * @property {() => string} y
+ * @property {() => string} colour
+ * @property {() => Page.Mark[]} marks
+ * @property {(row: number | null) => void} point
+ * @property {(row: number) => void} open
+ * @property {(row: number) => void} select
+ * @property {(x: Page.Limit, y: Page.Limit) => void} box
+ * @property {(line: Page.Point[]) => void} lasso
+ *
+ * @typedef {{ width: number, height: number, x: Page.Axis, y: Page.Axis, across: Float64Array, up: Float64Array, many: boolean, ink: Page.Ink, shades: { of: Uint8Array, colours: string[] } }} View
+ */
 
 const NEAR = 10; // pixels within which a design is pointed at
 const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
@@ -16,12 +35,16 @@ const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
  * Return {place, draw(what), colours()}. `chart` gives what is drawn: data, limits, x(), y(), colour() (keys), marks()
  * [{row, colour, name}], pointed() (a row or null), and takes what the reader does: box(x, y) with limits, lasso(line)
  * with corners in the units of the columns, point(row or null), open(row), select(row).
+ * @param {Chart} chart
  */
 export function scatter(chart) {
   const stack = layers(3, "Scatter of two quantities. The table below has the same designs.");
   const { place, contexts, top } = stack;
-  let view = null;
+  /** @type {View} */
+  let view; // nothing until it is drawn first
+  /** @type {{ x: number, y: number, right: number, bottom: number } | null} */
   let box = null;
+  /** @type {Page.Point[] | null} */
   let line = null; // drawn by hand, in pixels
   let free = false; // whether a drag draws a line, not a box
 
@@ -43,6 +66,13 @@ export function scatter(chart) {
     if (!many) for (let row = 0; row < data.count; row += 1) dot(context, row);
   }
 
+  /**
+   * @param {string} key
+   * @param {number} start
+   * @param {number} end
+   * @param {number} count
+   * @returns {Page.Axis}
+   */
   function axis(key, start, end, count) {
     const { data } = chart;
     const column = data.column(key);
@@ -51,7 +81,7 @@ export function scatter(chart) {
     const drawn = scale(low, high, start, end);
     const factor = inShown(1, column.unit);
     const shown = scale(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
-    const ticks = words ? words.map((word, index) => [index, word]) : shown.ticks.map((tick) => [tick / factor, shown.text(tick)]);
+    const ticks = words ? wordTicks(words) : shown.ticks.map((tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]));
     return { ...drawn, column, ticks };
   }
 
@@ -70,6 +100,10 @@ export function scatter(chart) {
     return { of, colours: ramp(ink, SHADES) };
   }
 
+  /**
+   * @param {Page.Canvas} context
+   * @param {number} row
+   */
   function dot(context, row) {
     context.beginPath();
     context.arc(view.across[row], view.up[row], 3.5, 0, 7);
@@ -96,6 +130,7 @@ export function scatter(chart) {
     stack.clear(OVER);
     const context = contexts[OVER];
     const { across, up, ink } = view;
+    /** @type {{ start: number, end: number, y: number }[]} */
     const written = [];
     for (const { row, colour, name } of chart.marks()) {
       context.strokeStyle = colour;
@@ -112,11 +147,20 @@ export function scatter(chart) {
       context.globalAlpha = 1;
     }
     const { lasso } = chart.limits;
-    const drawn = lasso && lasso.x === chart.x() && lasso.y === chart.y() ? lasso.line.map(([a, b]) => [view.x.at(a), view.y.at(b)]) : null;
-    if (line ?? drawn) drawLasso(context, line ?? drawn, ink);
+    const drawn = lasso && lasso.x === chart.x() && lasso.y === chart.y() ? lasso.line.map(([a, b]) => /** @type {Page.Point} */ ([view.x.at(a), view.y.at(b)])) : null;
+    const shown = line ?? drawn;
+    if (shown) drawLasso(context, shown, ink);
   }
 
-  /** Write a name beside a design, unless others are `written` there. */
+  /**
+   * Write a name beside a design, unless others are `written` there.
+   * @param {Page.Canvas} context
+   * @param {string} name
+   * @param {number} x
+   * @param {number} y
+   * @param {Page.Ink} ink
+   * @param {{ start: number, end: number, y: number }[]} written
+   */
   function write(context, name, x, y, ink, written) {
     context.font = "12px system-ui, sans-serif";
     const left = x > view.width * 0.7;
@@ -133,15 +177,20 @@ export function scatter(chart) {
     context.fillText(name, x + (left ? -9 : 9), y - 5);
   }
 
+  /** @param {MouseEvent} event */
   function at(event) {
     const { left, top: above } = top.getBoundingClientRect();
     return { x: event.clientX - left, y: event.clientY - above };
   }
 
-  /** Return the design that is pointed at, a chosen one, or null. */
+  /**
+   * Return the design that is pointed at, a chosen one, or null.
+   * @param {{ x: number, y: number }} given
+   */
   function under({ x, y }) {
     const { across, up } = view;
     const { mask } = chart.limits;
+    /** @type {number | null} */
     let nearest = null;
     let least = NEAR * NEAR;
     for (let row = 0; row < mask.length; row += 1) {
@@ -152,6 +201,7 @@ export function scatter(chart) {
     return nearest;
   }
 
+  /** @type {{ x: number, y: number } | null} */
   let from = null;
   top.addEventListener("pointerdown", (event) => {
     if (!view || event.button !== 0) return;
@@ -176,6 +226,7 @@ export function scatter(chart) {
     box = { x: Math.min(from.x, here.x), right: Math.max(from.x, here.x), y: Math.min(from.y, here.y), bottom: Math.max(from.y, here.y) };
     chart.box(limitOf(chart.x(), view.x, box.x, box.right), limitOf(chart.y(), view.y, box.bottom, box.y));
   });
+  /** @param {PointerEvent} event */
   const end = (event) => {
     if (!from) return;
     const drawn = box ?? line;
@@ -190,12 +241,20 @@ export function scatter(chart) {
   top.addEventListener("pointercancel", end);
   top.addEventListener("pointerleave", () => from || chart.point(null));
 
+  /**
+   * @param {string} key
+   * @param {Page.Axis} drawn
+   * @param {number} first
+   * @param {number} second
+   * @returns {Page.Limit}
+   */
   function limitOf(key, drawn, first, second) {
     const [low, high] = [drawn.value(first), drawn.value(second)];
     const words = chart.data.words(key);
     if (words) return { words: words.filter((_, index) => index >= low && index <= high) };
     const step = (drawn.high - drawn.low) / 500;
     const places = Math.max(0, Math.ceil(-Math.log10(step)));
+    /** @param {number} value */
     const tidy = (value) => Number(value.toFixed(Math.min(20, places)));
     const ends = chart.data.range(key);
     return { low: low <= ends.low ? null : tidy(low), high: high >= ends.high ? null : tidy(high) };
@@ -203,19 +262,28 @@ export function scatter(chart) {
 
   return {
     place,
-    /** Draw: "all" after a change of quantities, size or colours; "chosen" after one of limits; "marks". */
+    /**
+     * Draw: "all" after a change of quantities, size or colours; "chosen" after one of limits; "marks".
+     * @param {"all" | "chosen" | "marks"} what
+     */
     draw(what) {
       if (what === "all" || !view) lay();
       if (what !== "marks") drawChosen();
       if (what !== "chosen" || box || line || chart.limits.lasso) drawOver();
     },
-    /** Choose what a drag draws: a line by hand, or a box. */
+    /**
+     * Choose what a drag draws: a line by hand, or a box.
+     * @param {boolean} yes
+     */
     byHand: (yes) => {
       free = yes;
     },
     /** Return the colours of the legend, low to high. */
     colours: () => view.shades.colours,
-    /** Return where a design is, in pixels of the page within the place. */
+    /**
+     * Return where a design is, in pixels of the page within the place.
+     * @param {number} row
+     */
     where: (row) => (view ? { x: view.across[row], y: view.up[row] } : null),
   };
 }

@@ -1,14 +1,19 @@
 /** A front so small that only its shape shows. */
 
 import { svg } from "../lib/dom.js";
+import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
 const WIDTH = 96;
 const HEIGHT = 48;
 
-/** Return a picture of points [[x, y], ...] without axes; of one objective, of its values in order. */
+/**
+ * Return a picture of points [[x, y], ...] without axes; of one objective, of its values in order.
+ * @param {Api.Row[string][][]} points
+ * @param {string} label
+ */
 export function thumbnail(points, label) {
-  const places = points.map((point, index) => (point.length > 1 ? point : [index, point[0]])).filter((at) => at.every(Number.isFinite));
+  const places = points.map((point, index) => (point.length > 1 ? point : [index, point[0]])).filter(isPoint);
   const across = range(places.map(([x]) => x), 0.02);
   const up = range(places.map(([, y]) => y), 0.02);
   const x = scale(across.low, across.high, 4, WIDTH - 4);

@@ -1,30 +1,51 @@
 /** A small picture of the front: all designs in two objectives, the design of the view, and where a change takes it. */
 
 import { fill, h, svg } from "../lib/dom.js";
-import { inShown, unitOf } from "../lib/numbers.js";
+import { inShown, withUnit } from "../lib/numbers.js";
 import { range, scale } from "../charts/scale.js";
 import { sense } from "./objectives.js";
 
 const [WIDTH, HEIGHT] = [340, 230];
 const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
 
-/** Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null. */
+/**
+ * Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null.
+ * @param {HTMLElement} place
+ * @param {{ objectives: Api.Objective[], front: Api.Row[] }} given
+ */
 export function frontMap(place, { objectives, front }) {
   // The front is a picture of its own, so that thousands of points are not painted again as one moves.
   const [cloud, moving] = ["", "moving"].map((kind) => svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }));
   const picture = h("div", { class: "front-map", role: "img" }, cloud, moving);
   const chosen = [0, Math.min(1, objectives.length - 1)];
-  const choice = (n, label) => h("label", {}, h("span", { class: "quiet" }, `${label} `), h("select", { onchange: (event) => { chosen[n] = Number(event.target.value); arrange(); } },
+  /**
+   * @param {number} n
+   * @param {string} label
+   */
+  const choice = (n, label) => h("label", {}, h("span", { class: "quiet" }, `${label} `), h("select", { onchange: (event) => { chosen[n] = Number(event.currentTarget.value); arrange(); } },
     objectives.map((objective, at) => h("option", { value: at, selected: at === chosen[n] }, `${objective.title} (${sense(objective)})`))));
-  let [x, y, shown] = [null, null, [null, null]];
+  /** @type {Page.Scale} */
+  let x; // nothing until it is drawn first, as y
+  /** @type {Page.Scale} */
+  let y;
+  /** @type {[Api.Row | null, Api.Row | null]} */
+  let shown = [null, null];
   fill(place, h("div", { class: "axes-choice" }, choice(0, "Across"), choice(1, "Up")), picture);
 
-  const value = (row, objective) => (typeof row?.[objective.column] === "number" ? inShown(row[objective.column], objective.unit) : NaN);
+  /**
+   * @param {Api.Row | null} row
+   * @param {Api.Objective} objective
+   * @returns {number}
+   */
+  const value = (row, objective) => {
+    const cell = row?.[objective.column];
+    return typeof cell === "number" ? inShown(cell, objective.unit) : NaN;
+  };
 
   function arrange() {
     const [across, up] = chosen.map((n) => objectives[n]);
     const points = front.map((row) => [value(row, across), value(row, up)]).filter((point) => point.every(Number.isFinite));
-    const rows = shown.filter(Boolean);
+    const rows = shown.filter((row) => row !== null);
     const wide = range([...points.map(([one]) => one), ...rows.map((row) => value(row, across))], 0.06);
     const tall = range([...points.map(([, one]) => one), ...rows.map((row) => value(row, up))], 0.08);
     x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
@@ -41,14 +62,19 @@ export function frontMap(place, { objectives, front }) {
     const [across, up] = chosen.map((n) => objectives[n]);
     const [from, to] = shown.map((row) => row && [x.at(value(row, across)), y.at(value(row, up))]);
     const drawn = [];
-    if (to && to.every(Number.isFinite)) drawn.push(svg("line", { class: "trail", x1: from[0], y1: from[1], x2: to[0], y2: to[1] }), svg("circle", { class: "changed", cx: to[0], cy: to[1], r: 6 }));
+    if (from && to && to.every(Number.isFinite)) drawn.push(svg("line", { class: "trail", x1: from[0], y1: from[1], x2: to[0], y2: to[1] }), svg("circle", { class: "changed", cx: to[0], cy: to[1], r: 6 }));
     if (from && from.every(Number.isFinite)) drawn.push(svg("circle", { class: "own", cx: from[0], cy: from[1], r: 5 }));
     fill(moving, drawn);
-    const at = (row) => [across, up].map((objective) => `${objective.title} ${Number(value(row, objective).toPrecision(4))} ${unitOf(objective.unit)}`).join(", ");
+    /** @param {Api.Row | null} row */
+    const at = (row) => [across, up].map((objective) => `${objective.title} ${withUnit(row?.[objective.column], objective.unit, 4)}`).join(", ");
     picture.setAttribute("aria-label", `The front, ${front.length} designs. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`);
   }
 
   return {
+    /**
+     * @param {Api.Row} row
+     * @param {Api.Row | null} changed
+     */
     show(row, changed) {
       shown = [row, changed];
       const inside = x && (!changed || [x, y].every((axis, n) => { const one = value(changed, objectives[chosen[n]]); return one >= axis.low && one <= axis.high; }));

@@ -3,20 +3,40 @@
 import { get } from "../lib/api.js";
 import { withResultants } from "./panels.js";
 
-/** Return a design as the view shows it: {number, name, series, row, columns, curves, curveColumns, centres}. series: 1, 2, 3. */
+/**
+ * Return a design as the view shows it: {number, name, series, row, columns, curves, curveColumns, centres}. series: 1, 2, 3.
+ * @param {string} job
+ * @param {number} number
+ * @param {number} series
+ * @param {AbortSignal} signal
+ * @returns {Promise<Page.Machine & { number: number, columns: Api.Column[] }>}
+ */
 export async function loadDesign(job, number, series, signal) {
-  const path = `jobs/${job}/designs/${number}`;
+  const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
   const [{ design, columns }, cycle] = await Promise.all([get(path, {}, signal), get(`${path}/curves`, {}, signal)]);
   return { number, name: `Design ${number}`, series, row: design, columns, ...cycleOf(cycle) };
 }
 
-/** Return the curves of an answer of the API: {curves, curveColumns, centres}. */
+/** Return the lengths of a design. @type {(row: Api.Row) => Page.Lengths} */
+export function lengthsOf(row) {
+  return { crank_mm: Number(row.crank_mm), rod_mm: Number(row.rod_mm), offset_mm: Number(row.offset_mm) };
+}
+
+/**
+ * Return the curves of an answer of the API: {curves, curveColumns, centres}.
+ * @param {Api.Cycle} cycle
+ * @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres">}
+ */
 export function cycleOf(cycle) {
   const { curves, columns } = withResultants(cycle);
   return { curves, curveColumns: columns, centres: [cycle.inner_dead_centre_deg, cycle.outer_dead_centre_deg] };
 }
 
-/** Return the numbers of the designs that stand beside one, as the address gives them: at most two, each once. */
+/**
+ * Return the numbers of the designs that stand beside one, as the address gives them: at most two, each once.
+ * @param {URLSearchParams} query
+ * @param {number} number
+ */
 export function besideOf(query, number) {
   const asked = (query.get("beside") ?? "").split(",").map(Number);
   return [...new Set(asked)].filter((one) => Number.isInteger(one) && one > 0 && one !== number).slice(0, 2);

@@ -5,11 +5,15 @@ import { link } from "../lib/address.js";
 import { text, unitOf, withUnit } from "../lib/numbers.js";
 import { groupsOf } from "./groups.js";
 
+/** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
+
 const MET = 1e-8; // of a bound: designs meet their constraints to this
 
 /**
  * Put the numbers of designs into `place`. designs: each {name, row}, the first is what the others are compared with; columns: of
  * the first; requirements, slow (stroke): of the API; names: of quantities by column.
+ * @param {HTMLElement} place
+ * @param {{ designs: Shown[], columns: Api.Column[], requirements: Api.Requirement[], slow: string | null | undefined, names: Record<string, string> }} given
  */
 export function showNumbers(place, { designs, columns, requirements, slow, names }) {
   const groups = groupsOf(columns).map(({ title, columns: own }) =>
@@ -17,17 +21,30 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
   fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, slow, names), quality(designs, columns)));
 }
 
-/** Return a link to the help of a column. */
+/**
+ * Return a link to the help of a column.
+ * @param {{ key: string, title: string }} column
+ * @param {Record<string, string>} names
+ */
 export function helpLink({ key, title }, names) {
   return h("a", { href: link(["help", names[key] ?? key]), class: "help-link" }, title);
 }
 
-/** Return a cell with a number, which carries its full precision. */
+/**
+ * Return a cell with a number, which carries its full precision.
+ * @param {Api.Row[string] | undefined} value
+ * @param {{ key: string, unit: string }} column
+ * @param {{ tag?: "td" | "strong", digits?: number, name?: string }} looks
+ */
 export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
   return h(tag, { class: typeof value === "number" ? "number" : "number word", "data-key": column.key, "data-design": name || null, "data-value": value === null || value === undefined ? "" : String(value) }, text(value, column.unit, digits));
 }
 
-/** Return how much a value is from another, as text: "+1.2 %"; empty where that has no meaning. */
+/**
+ * Return how much a value is from another, as text: "+1.2 %"; empty where that has no meaning.
+ * @param {Api.Row[string] | undefined} value
+ * @param {Api.Row[string] | undefined} from
+ */
 export function difference(value, from) {
   if (typeof value !== "number" || typeof from !== "number" || from === 0) return "";
   const percent = (100 * (value - from)) / Math.abs(from);
@@ -35,6 +52,12 @@ export function difference(value, from) {
   return `${percent > 0 ? "+" : "−"}${Math.abs(percent) >= 1000 ? Math.round(Math.abs(percent)) : Number(Math.abs(percent).toPrecision(3))} %`;
 }
 
+/**
+ * @param {string} caption
+ * @param {Shown[]} designs
+ * @param {Api.Column[]} columns
+ * @param {Record<string, string>} names
+ */
 function table(caption, designs, columns, names) {
   const [first, ...others] = designs;
   const head = h("tr", {}, h("th", { scope: "col" }, "Quantity"), heading(first), others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]), h("th", { scope: "col" }, "Unit"));
@@ -45,14 +68,25 @@ function table(caption, designs, columns, names) {
   return scrolled(caption, h("table", {}, h("caption", { class: "hidden" }, caption), h("thead", { class: others.length ? null : "hidden" }, head), h("tbody", {}, rows)));
 }
 
+/** @param {Shown} design */
 function heading({ name, series }) {
   return h("th", { scope: "col", class: "number", "data-series": series }, name);
 }
 
+/**
+ * @param {string} label
+ * @param {Element} node
+ */
 function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
 }
 
+/**
+ * @param {Shown[]} designs
+ * @param {Api.Requirement[]} requirements
+ * @param {string | null | undefined} slow
+ * @param {Record<string, string>} names
+ */
 function limits(designs, requirements, slow, names) {
   const ofStroke = slow && h("tr", {}, h("th", { scope: "row" }, helpLink({ key: "slow_stroke", title: "slow stroke" }, names), h("span", { class: "quiet asked" }, ` ${slow}`)),
     designs.map(({ row, name }) => [cell(row.slow_stroke, { key: "slow_stroke", unit: "" }, { name }), h("td", {}, h("span", { class: row.slow_stroke === slow ? "good" : "bad" }, row.slow_stroke === slow ? "met" : "broken"))]));
@@ -68,7 +102,10 @@ function limits(designs, requirements, slow, names) {
       : h("p", { class: "quiet" }, "The job sets none."));
 }
 
-/** Return what a rule asks, in words. */
+/**
+ * Return what a rule asks, in words.
+ * @param {Api.Requirement} requirement
+ */
 export function wanted({ lower, upper, unit }) {
   if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;
@@ -76,6 +113,10 @@ export function wanted({ lower, upper, unit }) {
   return `${text(lower, unit)} to ${withUnit(upper, unit)}`;
 }
 
+/**
+ * @param {Api.Row} row
+ * @param {Api.Requirement} requirement
+ */
 function met(row, { lower, upper, slack, unit }) {
   const left = row[slack];
   const size = Math.max(Math.abs(lower ?? 0), Math.abs(upper ?? 0), 1e-300);
@@ -86,15 +127,20 @@ function met(row, { lower, upper, slack, unit }) {
   return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);
 }
 
+/**
+ * @param {Shown[]} designs
+ * @param {Api.Column[]} columns
+ */
 function quality(designs, columns) {
   if (!columns.some(({ key }) => key === "status")) return null;
+  /** @param {Api.Row} row */
   const words = (row) => row.status === "stationary"
     ? "A local optimum: no small change improves one objective without worsening another."
     : "The best that was found; a small change might still improve it.";
   return h("section", { class: "panel group" }, h("h3", {}, "Quality of the optimum"),
     designs.filter(({ row }) => row.status).map(({ row, name }) =>
       h("div", {}, designs.length > 1 ? h("h4", {}, name) : null, h("p", {}, words(row)),
-        h("dl", { class: "facts" }, h("dt", {}, "status"), h("dd", { "data-key": "status", "data-value": row.status }, row.status),
+        h("dl", { class: "facts" }, h("dt", {}, "status"), h("dd", { "data-key": "status", "data-value": row.status }, String(row.status)),
           h("dt", {}, "stationarity residual"), h("dd", { class: "number", "data-key": "residual", "data-value": row.residual === null ? "" : String(row.residual) },
             row.residual === null ? "not known" : Number(row.residual).toExponential(1).replace("-", "−"))))));
 }

@@ -5,19 +5,30 @@ import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
 
-/** Return a number that is the smaller the better a value of an objective is. */
+/**
+ * Return a number that is the smaller the better a value of an objective is.
+ * @param {Api.Row[string] | undefined} value
+ * @param {Pick<Api.Objective, "sense" | "target">} objective
+ */
 export function rankOf(value, { sense, target }) {
   if (typeof value !== "number") return Infinity;
-  if (target !== null) return Math.abs(value - target);
+  if (typeof target === "number") return Math.abs(value - target);
   return sense === "maximise" ? -value : value;
 }
 
-/** Return what is wanted of an objective, in words. */
+/**
+ * Return what is wanted of an objective, in words.
+ * @param {Api.Objective} objective
+ */
 export function sense({ sense: way, target, unit }) {
-  return target === null ? way : `target ${withUnit(target, unit)}`;
+  return typeof target !== "number" ? way : `target ${withUnit(target, unit)}`;
 }
 
-/** Put the objectives of the design into `place`; front: values of every design by column; designs: the first is told of. */
+/**
+ * Put the objectives of the design into `place`; front: values of every design by column; designs: the first is told of.
+ * @param {HTMLElement} place
+ * @param {{ objectives: Api.Objective[], front: Api.Row[], designs: { row: Api.Row }[], names: Record<string, string> }} given
+ */
 export function showObjectives(place, { objectives, front, designs, names }) {
   const [{ row }] = designs;
   fill(place, objectives.map((objective) => {
@@ -28,8 +39,9 @@ export function showObjectives(place, { objectives, front, designs, names }) {
     const same = isConstant(best, worst, objective.target ?? 0);
     const better = same ? 0 : ranks.filter((rank) => rank < own).length;
     const share = !same ? Math.min(Math.max((worst - own) / (worst - best), 0), 1) : 1;
-    const bar = h("span", { class: "share" }, h("span", {}));
-    bar.firstChild.style.width = `${100 * share}%`;
+    const part = h("span", {});
+    const bar = h("span", { class: "share" }, part);
+    part.style.width = `${100 * share}%`;
     return h("div", { class: "panel objective" }, helpLink({ key: objective.column, title: objective.title }, names), h("span", { class: "quiet sense" }, sense(objective)),
       h("strong", { "data-key": objective.column, "data-value": String(value) }, withUnit(value, objective.unit)),
       bar, h("span", { class: "quiet" }, better === 0 ? "best of the front" : `${better} of ${front.length} designs are better`));

@@ -7,8 +7,12 @@ const RESULTANTS = [
 ];
 const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
 
-/** Return {curves, columns} with the sizes of the joint forces beside their components. */
+/**
+ * Return {curves, columns} with the sizes of the joint forces beside their components.
+ * @param {Pick<Api.Cycle, "curves" | "columns">} cycle
+ */
 export function withResultants({ curves, columns }) {
+  /** @type {Api.Curves} */
   const more = { ...curves };
   const known = [...columns];
   for (const [key, title, x, y] of RESULTANTS) {
@@ -19,9 +23,14 @@ export function withResultants({ curves, columns }) {
   return { curves: more, columns: known };
 }
 
-/** Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero or not defined in all designs. */
+/**
+ * Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero or not defined in all designs.
+ * @param {Api.Column[]} columns
+ * @param {{ curves: Api.Curves }[]} designs
+ */
 export function panelsOf(columns, designs) {
+  /** @param {Api.Column} column */
   const some = ({ key }) => designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
-  const found = ORDER.map((start) => columns.find(({ key }) => key.startsWith(start))).filter((column) => column && some(column));
+  const found = ORDER.flatMap((start) => columns.find(({ key }) => key.startsWith(start)) ?? []).filter(some);
   return found.map(({ key, title, unit }) => ({ key, title: title.charAt(0).toUpperCase() + title.slice(1), unit }));
 }

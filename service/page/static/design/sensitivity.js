@@ -11,16 +11,21 @@ const MEASURES = [
   { key: "tolerance", title: "for the tolerance of a dimension" },
 ];
 
-/** Put the tornado into `place`; quantities: of the API; objectives: of the job, shown first. */
+/**
+ * Put the tornado into `place`; quantities: of the API; objectives: of the job, shown first.
+ * @param {HTMLElement} place
+ * @param {Api.Sensitivity} found
+ * @param {{ objectives: Api.Objective[], signal: AbortSignal }} given
+ */
 export function sensitivity(place, { quantities }, { objectives, signal }) {
   const wanted = objectives.map(({ quantity }) => quantity);
-  const own = wanted.map((name) => quantities.find((one) => one.quantity === name)).filter(Boolean);
+  const own = wanted.flatMap((name) => quantities.find((one) => one.quantity === name) ?? []);
   const rest = quantities.filter((one) => !wanted.includes(one.quantity) && one.value !== null && DIMENSIONS.some((name) => one[`${name}_per_mm`]));
   const measures = MEASURES.filter(({ key }) => own.concat(rest).some((one) => DIMENSIONS.some((name) => one[`${name}_${key}`])));
   let measure = measures[0];
   let all = false;
   const bars = h("div", { class: "tornados" });
-  const choice = h("select", { onchange: (event) => { measure = measures[Number(event.target.value)]; draw(); } },
+  const choice = h("select", { onchange: (event) => { measure = measures[Number(event.currentTarget.value)]; draw(); } },
     measures.map(({ title }, n) => h("option", { value: n }, title)));
   const more = h("input", { type: "checkbox", onchange: () => { all = more.checked; draw(); } });
   fill(place, h("div", { class: "row" }, h("label", {}, "Change ", choice), h("label", {}, more, " all quantities")), bars,
@@ -29,20 +34,41 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
   function draw() {
     const shown = all ? [...own, ...rest] : own;
     const relative = measure.key === "percent";
-    const value = (one, name) => one[`${name}_${measure.key}`] ?? null;
-    const below = (one, name) => one[`${name}_${measure.key}_below`] ?? value(one, name);
+    /**
+     * @param {Api.Sensitive} one
+     * @param {string} name
+     * @returns {number | null}
+     */
+    const value = (one, name) => rateOf(one[`${name}_${measure.key}`]);
+    /**
+     * @param {Api.Sensitive} one
+     * @param {string} name
+     * @returns {number | null}
+     */
+    const below = (one, name) => rateOf(one[`${name}_${measure.key}_below`]) ?? value(one, name);
+    /**
+     * @param {Api.Sensitive} one
+     * @param {string} name
+     */
     const size = (one, name) => Math.max(Math.abs(value(one, name) ?? 0), Math.abs(below(one, name) ?? 0));
     const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => size(one, name))));
     fill(bars, shown.map((one) => {
       const objective = objectives.find(({ quantity }) => quantity === one.quantity);
       const largest = relative && objective ? common : Math.max(...DIMENSIONS.map((name) => size(one, name)));
       const unit = relative ? "%" : unitOf(one.unit);
-      const kinked = (name) => value(one, name) !== null && Math.abs(value(one, name) - below(one, name)) > 1e-9 * Math.max(Math.abs(value(one, name)), Math.abs(below(one, name)));
-      const text = (number) => (number === null || number === undefined ? "–" : `${signed(relative ? number : inShown(number, one.unit))} ${unit}`);
+      /** @type {(above: number, under: number) => boolean} */
+      const kinked = (above, under) => Math.abs(above - under) > 1e-9 * Math.max(Math.abs(above), Math.abs(under));
+      /** @param {number | null} number */
+      const text = (number) => (number === null ? "–" : `${signed(relative ? number : inShown(number, one.unit))} ${unit}`);
+      /** @param {number} number */
       const good = (number) => !objective || objective.sense === "target" ? null : (number > 0) === (objective.sense === "maximise");
-      const row = (name) => kinked(name)
-        ? { title: name, value: Math.abs(below(one, name)) > Math.abs(value(one, name)) ? below(one, name) : value(one, name), text: `below ${text(below(one, name))}, above ${text(value(one, name))}`, kink: true }
-        : { title: name, value: value(one, name), text: text(value(one, name)) };
+      /** @param {string} name */
+      const row = (name) => {
+        const [above, under] = [value(one, name), below(one, name)];
+        return above !== null && under !== null && kinked(above, under)
+          ? { title: name, value: Math.abs(under) > Math.abs(above) ? under : above, text: `below ${text(under)}, above ${text(above)}`, kink: true }
+          : { title: name, value: above, text: text(above) };
+      };
       return tornado(DIMENSIONS.map(row), { largest, good, caption: one.title });
     }));
   }
@@ -51,6 +77,12 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
   window.addEventListener("units", draw, { signal });
 }
 
+/** Return a rate of the API; null for what is none. @type {(cell: Api.Row[string] | undefined) => number | null} */
+function rateOf(cell) {
+  return typeof cell === "number" ? cell : null;
+}
+
+/** @param {number} number */
 function signed(number) {
   if (number === 0) return "0";
   return `${number > 0 ? "+" : "−"}${Number(Math.abs(number).toPrecision(3))}`;

@@ -5,23 +5,31 @@ import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { ARROWS, largestForce } from "../mechanism/arrows.js";
 import { drawing } from "../mechanism/drawing.js";
+import { lengthsOf } from "./loading.js";
 import { around, frameOf } from "../mechanism/frame.js";
 
+/** @import { turning as turningOf } from "./turning.js" */
+
 const EVERY = 100; // ms between two readouts while it moves
+/** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
 /**
  * Put mechanisms and their controls into `place`; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
+ * @param {HTMLElement} place
+ * @param {ReturnType<typeof turningOf>} turning
  */
 export function stage(place, turning) {
   const drawn = h("div", { class: "machines" });
+  /** @type {Page.Machine[]} */
   let machines = [];
+  /** @type {ReturnType<typeof drawing>[]} */
   let drawings = [];
   const toggle = h("button", { type: "button", class: "primary play", onclick: () => (turning.playing ? turning.pause() : turning.play()) }, "Play");
-  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": "Crank angle", onkeydown: byKey, oninput: (event) => hold(Number(event.target.value)) });
+  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": "Crank angle", onkeydown: byKey, oninput: (event) => hold(Number(event.currentTarget.value)) });
   const told = h("output", { class: "number angle" });
-  const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.target.value)]) },
+  const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.currentTarget.value)]) },
     turning.paces.map((one, n) => h("option", { value: n, selected: one === turning.pace }, one.title)));
   const forces = h("input", { type: "checkbox", onchange: showForces });
   const legend = h("ul", { class: "legend forces", hidden: true }, ARROWS.map(({ name, title }) => h("li", { class: name }, title)));
@@ -35,11 +43,13 @@ export function stage(place, turning) {
     h("p", { class: "quiet hint" }, "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."),
   );
 
+  /** @param {number} to */
   function hold(to) {
     turning.pause();
     turning.set(to);
   }
 
+  /** @param {KeyboardEvent} event */
   function byKey(event) {
     const step = KEYS[event.key];
     if (!step) return;
@@ -54,6 +64,7 @@ export function stage(place, turning) {
     fill(largest, forces.checked ? `longest arrow ${withUnit(greatest, "N", 3)}` : "");
   }
 
+  /** @param {Page.Machine[]} shown */
   function show(shown) {
     const again = shown.length === drawings.length;
     machines = shown;
@@ -63,30 +74,31 @@ export function stage(place, turning) {
       fill(drawn, places);
       drawings = places.map((each) => draggable(drawing(each, { label: "" }), hold));
     }
-    const frame = around(machines.map(({ row, curves }) => frameOf(row, curves)));
+    const frame = around(machines.map(({ row, curves }) => frameOf(lengthsOf(row), curves)));
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
     machines.forEach(({ name, series, row, curves, centres }, n) => {
       const one = drawings[n];
-      const holder = one.node.parentElement;
-      holder.dataset.series = series;
+      const holder = /** @type {HTMLElement} */ (one.node.parentElement);
+      holder.dataset.series = String(series);
       one.node.setAttribute("aria-label", `${name}: crank ${withUnit(row.crank_mm, "mm", 4)}, rod ${withUnit(row.rod_mm, "mm", 4)}, offset ${withUnit(row.offset_mm, "mm", 4)}`);
       if (machines.length > 1) {
         const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
         title.textContent = name;
       }
-      one.show(row, curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest });
+      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest });
       one.turn(turning.angle);
     });
     showForces();
     tell(turning);
   }
 
+  /** @param {{ angle: number, playing: boolean }} state */
   function tell({ angle: at, playing }) {
     for (const one of drawings) one.turn(at, !playing);
     const now = performance.now();
     if (!machines.length || (playing && now - since < EVERY)) return;
     since = now;
-    angle.value = at;
+    angle.value = String(at);
     const words = `${Math.round(at) % 360}°`;
     if (told.textContent !== words) told.textContent = words;
     if (playing) return;
@@ -94,17 +106,23 @@ export function stage(place, turning) {
     angle.setAttribute("aria-valuetext", `${words}, slider at ${withUnit(position, "mm", 4)}`);
   }
 
-  let [was, since] = [null, 0];
+  /** @type {boolean | null} */
+  let was = null;
+  let since = 0;
   turning.listen((state) => {
     tell(state);
     if (state.playing === was) return;
     was = state.playing;
     toggle.textContent = was ? "Pause" : "Play";
   });
-  return { show, fade: (yes) => drawings.forEach((one) => one.fade(yes)), close: () => drawings.forEach((one) => one.close()) };
+  return { show, fade: (/** @type {boolean} */ yes) => drawings.forEach((one) => one.fade(yes)), close: () => drawings.forEach((one) => one.close()) };
 }
 
-/** Let the crank of a drawing be dragged; hold(angle) is told. */
+/**
+ * Let the crank of a drawing be dragged; hold(angle) is told.
+ * @param {ReturnType<typeof drawing>} one
+ * @param {(angle: number) => void} hold
+ */
 function draggable(one, hold) {
   const { handle } = one;
   let held = false;

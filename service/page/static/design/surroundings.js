@@ -2,7 +2,13 @@
 
 import { get } from "../lib/api.js";
 
-/** Return the objectives of all designs of a front, as rows by column. */
+/**
+ * Return the objectives of all designs of a front, as rows by column.
+ * @param {string} job
+ * @param {Api.Front} front
+ * @param {AbortSignal} signal
+ * @returns {Promise<Api.Row[]>}
+ */
 export async function loadFront(job, front, signal) {
   const keys = front.objectives.map(({ column }) => column);
   const { values, count } = await get(`jobs/${job}/columns`, { columns: keys.join(",") }, signal);

@@ -19,27 +19,37 @@ const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
 /**
  * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
  * itself again with null.
+ * @param {string} job
+ * @param {number} number
+ * @param {{ signal?: AbortSignal }} options
  */
 export function takeAway(job, number, { signal } = {}) {
+  /** @type {Page.Lengths | null} */
   let lengths = null;
-  const anchor = (path, title, words) => h("a", { class: "button", "data-path": path, download: "", title: words }, title);
+  /**
+   * @param {string} path
+   * @param {string} title
+   * @param {string} words
+   */
+  const anchor = (path, title, words) => ({ path, node: h("a", { class: "button", download: "", title: words }, title) });
   const links = [
     ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),
     ...["png", "svg"].map((kind) => anchor(`jobs/${job}/figures/design_${number}.${kind}`, `Sheet ${kind.toUpperCase()}`, "All curves on one sheet")),
   ];
   const said = h("span", { class: "quiet", role: "status" });
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
+  /** @param {Page.Lengths | null} other */
   const show = (other) => {
     lengths = other;
-    for (const link of links) {
-      const units = WITH_UNITS.test(link.dataset.path.split("/").pop()) ? { units: apiSystem() } : {};
-      link.href = address(link.dataset.path, { ...lengths, ...units });
+    for (const { path, node } of links) {
+      const units = WITH_UNITS.test(path.slice(path.lastIndexOf("/") + 1)) ? { units: apiSystem() } : {};
+      node.href = address(path, { ...lengths, ...units });
     }
     said.textContent = lengths ? `of design ${number}, changed` : "";
   };
   show(null);
   window.addEventListener("units", () => show(lengths), { signal });
-  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, links, copy, said), show };
+  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, links.map(({ node }) => node), copy, said), show };
 }
 
 async function copyLink() {

@@ -4,12 +4,18 @@ import { histogram, tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";
 import { grouped, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 
-/** Put the numbers of the API into `place`. */
+/**
+ * Put the numbers of the API into `place`.
+ * @param {HTMLElement} place
+ * @param {Api.Tolerances} found
+ * @param {{ signal: AbortSignal }} given
+ */
 export function tolerances(place, found, { signal }) {
   const chart = h("div", {});
   const facts = h("div", {});
   const sources = h("div", {});
   fill(place, h("div", { class: "tolerance-columns" }, h("div", {}, chart, facts), sources));
+  /** @type {{ close: () => void } | null} */
   let drawn = null;
 
   function draw() {
@@ -24,12 +30,17 @@ export function tolerances(place, found, { signal }) {
   signal.addEventListener("abort", () => drawn?.close(), { once: true });
 }
 
+/**
+ * @param {HTMLElement} place
+ * @param {Api.Tolerances} found
+ */
 function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_square_mm: square }) {
   const { histogram: bins, samples, stuck } = simulated;
   if (!bins) {
     fill(place, h("p", { class: "quiet" }, "None of the random machines turns fully: lengthen the rod, or narrow the tolerances."));
     return { close() {} };
   }
+  /** @param {number} value */
   const shown = (value) => inShown(value, "mm");
   const marks = [
     { value: shown(square), title: "root sum square" },
@@ -42,8 +53,13 @@ function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_
   return histogram(holder, { edges: bins.edges_mm.map(shown), counts: bins.counts, marks, label });
 }
 
+/** @param {Api.Tolerances} found */
 function numbers(found) {
   const { exact_worst_case_mm: exact, monte_carlo: { percentiles_greatest_mm: percentiles, stuck }, yields } = found;
+  /**
+   * @param {number} size
+   * @param {number} angle
+   */
   const at = (size, angle) => `${withUnit(size, "mm", 4)} at ${text(angle, "deg", 4)}°`;
   const rows = [
     ["worst case, first order", at(found.worst_case_mm, found.worst_case_angle_deg)],
@@ -56,8 +72,14 @@ function numbers(found) {
   return h("dl", { class: "facts" }, rows.map(([title, value]) => [h("dt", {}, title), h("dd", {}, value)]));
 }
 
+/** @param {Api.Tolerances} found */
 function contributions({ contributions: parts }) {
+  /** @param {Api.Contribution} part */
   const limit = (part) => (part.limit_mm === null ? `${text(part.limit_deg, "deg", 3)}°` : withUnit(part.limit_mm, "mm", 3));
+  /**
+   * @param {"share_of_worst_case_percent" | "share_of_variance_percent"} key
+   * @param {string} caption
+   */
   const table = (key, caption) => tornado(
     parts.map((part) => ({ title: `${part.source}, ±${limit(part)}`, value: part[key], text: `${part[key].toFixed(1)} %` })),
     { largest: Math.max(...parts.map((part) => part[key])), good: () => null, caption, signed: false });

@@ -3,9 +3,19 @@
 import { left, link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 
-/** Return the head. */
+/** @typedef {{ job: string, number: number, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
+
+/**
+ * Return the head.
+ * @param {Place} place
+ */
 export function top({ job, number, front, others }) {
   const beside = others.map((one) => one.number).join(",");
+  /**
+   * @param {number} to
+   * @param {string} words
+   * @param {string} sign
+   */
   const step = (to, words, sign) =>
     to >= 1 && to <= front.count
       ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside: beside || null }), "aria-label": words, title: words }, sign)
@@ -20,10 +30,13 @@ export function top({ job, number, front, others }) {
   );
 }
 
+/** @param {Place} place */
 function compare({ job, number, front, others }) {
   const numbers = others.map((one) => one.number);
+  /** @param {number[]} list */
   const to = (list) => link(["jobs", job, "designs", number], { beside: list.join(",") || null });
   const field = h("input", { type: "number", min: 1, max: front.count, required: true, id: "beside", class: "beside-number" });
+  /** @param {Event} event */
   const add = (event) => {
     event.preventDefault();
     const other = Number(field.value);

@@ -1,17 +1,25 @@
 /** What takes a moment: sensitivity and tolerances of a design, computed when the reader comes to it. */
 
-import { get } from "../lib/api.js";
+import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sensitivity } from "./sensitivity.js";
 import { tolerances } from "./tolerances.js";
 
+/**
+ * The topics; show draws what /analysis gives for the name of one.
+ * @type {{ name: string, title: string, show: (place: HTMLElement, found: unknown, given: { objectives: Api.Objective[], signal: AbortSignal }) => void }[]}
+ */
 const TOPICS = [
-  { name: "sensitivity", title: "What it is sensitive to", show: sensitivity },
-  { name: "tolerances", title: "What tolerances do to the slider's position", show: tolerances },
+  { name: "sensitivity", title: "What it is sensitive to", show: (place, found, given) => sensitivity(place, /** @type {Api.Sensitivity} */ (found), given) },
+  { name: "tolerances", title: "What tolerances do to the slider's position", show: (place, found, given) => tolerances(place, /** @type {Api.Tolerances} */ (found), given) },
 ];
 const NEAR = "300px"; // before it is in sight
 
-/** Put the topics into `place`; each shows once it comes near, and says so where the design has none. */
+/**
+ * Put the topics into `place`; each shows once it comes near, and says so where the design has none.
+ * @param {HTMLElement} place
+ * @param {{ job: string, number: number, objectives: Api.Objective[], requirements: Api.Requirements, signal: AbortSignal }} given
+ */
 export function topics(place, { job, number, objectives, requirements, signal }) {
   const sections = TOPICS.map(({ name, title, show }) => {
     const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
@@ -27,7 +35,7 @@ export function topics(place, { job, number, objectives, requirements, signal })
         const { analysis } = await get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal);
         show(body, analysis[name], { objectives, signal });
       } catch (error) {
-        if (error.name !== "AbortError") fill(body, h("p", { class: error.status === 422 ? "quiet" : "error" }, sentence(error.message)));
+        if (!isAbort(error)) fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, sentence(sentenceOf(error))));
       }
     }, { rootMargin: NEAR });
     watcher.observe(section);
@@ -37,6 +45,7 @@ export function topics(place, { job, number, objectives, requirements, signal })
   fill(place, sections);
 }
 
+/** @param {string} text */
 function sentence(text) {
   return `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 }

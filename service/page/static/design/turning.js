@@ -2,6 +2,8 @@
 
 import { turned } from "../charts/cycle.js";
 
+/** @typedef {{ seconds: number, title: string, chosen: boolean }} Pace */
+
 const READABLE = [1, 8]; // s of a turn that can be followed at its real speed
 const TURNS = [16, 8, 4, 2, 1]; // s of a turn, to choose from
 const SHORTEST = 0.2; // s of a turn that a screen can show
@@ -10,16 +12,20 @@ const SHORTEST = 0.2; // s of a turn that a screen can show
  * Return the shared crank angle: {angle, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
  * rpm: of the crank, its sign the direction. told({angle, playing, settled}) is called for every change and every frame; settled:
  * whether nothing moves, so that what takes longer to draw may be drawn.
+ * @param {number} rpm
+ * @param {AbortSignal} signal
  */
 export function turning(rpm, signal) {
+  /** @type {((turn: Page.Turn) => void)[]} */
   const listeners = [];
   const paces = pacesOf(rpm);
   const direction = rpm < 0 ? -1 : 1;
   let frame = 0;
   let last = 0;
-  const state = { angle: 0, playing: false, pace: paces.find((pace) => pace.chosen), paces };
+  const state = { angle: 0, playing: false, pace: paces.find((pace) => pace.chosen) ?? paces[0], paces };
 
   const tell = () => listeners.forEach((told) => told({ angle: state.angle, playing: state.playing, settled: !state.playing }));
+  /** @param {number} now */
   const step = (now) => {
     const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a pause of the browser it goes on where it was
     last = now;
@@ -36,6 +42,7 @@ export function turning(rpm, signal) {
   signal.addEventListener("abort", () => cancelAnimationFrame(frame), { once: true });
   return Object.assign(state, {
     direction,
+    /** @param {number} angle */
     set(angle) {
       state.angle = turned(angle);
       if (!frame) tell();
@@ -48,9 +55,11 @@ export function turning(rpm, signal) {
       frame = requestAnimationFrame(step);
     },
     pause,
+    /** @param {Pace} pace */
     choose(pace) {
       state.pace = pace;
     },
+    /** @param {(turn: Page.Turn) => void} told */
     listen(told) {
       listeners.push(told);
       told({ angle: state.angle, playing: state.playing, settled: !state.playing });
@@ -58,7 +67,11 @@ export function turning(rpm, signal) {
   });
 }
 
-/** Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen. */
+/**
+ * Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen.
+ * @param {number} rpm
+ * @returns {Pace[]}
+ */
 function pacesOf(rpm) {
   const real = rpm ? 60 / Math.abs(rpm) : null;
   const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds)}${real ? `, ${share(real / seconds)}` : ""}` }));
@@ -72,11 +85,13 @@ function pacesOf(rpm) {
   return paces.map((pace) => ({ ...pace, chosen: pace.seconds === chosen }));
 }
 
+/** @param {number} seconds */
 function turn(seconds) {
   if (seconds >= 120) return `one turn in ${Number((seconds / 60).toPrecision(3))} min`;
   return `one turn in ${Number(seconds.toPrecision(3))} s`;
 }
 
+/** @param {number} ratio */
 function share(ratio) {
   if (Math.abs(ratio - 1) < 1e-9) return "real speed";
   return ratio < 1 ? `1/${Number((1 / ratio).toPrecision(3))} of real speed` : `${Number(ratio.toPrecision(3))} times real speed`;

@@ -1,13 +1,15 @@
 /** What if the lengths were others? Sliders, and where the change leaves the front. */
 
-import { post } from "../lib/api.js";
+import { isAbort, post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { difference } from "./numbers.js";
+import { lengthsOf } from "./loading.js";
 import { rankOf } from "./objectives.js";
 
+/** @type {[keyof Page.Lengths, string][]} */
 const LENGTHS = [["crank_mm", "Crank"], ["rod_mm", "Rod"], ["offset_mm", "Offset"]];
 const STEPS = 1000; // of a slider over its range
 const SAME = 1e-9; // relative
@@ -16,10 +18,18 @@ const SAME = 1e-9; // relative
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
  * of the job; start: lengths to begin with, or null. changed(answer): the answer of the API that is drawn, null for the design
  * itself; refused(sentence). Returns {draw()}: once more, in other units.
+ * @param {HTMLElement} place
+ * @param {{
+ *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
+ *   objectives: Api.Objective[], front: Api.Row[], start: Page.Lengths | null, signal: AbortSignal,
+ *   changed: (answer: Api.WhatIf | null, lengths?: Page.Lengths) => void, refused: (sentence: string) => void,
+ * }} given
  */
 export function whatIf(place, { job, path, base, ranges, requirements, objectives, front, start, changed, refused, signal }) {
-  const lengths = Object.fromEntries(LENGTHS.map(([key]) => [key, start?.[key] ?? base[key]]));
-  const fields = {};
+  const own = lengthsOf(base);
+  const lengths = { ...(start ?? own) };
+  /** @type {ReturnType<typeof lengthRow>[]} */
+  let rows = [];
   const controls = h("div", { class: "lengths" });
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
   const equal = requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
@@ -34,15 +44,16 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
   fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, picture);
   const map = frontMap(picture, { objectives, front });
+  /** @type {Api.WhatIf | null} */
   let answer = null;
   let busy = false;
   let again = false;
 
-  const moved = () => LENGTHS.some(([key]) => Math.abs(lengths[key] - base[key]) > SAME * Math.abs(base[key] || 1));
+  const moved = () => LENGTHS.some(([key]) => Math.abs(lengths[key] - own[key]) > SAME * Math.abs(own[key] || 1));
 
   function back() {
-    for (const [key] of LENGTHS) lengths[key] = base[key];
-    fields.show();
+    Object.assign(lengths, own);
+    showLengths();
     ask();
   }
 
@@ -66,15 +77,15 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
       if (moved()) {
         answer = found;
         if (holding.checked && !again) follow(found.design);
-        changed(found, Object.fromEntries(LENGTHS.map(([key]) => [key, found.design[key]])));
+        changed(found, lengthsOf(found.design));
         tell();
       }
     } catch (error) {
-      if (error.name === "AbortError") return;
+      if (isAbort(error)) return;
       if (moved()) {
         answer = null;
-        refused(error.message);
-        fill(verdict, h("p", { class: "bad", role: "alert" }, error.message));
+        refused(sentenceOf(error));
+        fill(verdict, h("p", { class: "bad", role: "alert" }, sentenceOf(error)));
         fill(results);
         map.show(base, null);
       }
@@ -87,12 +98,16 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     }
   }
 
-  /** Let the other lengths stand where they followed to. */
+  /**
+   * Let the other lengths stand where they followed to.
+   * @param {Api.Row} design
+   */
   function follow(design) {
-    for (const [key] of LENGTHS) {
-      if (key === `${last}_mm`) continue;
-      lengths[key] = design[key];
-      fields.one(key, design[key]);
+    const to = lengthsOf(design);
+    for (const row of rows) {
+      if (row.key === `${last}_mm`) continue;
+      lengths[row.key] = to[row.key];
+      row.show(to[row.key]);
     }
   }
 
@@ -108,15 +123,17 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   }
 
   function drawControls() {
-    const rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
+    rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
       lengths[key] = value;
       last = key.replace("_mm", "");
       ask();
     }));
-    fields.one = (name, value) => rows.find(({ key }) => key === name).show(value);
     fill(controls, rows.map((row) => row.node));
-    fields.show = () => rows.forEach((row) => row.show(lengths[row.key]));
-    fields.show();
+    showLengths();
+  }
+
+  function showLengths() {
+    for (const row of rows) row.show(lengths[row.key]);
   }
 
   drawControls();
@@ -131,23 +148,34 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   };
 }
 
+/**
+ * @param {keyof Page.Lengths} key
+ * @param {string} title
+ * @param {readonly number[]} ends
+ * @param {(value: number) => void} set
+ */
 function lengthRow(key, title, [low, high], set) {
   const fixed = low === high;
+  /** @param {number} value */
   const digits = (value) => Number(inShown(value, "mm").toPrecision(6));
   const id = `what-if-${key}`;
-  const number = h("input", { type: "number", id, step: "any", disabled: fixed, min: digits(low), max: digits(high), oninput: () => take(number, Number.parseFloat(number.value)) });
-  const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: () => {
-    const value = low + (slider.value / STEPS) * (high - low);
-    number.value = digits(value);
-    take(slider, inShown(value, "mm"));
+  const number = h("input", { type: "number", id, step: "any", disabled: fixed, min: digits(low), max: digits(high), oninput: ({ currentTarget }) => take(currentTarget, Number.parseFloat(currentTarget.value)) });
+  const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: ({ currentTarget }) => {
+    const value = low + (Number(currentTarget.value) / STEPS) * (high - low);
+    number.value = String(digits(value));
+    take(currentTarget, inShown(value, "mm"));
   } });
 
+  /**
+   * @param {Element} from
+   * @param {number} shown
+   */
   function take(from, shown) {
     const value = fromShown(shown, "mm");
     const inside = Number.isFinite(value) && value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high);
     number.setAttribute("aria-invalid", String(!inside));
     if (!inside) return;
-    if (from === number) slider.value = high > low ? (STEPS * (value - low)) / (high - low) : 0;
+    if (from === number) slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
     slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
     set(value);
   }
@@ -156,20 +184,26 @@ function lengthRow(key, title, [low, high], set) {
     key,
     node: h("div", { class: "length" }, h("label", { for: id }, title), slider, number, h("span", { class: "quiet" }, unitOf("mm")),
       h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`)),
+    /** @param {number} value */
     show(value) {
-      number.value = digits(value);
+      number.value = String(digits(value));
       number.setAttribute("aria-invalid", "false");
-      slider.value = high > low ? (STEPS * (value - low)) / (high - low) : 0;
+      slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
       slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
     },
   };
 }
 
+/**
+ * @param {Api.Objective[]} objectives
+ * @param {Api.Row} before
+ * @param {Api.Row} after
+ */
 function comparison(objectives, before, after) {
   const rows = objectives.map((objective) => {
     const [from, to] = [before, after].map((row) => row[objective.column]);
     const gain = rankOf(from, objective) - rankOf(to, objective);
-    const same = Math.abs(gain) <= SAME * Math.abs(from || 1);
+    const same = Math.abs(gain) <= SAME * Math.abs(Number(from) || 1);
     const word = same ? "same" : gain > 0 ? "better" : "worse";
     return h("tr", {}, h("th", { scope: "row" }, objective.title), h("td", { class: "number quiet" }, text(from, objective.unit)),
       h("td", { class: "number", "data-key": objective.column, "data-value": String(to) }, withUnit(to, objective.unit)),
@@ -180,12 +214,17 @@ function comparison(objectives, before, after) {
     h("tbody", {}, rows));
 }
 
+/**
+ * @param {Api.WhatIf} answer
+ * @param {Api.Requirement[]} requirements
+ * @param {string} job
+ */
 function sentences(answer, requirements, job) {
   const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
   const found = broken.map((column) => {
     if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Breaks a rule: neither stroke is the slow one." : `Breaks a rule: the slow stroke is the ${design.slow_stroke} one.`);
     const asked = requirements.find((one) => one.column === column);
-    return h("p", { class: "bad" }, `Breaks a rule: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`);
+    return asked ? h("p", { class: "bad" }, `Breaks a rule: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
   });
   if (count) {
     const shown = better.slice(0, 3).map((number, n) => [n ? ", " : "", h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`)]);
@@ -198,6 +237,7 @@ function sentences(answer, requirements, job) {
   return found;
 }
 
+/** @param {Api.Requirement} requirement */
 function bounds({ lower, upper, unit }) {
   if (lower === null) return `at most ${withUnit(upper, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;

@@ -1,14 +1,21 @@
 /** Live checks: what the service says of the job while it is typed, a moment after the last change; only the latest answer counts. */
 
-import { post } from "../lib/api.js";
+import { isAbort, post, statusOf } from "../lib/api.js";
 
 const WAIT = 200; // ms
 const AGAIN = 3000; // ms until the next try while the service does not answer
 
-/** Return a function that asks about a job; told({answer}) or told({problem}) with the latest; `signal` ends it. */
+/**
+ * Return a function that asks about a job; told({answer}) or told({problem}) with the latest; `signal` ends it.
+ * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} told
+ * @param {AbortSignal} signal
+ */
 export function checker(told, signal) {
-  let timer = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  /** @type {AbortController | null} */
   let asked = null;
+  /** @param {Form.Job} job */
   const ask = async (job) => {
     asked?.abort();
     const mine = (asked = new AbortController());
@@ -16,16 +23,16 @@ export function checker(told, signal) {
       const answer = await post("preview", { job }, { signal: mine.signal });
       if (asked === mine && !signal.aborted) told({ answer });
     } catch (problem) {
-      if (problem.name === "AbortError" || asked !== mine || signal.aborted) return;
+      if (isAbort(problem) || asked !== mine || signal.aborted) return;
       told({ problem });
-      if (problem.status === 0) timer = setTimeout(() => ask(job), AGAIN);
+      if (statusOf(problem) === 0) timer = setTimeout(() => ask(job), AGAIN);
     }
   };
   signal.addEventListener("abort", () => {
     clearTimeout(timer);
     asked?.abort();
   });
-  return (job, { now = false } = {}) => {
+  return (/** @type {Form.Job} */ job, { now = false } = {}) => {
     clearTimeout(timer);
     asked?.abort(); // what it says is of another job by now
     timer = setTimeout(() => ask(structuredClone(job)), now ? 0 : WAIT);

@@ -6,40 +6,58 @@ import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
 import { convert, join, split, unitsOf, usual } from "./units.js";
 
-/** Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can say. */
+/** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
+const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list };
+
+/**
+ * Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can say.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Partial<Form.Looks>} options
+ * @returns {HTMLElement | null}
+ */
 export function byschema(form, path, options = {}) {
   const node = form.schema.property(path);
   if (!node) return null;
   const found = describe(node);
-  const label = options.label ?? words(path.at(-1));
+  const label = options.label ?? words(path[path.length - 1]);
   const why = options.why ?? found.description;
-  const make = { quantity, choice, whole: plain, ratio: plain, text: plain, list };
   if (found.control === "table") {
-    const inner = found.keys.map((key) => byschema(form, [...path, key])).filter(Boolean);
+    const inner = (found.keys ?? []).map((key) => byschema(form, [...path, key]));
     return h("fieldset", { class: "inner" }, h("legend", {}, label), h("div", { class: "fields" }, inner));
   }
-  return make[found.control]?.(form, path, { ...found, ...options, label, why }) ?? null;
+  const make = MAKE[found.control];
+  return make ? make(form, path, { ...found, ...options, label, why }) : null;
 }
 
-/** Return a field of a number with its unit. */
+/**
+ * Return a field of a number with its unit.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Form.Looks} looks
+ */
 export function quantity(form, path, { kind, percent = false, label, why, wide }) {
   const { number, unit } = split(form.at(path), kind);
   const input = numberInput(idOf(path, "c"), number);
-  const select = unitSelect(label, kind, unit, percent, idOf(path, "u"));
+  const select = kind ? unitSelect(label, kind, unit, percent, idOf(path, "u")) : null;
   const write = () => form.put(path, join(input.value, select?.value ?? ""));
   input.addEventListener("input", write);
   select?.addEventListener("change", () => {
-    input.value = convert(input.value, select.dataset.from, select.value, kind);
-    select.dataset.from = select.value;
+    changeUnit(select, [input], kind);
     write();
   });
-  return field(form, path, label, [input, select].filter(Boolean), why, { wide });
+  return field(form, path, label, select ? [input, select] : [input], why, { wide });
 }
 
-/** Return a field of one of several words. Left out means the fallback. */
-export function choice(form, path, { options, fallback, label, why, required = false, changed = () => {} }) {
+/**
+ * Return a field of one of several words. Left out means the fallback.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Form.Looks} looks
+ */
+export function choice(form, path, { options = [], fallback, label, why, required = false, changed = () => {} }) {
   const given = form.at(path);
-  const known = given === undefined || options.includes(given);
+  const known = given === undefined || options.some((one) => one === given);
   const shown = [...(required ? [] : [["", fallback === undefined ? "not given" : `${fallback} (usual)`]]), ...options.map((one) => [String(one), words(one)])];
   if (!known) shown.push([String(given), String(given)]);
   const select = h("select", { id: idOf(path, "c") }, shown.map(([value, text]) => h("option", { value, selected: value === String(given ?? "") }, text)));
@@ -50,7 +68,12 @@ export function choice(form, path, { options, fallback, label, why, required = f
   return field(form, path, label, [select], why);
 }
 
-/** Return a field of a text, a ratio or a whole number; what is no number is kept as it was typed, for the service to say so. */
+/**
+ * Return a field of a text, a ratio or a whole number; what is no number is kept as it was typed, for the service to say so.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Form.Looks} looks
+ */
 export function plain(form, path, { control, label, why, wide = false, long = false, fallback }) {
   const given = form.at(path);
   const text = given === undefined ? "" : typeof given === "string" ? given : JSON.stringify(given);
@@ -64,7 +87,12 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
   return field(form, path, label, [input], why, { wide });
 }
 
-/** Return a field of a list, its entries separated by commas. */
+/**
+ * Return a field of a list, its entries separated by commas.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Form.Looks} looks
+ */
 export function list(form, path, { label, why, example }) {
   const given = form.at(path);
   const text = Array.isArray(given) ? given.join(", ") : given === undefined ? "" : JSON.stringify(given);
@@ -76,21 +104,47 @@ export function list(form, path, { label, why, example }) {
   return field(form, path, label, [input], `${why}; separated by commas`, { wide: true });
 }
 
-/** Return an input for a number as text, so that what is mistyped can be said. */
+/**
+ * Return an input for a number as text, so that what is mistyped can be said.
+ * @param {string} id
+ * @param {string} value
+ * @param {string | null} label
+ */
 export function numberInput(id, value, label = null) {
   return h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "short number", id, value, "aria-label": label });
 }
 
-/** Return a select of the units of a kind; null for a ratio. A unit that is not in the list is added to it. */
+/**
+ * Return a select of the units of a kind. A unit that is not in the list is added to it.
+ * @param {string} label
+ * @param {string} kind
+ * @param {string} unit
+ * @param {boolean} percent
+ * @param {string | null} id
+ */
 export function unitSelect(label, kind, unit, percent = false, id = null) {
-  if (!kind) return null;
   const units = unitsOf(kind, { percent });
   const chosen = unit || usual(kind);
   const select = h("select", { class: "unit", id, "aria-label": `Unit of ${label}`, "data-from": chosen }, units.map((one) => h("option", { value: one, selected: one === chosen }, one.replace("^2", "²").replace("^3", "³"))));
   return select;
 }
 
-/** Return what a job holds for a typed number: a number if it is one. */
+/**
+ * Have inputs show the same values in the unit that was chosen.
+ * @param {HTMLSelectElement} select
+ * @param {HTMLInputElement[]} inputs
+ * @param {string | null | undefined} kind
+ */
+export function changeUnit(select, inputs, kind) {
+  const from = select.dataset.from ?? select.value;
+  for (const input of inputs) input.value = convert(input.value, from, select.value, kind);
+  select.dataset.from = select.value;
+}
+
+/**
+ * Return what a job holds for a typed number: a number if it is one.
+ * @param {string} text
+ */
 export function number(text) {
   const typed = text.trim().replaceAll("−", "-");
   if (typed === "") return undefined;

@@ -2,17 +2,23 @@
 
 const KEY = "new-run";
 
-/** Return the draft {job, submission, source, key}; null if there is none. */
+/**
+ * Return the draft {job, submission, source, key}; null if there is none.
+ * @returns {Form.Draft | null}
+ */
 export function kept() {
   try {
-    const found = JSON.parse(sessionStorage.getItem(KEY));
+    const found = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
     return found && typeof found.job === "object" ? found : null;
   } catch {
     return null;
   }
 }
 
-/** Keep a draft; null forgets it. */
+/**
+ * Keep a draft; null forgets it.
+ * @param {Form.Draft | null} draft
+ */
 export function keepDraft(draft) {
   try {
     if (draft === null) sessionStorage.removeItem(KEY);

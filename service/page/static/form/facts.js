@@ -4,12 +4,21 @@ import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { limitText, unitOf, withUnit } from "../lib/numbers.js";
 
-/** Fill a place with what a preview says. */
+/**
+ * Fill a place with what a preview says.
+ * @param {HTMLElement} place
+ * @param {Api.Preview} preview
+ */
 export function showFacts(place, { allowed, example, understood }) {
   if (!allowed) {
     fill(place, h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."));
     return;
   }
+  /**
+   * @param {string} title
+   * @param {Dom.Child} value
+   * @param {string | null} note
+   */
   const row = (title, value, note = null) => [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
   fill(
     place,
@@ -30,16 +39,23 @@ export function showFacts(place, { allowed, example, understood }) {
   );
 }
 
+/** @param {Api.Understood} understood */
 function understanding(understood) {
+  /** @type {[string, string[]][]} */
   const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Rules", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
   return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, line)))]);
 }
 
+/** @param {number} value */
 function share(value) {
   if (value > 0 && value < 0.01) return "under 1 %";
   return value > 0.99 && value < 1 ? "over 99 %" : `${Math.round(100 * value)} %`;
 }
 
+/**
+ * @param {readonly number[] | null} ends
+ * @param {string} unit
+ */
 function between(ends, unit) {
   if (!ends) return "none";
   const [low, high] = ends;

@@ -6,6 +6,12 @@ import { idOf, written } from "./path.js";
 /**
  * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
  * page of its own. The field is registered with the form, which tells it what is wrong.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {string} label
+ * @param {HTMLElement[]} controls
+ * @param {Form.Why | undefined} why
+ * @param {{ wide?: boolean, labelled?: boolean, register?: boolean }} looks
  */
 export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
   const id = idOf(path, "c");
@@ -24,7 +30,12 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   return node;
 }
 
-/** Return a button "?" and the sentence that it shows and hides; null without a sentence. */
+/**
+ * Return a button "?" and the sentence that it shows and hides; null without a sentence.
+ * @param {string} id
+ * @param {string} label
+ * @param {Form.Why | undefined} why
+ */
 export function explanation(id, label, why) {
   const { sentence, name } = typeof why === "string" ? { sentence: why, name: null } : why ?? {};
   if (!sentence) return null;
@@ -42,10 +53,16 @@ export function explanation(id, label, why) {
   return { button, text };
 }
 
-/** Show on fields what is wrong; return the sentences that belong to no field. */
+/**
+ * Show on fields what is wrong; return the sentences that belong to no field.
+ * @param {Form.Field[]} fields
+ * @param {Api.Wrong[]} wrong
+ */
 export function showWrong(fields, wrong) {
   for (const one of fields) say(one, []);
+  /** @type {Map<Form.Field, string[]>} */
   const told = new Map();
+  /** @type {string[]} */
   const elsewhere = [];
   for (const { path, sentence } of wrong) {
     const found = path === "" ? null : nearest(fields, path);
@@ -56,6 +73,10 @@ export function showWrong(fields, wrong) {
   return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
 }
 
+/**
+ * @param {Form.Field} one
+ * @param {string[]} sentences
+ */
 function say(one, sentences) {
   const bad = sentences.length > 0;
   one.error.hidden = !bad;
@@ -69,19 +90,32 @@ function say(one, sentences) {
       control.removeAttribute("aria-describedby");
     }
   }
-  if (bad) for (let fold = one.node.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  if (bad) for (let fold = one.node.closest("details"); fold; fold = fold.parentElement?.closest("details") ?? null) fold.open = true;
 }
 
+/**
+ * @param {Form.Field[]} fields
+ * @param {string} path
+ */
 function nearest(fields, path) {
+  /**
+   * @param {string} outer
+   * @param {string} inner
+   */
   const within = (outer, inner) => inner === outer || inner.startsWith(`${outer}.`) || inner.startsWith(`${outer} #`);
   const above = fields.filter((one) => within(one.key, path)).sort((a, b) => b.key.length - a.key.length);
   return above[0] ?? fields.find((one) => within(path, one.key)) ?? null;
 }
 
+/**
+ * @param {string} outer
+ * @param {string} path
+ */
 function rest(outer, path) {
   return path.startsWith(outer) ? path.slice(outer.length).replace(/^\./, "") : path;
 }
 
+/** @param {string} text */
 function capital(text) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -1,16 +1,21 @@
 /** The job as a file: its text beside the form, in step with it; taken in from a file, given out as one. */
 
-import { address, get, post, Problem } from "../lib/api.js";
+import { address, get, post, Problem, sentenceOf } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { say, sayProblem } from "../lib/notices.js";
 
 const WAIT = 300; // ms after the last letter until the text is taken into the form
 
-/** Return {node, refresh}: the part of the form that has the job as a text. taken(job, source) is called with a job from a text or a file. */
+/**
+ * Return {node, refresh}: the part of the form that has the job as a text. taken(job, source) is called with a job from a text or a file.
+ * @param {Form.Whole} form
+ * @param {(job: Form.Job, source: string | null) => void} taken
+ */
 export function jobFile(form, taken) {
   const wrong = h("p", { class: "error", id: "job-text-error", hidden: true });
   const text = h("textarea", { id: "job-text", rows: 16, spellcheck: "false", "aria-describedby": "job-text-error" });
-  let timer = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
   text.addEventListener("input", () => {
     clearTimeout(timer);
     timer = setTimeout(read, WAIT);
@@ -22,7 +27,7 @@ export function jobFile(form, taken) {
       job = JSON.parse(text.value);
       if (job === null || typeof job !== "object" || Array.isArray(job)) problem = "A job is a JSON object; put it in braces.";
     } catch (error) {
-      problem = `This is no valid JSON yet: ${error.message}`;
+      problem = `This is no valid JSON yet: ${sentenceOf(error)}`;
     }
     wrong.textContent = problem;
     wrong.hidden = !problem;
@@ -33,9 +38,11 @@ export function jobFile(form, taken) {
 
   const file = h("input", { type: "file", id: "job-import", accept: ".toml,.json,application/json,application/toml", class: "hidden", tabindex: "-1", "aria-label": "Job file to import" });
   file.addEventListener("change", () => {
-    if (file.files[0]) load(file.files[0]);
+    const [given] = file.files ?? [];
+    if (given) load(given);
     file.value = "";
   });
+  /** @param {File} given */
   async function load(given) {
     try {
       taken(await jobOf(given), given.name);
@@ -45,6 +52,7 @@ export function jobFile(form, taken) {
     }
   }
 
+  /** @param {"json" | "toml"} kind */
   const save = async (kind) => {
     try {
       const content = kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job);
@@ -72,6 +80,10 @@ export function jobFile(form, taken) {
   };
 }
 
+/**
+ * @param {File} file
+ * @returns {Promise<Form.Job>}
+ */
 async function jobOf(file) {
   if (file.size > 1e6) throw new Problem(0, "A job file has at most 1 MB; is it the right file?");
   const content = await file.text();
@@ -80,29 +92,39 @@ async function jobOf(file) {
   try {
     job = JSON.parse(content);
   } catch (error) {
-    throw new Problem(0, `${file.name} is no valid JSON: ${error.message}`);
+    throw new Problem(0, `${file.name} is no valid JSON: ${sentenceOf(error)}`);
   }
   if (job === null || typeof job !== "object" || Array.isArray(job)) throw new Problem(0, "A job is a JSON object; put it in braces.");
   return job;
 }
 
+/** @param {Form.Job} job */
 async function toml(job) {
   const response = await fetch(address("toml"), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
   if (!response.ok) throw new Problem(response.status, (await response.json()).detail);
   return response.text();
 }
 
+/**
+ * @param {string} content
+ * @param {string} type
+ * @param {string} name
+ */
 function download(content, type, name) {
   const link = h("a", { href: URL.createObjectURL(new Blob([content], { type })), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
+/** @param {unknown} name */
 function slug(name) {
   return String(name ?? "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "job";
 }
 
-/** Return the shipped jobs. */
+/**
+ * Return the shipped jobs.
+ * @param {AbortSignal} signal
+ */
 export async function presets(signal) {
   return (await get("presets", {}, signal)).presets;
 }

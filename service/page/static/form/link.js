@@ -3,8 +3,9 @@
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
-import { idOf } from "./path.js";
+import { idOf, isTable } from "./path.js";
 
+/** @type {Record<string, { title: string, first: Form.Job | undefined, keys: string[], more: string[] }>} */
 const WAYS = {
   none: { title: "without mass", first: undefined, keys: [], more: [] },
   mass: { title: "by its mass", first: { mass: "0.5 kg" }, keys: ["mass"], more: ["inertia", "centre", "centre_across"] },
@@ -16,16 +17,22 @@ const WAYS = {
   },
 };
 
-/** Return the fields of crank or rod. */
+/**
+ * Return the fields of crank or rod.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {string} label
+ */
 export function link(form, path, label) {
   const given = form.at(path);
-  const way = given === undefined ? "none" : given && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";
+  const way = given === undefined ? "none" : isTable(given) && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";
   const select = h("select", { id: idOf(path, "c") }, Object.entries(WAYS).map(([key, { title }]) => h("option", { value: key, selected: key === way }, title)));
   select.addEventListener("change", () => {
     form.put(path, structuredClone(WAYS[select.value].first));
     form.redraw();
   });
   const { keys, more } = WAYS[way];
+  /** @param {string[]} names */
   const fields = (names) => names.map((key) => byschema(form, [...path, key], { label: `${label}, ${key.replace("_", " ")}`, required: true }));
   return [
     field(form, path, `mass of the ${label}`, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),

@@ -3,7 +3,7 @@
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
-import { idOf } from "./path.js";
+import { idOf, isTable } from "./path.js";
 
 const KINDS = [
   { key: "opposes", title: "force against a stroke or the motion", first: { force: "100 N", opposes: "outward stroke" } },
@@ -14,7 +14,10 @@ const KINDS = [
   { key: "crank_angles", title: "table of forces over the crank angle", first: { crank_angles: ["0 deg", "180 deg"], forces: ["0 N", "-100 N"] } },
 ];
 
-/** Return the fields of all loads, with buttons to add and to remove one. */
+/**
+ * Return the fields of all loads, with buttons to add and to remove one.
+ * @param {Form.Whole} form
+ */
 export function loads(form) {
   const given = form.at(["load"]);
   const all = Array.isArray(given) ? given : [];
@@ -26,12 +29,18 @@ export function loads(form) {
   return [all.map((load, place) => one(form, load, place, all)), h("p", {}, add)];
 }
 
+/**
+ * @param {Form.Whole} form
+ * @param {unknown} load
+ * @param {number} place
+ * @param {unknown[]} all
+ */
 function one(form, load, place, all) {
   const path = ["load", place];
-  const kind = KINDS.find(({ key }) => load && key in load) ?? KINDS[0];
+  const kind = KINDS.find(({ key }) => isTable(load) && key in load) ?? KINDS[0];
   const select = h("select", { id: idOf([...path, "kind"]) }, KINDS.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)));
   select.addEventListener("change", () => {
-    form.put(path, structuredClone(KINDS.find(({ key }) => key === select.value).first));
+    form.put(path, structuredClone((KINDS.find(({ key }) => key === select.value) ?? KINDS[0]).first));
     form.redraw();
   });
   const drop = h("button", { type: "button", "aria-label": `Remove load ${place + 1}` }, "Remove");
@@ -40,7 +49,7 @@ function one(form, load, place, all) {
     form.redraw("add-load");
   });
   const whose = tableOf(form.schema, kind.key);
-  const fields = Object.keys(whose.properties).map((key) => byschema(form, [...path, key], { required: whose.required?.includes(key) }));
+  const fields = Object.keys(whose.properties ?? {}).map((key) => byschema(form, [...path, key], { required: whose.required?.includes(key) }));
   return h(
     "fieldset",
     { class: "inner" },
@@ -50,8 +59,12 @@ function one(form, load, place, all) {
   );
 }
 
-/** Return the table of the schema whose loads have a key. */
+/**
+ * Return the table of the schema whose loads have a key.
+ * @param {Form.Whole["schema"]} schema
+ * @param {string} key
+ */
 function tableOf(schema, key) {
-  const items = schema.property(["load"]).items;
-  return items.oneOf.map(schema.resolve).find((table) => table.properties[key]);
+  const tables = schema.property(["load"])?.items?.oneOf ?? [];
+  return tables.map(schema.resolve).find((table) => table.properties?.[key]) ?? {};
 }

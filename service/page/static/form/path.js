@@ -1,53 +1,62 @@
 /** Places in a job: lists of keys, such as ["load", 0, "force"], and what stands there. */
 
-/** Return what stands at a path of a job; undefined where there is nothing. */
+/**
+ * Return what stands at a path of a job; undefined where there is nothing.
+ * @param {unknown} job
+ * @param {Form.Path} path
+ * @returns {unknown}
+ */
 export function at(job, path) {
   let part = job;
   for (const key of path) {
-    if (part === null || typeof part !== "object") return undefined;
+    if (!isTable(part)) return undefined;
     part = part[key];
   }
   return part;
 }
 
-/** Put a value at a path of a job; undefined takes the key away, and the tables that are empty without it. */
+/**
+ * Put a value at a path of a job; undefined takes the key away, and the tables that are empty without it.
+ * @param {Record<string | number, unknown>} job
+ * @param {Form.Path} path
+ * @param {unknown} value
+ */
 export function put(job, path, value) {
   const [key, ...rest] = path;
   if (rest.length === 0) {
     if (value !== undefined) job[key] = value;
-    else if (Array.isArray(job)) job.splice(key, 1);
+    else if (Array.isArray(job)) job.splice(Number(key), 1);
     else delete job[key];
     return;
   }
-  const inner = job[key];
-  if (inner === null || typeof inner !== "object") {
+  let inner = job[key];
+  if (!isTable(inner)) {
     if (value === undefined) return;
-    job[key] = typeof rest[0] === "number" ? [] : {};
+    inner = job[key] = typeof rest[0] === "number" ? [] : {};
   }
-  put(job[key], rest, value);
-  if (value === undefined && isEmpty(job[key]) && !Array.isArray(job)) delete job[key];
+  put(/** @type {Record<string | number, unknown>} */ (inner), rest, value);
+  if (value === undefined && !Object.keys(/** @type {object} */ (inner)).length && !Array.isArray(job)) delete job[key];
 }
 
-/** Return a path as the service writes it: "load #1.force". */
+/**
+ * Return a path as the service writes it: "load #1.force".
+ * @param {Form.Path} path
+ * @returns {string}
+ */
 export function written(path) {
-  return path.reduce((text, key) => (typeof key === "number" ? `${text} #${key + 1}` : text ? `${text}.${key}` : key), "");
+  return path.map((key, place) => (typeof key === "number" ? ` #${key + 1}` : place ? `.${key}` : key)).join("");
 }
 
-/** Return the path that the service means. */
-export function read(text) {
-  const path = [];
-  for (const [, key, place] of text.matchAll(/([^.\s"]+|"[^"]*")(?: #(\d+))?/g)) {
-    path.push(key.replace(/^"|"$/g, ""));
-    if (place) path.push(Number(place) - 1);
-  }
-  return path;
-}
-
-/** Return an id for the control of a path, the same each time that the form is drawn. */
+/**
+ * Return an id for the control of a path, the same each time that the form is drawn.
+ * @param {Form.Path} path
+ * @param {string | number} part
+ */
 export function idOf(path, part = "") {
   return `f-${[...path, part].filter((key) => key !== "").join("-").replace(/[^\w-]/g, "_")}`;
 }
 
-function isEmpty(part) {
-  return part !== null && typeof part === "object" && Object.keys(part).length === 0;
+/** Whether a part of a job is a table, or a list. @type {(part: unknown) => part is Record<string | number, unknown>} */
+export function isTable(part) {
+  return part !== null && typeof part === "object";
 }

@@ -1,18 +1,23 @@
 /** Where a dimension may lie: from one length to another, fixed, or one of several. */
 
 import { h } from "../lib/dom.js";
-import { numberInput, unitSelect } from "./controls.js";
+import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
-import { idOf } from "./path.js";
+import { at, idOf } from "./path.js";
 import { convert, join, split } from "./units.js";
 
 const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["choices", "one of"]];
 
-/** Return the field of the range of crank, rod or offset; why: {sentence, name}. */
+/**
+ * Return the field of the range of crank, rod or offset; why: {sentence, name}.
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {{ label: string, why: Form.Why }} looks
+ */
 export function range(form, path, { label, why }) {
   const given = form.at(path);
   const mode = Array.isArray(given) ? "range" : given !== null && typeof given === "object" ? "choices" : given === undefined ? "range" : "fixed";
-  const ends = mode === "range" ? [given?.[0], given?.[1]] : mode === "fixed" ? [given] : given.choices ?? [];
+  const ends = mode === "range" ? [at(given, [0]), at(given, [1])] : mode === "fixed" ? [given] : [at(given, ["choices"]) ?? []].flat();
   const parts = ends.map((end) => split(end, "length"));
   const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, "length").unit;
   const numbers = parts.map((one) => convert(one.number, one.unit, unit, "length"));
@@ -23,6 +28,7 @@ export function range(form, path, { label, why }) {
       ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, lengths to choose from, separated by commas` })]
       : numbers.map((value, place) => numberInput(idOf(path, place), value, mode === "fixed" ? `${label}, fixed at` : `${label}, ${place ? "to" : "from"}`));
   const typed = () => (mode === "choices" ? inputs[0].value.split(",") : inputs.map((one) => one.value));
+  /** @param {string} to */
   const write = (to = mode) => {
     const values = typed().map((text) => join(text, units.value));
     const first = values.find((one) => one !== undefined);
@@ -32,10 +38,9 @@ export function range(form, path, { label, why }) {
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
   units.addEventListener("change", () => {
-    const to = typed().map((text) => convert(text.trim(), units.dataset.from, units.value, "length"));
-    if (mode === "choices") inputs[0].value = to.join(", ");
-    else inputs.forEach((input, place) => (input.value = to[place]));
-    units.dataset.from = units.value;
+    const from = units.dataset.from ?? units.value;
+    if (mode === "choices") inputs[0].value = typed().map((text) => convert(text.trim(), from, units.value, "length")).join(", ");
+    changeUnit(units, mode === "choices" ? [] : inputs, "length");
     write();
   });
   select.addEventListener("change", () => {

@@ -5,7 +5,10 @@ import { drawing } from "../mechanism/drawing.js";
 
 const TURN = 4000; // ms of a turn
 
-/** Return {node, show(example), close()}; show(null) takes the linkage away. */
+/**
+ * Return {node, show(example), close()}; show(null) takes the linkage away.
+ * @param {AbortSignal} signal
+ */
 export function sketch(signal) {
   const place = h("div", { class: "sketch" });
   const caption = h("p", { class: "quiet" });
@@ -15,6 +18,7 @@ export function sketch(signal) {
   let moving = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   let way = 1;
   let angle = 40;
+  /** @type {number | null} */
   let before = null;
   let shown = false;
   const label = () => (button.textContent = moving ? "Pause" : "Move");
@@ -25,6 +29,7 @@ export function sketch(signal) {
     if (moving) start();
     else drawn.turn(angle);
   });
+  /** @param {number} now */
   function step(now) {
     if (!moving || !shown || signal.aborted) {
       before = null;
@@ -38,13 +43,14 @@ export function sketch(signal) {
   const start = () => {
     if (before === null) requestAnimationFrame(step);
   };
-  signal.addEventListener("abort", () => drawn.close?.());
+  signal.addEventListener("abort", () => drawn.close());
   return {
     node,
+    /** @param {Api.Example | null} example */
     show(example) {
       shown = example !== null;
       place.hidden = button.hidden = !shown;
-      if (!shown) {
+      if (!example) {
         caption.textContent = "No linkage of these ranges turns fully.";
         return;
       }
@@ -52,7 +58,7 @@ export function sketch(signal) {
       caption.textContent = example.feasible ? "One that meets all that was checked" : "One that turns, but does not meet every requirement";
       const { crank_mm, rod_mm, offset_mm, motion } = example;
       drawn.show({ crank_mm, rod_mm, offset_mm }, motion, { direction: way });
-      drawn.fade?.(!example.feasible);
+      drawn.fade(!example.feasible);
       drawn.turn(angle);
       if (moving) start();
     },

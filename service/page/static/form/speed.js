@@ -1,14 +1,17 @@
 /** The speed of the crank and the way in which it turns: one value of the job, whose sign is the direction. */
 
 import { h } from "../lib/dom.js";
-import { numberInput, unitSelect } from "./controls.js";
+import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
-import { convert, join, split } from "./units.js";
+import { join, split } from "./units.js";
 
 const PATH = ["mechanism", "speed"];
 
-/** Return the fields of speed and direction. */
+/**
+ * Return the fields of speed and direction.
+ * @param {Form.Whole} form
+ */
 export function speed(form) {
   const { number, unit } = split(form.at(PATH), "angular speed");
   const backwards = number.startsWith("-");
@@ -30,8 +33,7 @@ export function speed(form) {
   input.addEventListener("input", write);
   way.addEventListener("change", write);
   units.addEventListener("change", () => {
-    input.value = convert(input.value, units.dataset.from, units.value, "angular speed");
-    units.dataset.from = units.value;
+    changeUnit(units, [input], "angular speed");
     write();
   });
   return [

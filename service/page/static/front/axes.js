@@ -1,15 +1,22 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
-import { fill, h } from "../lib/dom.js";
+import { fill, first, h } from "../lib/dom.js";
 import { ends, fromShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
 
+/** @import { Explorer } from "./explorer.js" */
+/** @import { Axis } from "./choices.js" */
+
 const MOST_WORDS = 8; // as ticks; the rest stays in the table
 
-/** Return {above, below, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits. */
+/**
+ * Return {above, below, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits.
+ * @param {Explorer} explorer
+ */
 export function axisFields(explorer) {
   const above = h("div", { class: "axis-heads" });
   const below = h("div", { class: "axis-limits" });
+  /** @type {{ key: string, node: HTMLElement, show: (limit: Page.Limit | undefined) => void }[]} */
   let fields = [];
 
   function draw() {
@@ -21,13 +28,24 @@ export function axisFields(explorer) {
     limits();
   }
 
+  /**
+   * @param {Axis} given
+   * @param {number} index
+   * @param {number} count
+   */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
+    /**
+     * @param {string} sign
+     * @param {string} label
+     * @param {() => void} doing
+     * @param {boolean} disabled
+     */
     const act = (sign, label, doing, disabled = false) =>
       h("button", { type: "button", class: "small", title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: (event) => {
-        const { act: held } = event.currentTarget.dataset;
+        const { act: held = "" } = event.currentTarget.dataset;
         doing();
-        above.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+        first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
       } }, sign);
     return h("div", { class: "axis-head" },
       h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
@@ -38,11 +56,17 @@ export function axisFields(explorer) {
         act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
   }
 
+  /** @param {string} key */
   function field(key) {
     const column = explorer.data.column(key);
     const words = explorer.data.words(key);
     if (words) return ofWords(key, column, words.slice(0, MOST_WORDS));
     const [low, high] = ends(explorer.data.range(key), column.unit);
+    /**
+     * @param {string} side
+     * @param {string} placeholder
+     * @param {string} label
+     */
     const input = (side, placeholder, label) =>
       h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder, "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
     const least = input("min", low, "At least");
@@ -55,8 +79,10 @@ export function axisFields(explorer) {
     return {
       key,
       node: h("div", { class: "axis-limit", role: "group", "aria-label": `Limits of ${column.title}` }, most, least),
+      /** @param {Page.Limit | undefined} limit */
       show(limit) {
-        for (const [node, value] of [[least, limit?.low], [most, limit?.high]]) {
+        for (const [end, node] of /** @type {const} */ ([["low", least], ["high", most]])) {
+          const value = limit?.[end];
           if (document.activeElement === node && node.value.trim() && number(node, column.unit) === value) continue;
           node.value = value === null || value === undefined ? "" : text(value, column.unit, 6);
           node.removeAttribute("aria-invalid");
@@ -65,7 +91,13 @@ export function axisFields(explorer) {
     };
   }
 
+  /**
+   * @param {string} key
+   * @param {Api.Column} column
+   * @param {string[]} words
+   */
   function ofWords(key, column, words) {
+    /** @type {HTMLInputElement[]} */
     const ticks = words.map((word) => h("input", { type: "checkbox", value: word, "data-limit": `is.${key}`, onchange: () => {
       const wanted = ticks.filter(({ checked }) => checked).map(({ value }) => value);
       explorer.limit(key, wanted.length === words.length ? null : { words: wanted });
@@ -73,6 +105,7 @@ export function axisFields(explorer) {
     return {
       key,
       node: h("div", { class: "axis-limit", role: "group", "aria-label": `Only ${column.title}` }, ticks.map((tick) => h("label", {}, tick, ` ${tick.value}`))),
+      /** @param {Page.Limit | undefined} limit */
       show(limit) {
         for (const tick of ticks) tick.checked = !limit?.words || limit.words.includes(tick.value);
       },
@@ -85,7 +118,12 @@ export function axisFields(explorer) {
   return { above, below, draw, limits };
 }
 
-/** Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none. */
+/**
+ * Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none.
+ * @param {HTMLInputElement} node
+ * @param {string} unit
+ * @returns {number | null | undefined}
+ */
 function number(node, unit) {
   const written = node.value.trim().replaceAll("−", "-").replace(",", ".");
   const value = written === "" ? null : fromShown(Number(written), unit);

@@ -1,17 +1,36 @@
 /** What is chosen in the explorer of a front, to and from the address. */
 
+/**
+ * @typedef {{ key: string, flipped: boolean }} Axis
+ * @typedef {ReturnType<typeof choicesFrom>} Chosen
+ */
+
 const MOST = 3; // designs side by side
 
-/** Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights. */
+/**
+ * Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights.
+ * @param {URLSearchParams} query
+ * @param {Api.Front} front
+ */
 export function choicesFrom(query, front) {
   const keys = front.columns.map(({ key }) => key);
-  const known = (key) => keys.includes(key);
+  /** @type {(key: string | null | undefined) => key is string} */
+  const known = (key) => typeof key === "string" && keys.includes(key);
   const objectives = front.objectives.map(({ column }) => column);
   const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
   const labels = keys.filter((key) => key.startsWith("choice_"));
   const strokes = front.strokes_differ ? ["slow_stroke"] : [];
+  /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
-  const one = (name, otherwise) => (known(query.get(name)) ? query.get(name) : otherwise);
+  /**
+   * @param {string} name
+   * @param {string} otherwise
+   */
+  const one = (name, otherwise) => {
+    const asked = query.get(name);
+    return known(asked) ? asked : otherwise;
+  };
+  /** @type {Axis[]} */
   const axes = list("axes").map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") })).filter(({ key }) => known(key));
   const standard = [...sizes, ...labels, ...objectives];
   const columns = list("columns").filter(known);
@@ -34,19 +53,30 @@ export function choicesFrom(query, front) {
   };
 }
 
+/**
+ * @param {URLSearchParams} query
+ * @param {(key: string) => boolean} known
+ */
 function limitsFrom(query, known) {
+  /** @type {Map<string, Page.Limit>} */
   const limits = new Map();
   for (const [name, text] of query) {
     const [, side, key] = /^(min|max|is)\.(.+)$/.exec(name) ?? [];
     if (!side || !known(key)) continue;
     if (side === "is") limits.set(key, { words: text.split("|") });
     else if (text !== "" && Number.isFinite(Number(text))) {
-      limits.set(key, { low: null, high: null, ...limits.get(key), [side === "min" ? "low" : "high"]: Number(text) });
+      const { low = null, high = null } = limits.get(key) ?? {};
+      limits.set(key, side === "min" ? { low: Number(text), high } : { low, high: Number(text) });
     }
   }
   return limits;
 }
 
+/**
+ * @param {URLSearchParams} query
+ * @param {(key: string | undefined) => key is string} known
+ * @returns {Page.Lasso | null}
+ */
 function lassoFrom(query, known) {
   const [x, y, ...corners] = (query.get("lasso") ?? "").split(",");
   const numbers = corners.map(Number);
@@ -54,10 +84,19 @@ function lassoFrom(query, known) {
   return { x, y, line: Array.from({ length: numbers.length / 2 }, (_, index) => [numbers[2 * index], numbers[2 * index + 1]]) };
 }
 
-/** Return the query of an address; what is as it would be anyway is left out. */
+/**
+ * Return the query of an address; what is as it would be anyway is left out.
+ * @param {Chosen} chosen
+ * @param {Page.Lasso | null} lasso
+ */
 export function queryOf(chosen, lasso) {
   const { standard } = chosen;
+  /**
+   * @param {string} value
+   * @param {string | undefined} usual
+   */
   const unless = (value, usual) => (value === usual ? "" : value);
+  /** @type {Record<string, Dom.Value>} */
   const query = {
     axes: unless(chosen.axes.map(({ key, flipped }) => `${flipped ? "-" : ""}${key}`).join(","), standard.axes),
     x: unless(chosen.x, standard.x),
@@ -78,7 +117,11 @@ export function queryOf(chosen, lasso) {
   return query;
 }
 
-/** Return the selected designs with one more, or one less; the first goes when there are too many. */
+/**
+ * Return the selected designs with one more, or one less; the first goes when there are too many.
+ * @param {number[]} selected
+ * @param {number} number
+ */
 export function toggled(selected, number) {
   if (selected.includes(number)) return selected.filter((one) => one !== number);
   return [...selected, number].slice(-MOST);

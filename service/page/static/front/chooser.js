@@ -2,7 +2,13 @@
 
 import { h } from "../lib/dom.js";
 
-/** Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order. */
+/**
+ * Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order.
+ * @param {string} heading
+ * @param {Api.Column[]} columns
+ * @param {() => string[]} chosen
+ * @param {(keys: string[]) => void} choose
+ */
 export function chooser(heading, columns, chosen, choose) {
   const ticks = columns.map(({ key, title, unit }) => {
     const tick = h("input", { type: "checkbox", value: key, onchange: () => {
@@ -16,16 +22,17 @@ export function chooser(heading, columns, chosen, choose) {
     const wanted = find.value.trim().toLowerCase();
     for (const { label } of ticks) label.hidden = !label.textContent.toLowerCase().includes(wanted);
   } });
+  const summary = h("summary", { class: "button" }, heading);
   const node = h("details", { class: "chooser", ontoggle: () => {
     for (const { tick } of ticks) tick.checked = chosen().includes(tick.value);
-  } }, h("summary", { class: "button" }, heading), h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)));
+  } }, summary, h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)));
   node.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !node.open) return;
     node.open = false;
-    node.querySelector("summary").focus();
+    summary.focus();
   });
   node.addEventListener("focusout", (event) => {
-    if (event.relatedTarget && !node.contains(event.relatedTarget)) node.open = false;
+    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget)) node.open = false;
   });
   return node;
 }

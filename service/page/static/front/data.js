@@ -3,8 +3,15 @@
 import { get } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
 
+/** @typedef {{ numbers: Float64Array, words: string[] | null, range: Page.Range }} Kept A column as it is kept. */
+
 /** The front of a job: `front` is what /jobs/N/front says of it. */
 export class FrontData {
+  /**
+   * @param {number} job
+   * @param {Api.Front} front
+   * @param {AbortSignal} [signal]
+   */
   constructor(job, front, signal) {
     this.job = job;
     this.front = front;
@@ -12,17 +19,34 @@ export class FrontData {
     this.columns = front.columns;
     this.objectives = front.objectives;
     this.signal = signal;
+    /** @type {Map<string, Kept>} */
     this.kept = new Map();
+    /** @type {Map<string, Uint32Array>} */
     this.orders = new Map();
     this.known = new Map(front.columns.map((column) => [column.key, column]));
   }
 
-  /** Return {key, title, unit} of a column. */
+  /**
+   * Return {key, title, unit} of a column of this front.
+   * @param {string} key
+   * @returns {Api.Column}
+   */
   column(key) {
-    return this.known.get(key);
+    return /** @type {Api.Column} */ (this.known.get(key));
   }
 
-  /** Fetch those of these columns that are not here yet, in one request. */
+  /**
+   * Whether the designs have a column.
+   * @param {string} key
+   */
+  knows(key) {
+    return this.known.has(key);
+  }
+
+  /**
+   * Fetch those of these columns that are not here yet, in one request.
+   * @param {string[]} keys
+   */
   async need(keys) {
     const wanted = [...new Set(keys)].filter((key) => this.known.has(key) && !this.kept.has(key));
     if (!wanted.length || !this.count) return;
@@ -30,64 +54,104 @@ export class FrontData {
     this.take(values);
   }
 
-  /** Take in columns as the service gives them: {key: cells}. */
+  /**
+   * Take in columns as the service gives them: {key: cells}.
+   * @param {Record<string, Api.Row[string][]>} values
+   */
   take(values) {
     for (const [key, cells] of Object.entries(values)) this.kept.set(key, stored(cells));
   }
 
-  /** Whether a column is here. */
+  /**
+   * Whether a column is here.
+   * @param {string} key
+   */
   has(key) {
     return this.kept.has(key);
   }
 
-  /** Return the numbers of a column, NaN where a design has none; of words, their places in `words(key)`. */
-  numbers(key) {
-    return this.kept.get(key).numbers;
+  /**
+   * Return a column that is here.
+   * @param {string} key
+   */
+  of(key) {
+    return /** @type {Kept} */ (this.kept.get(key));
   }
 
-  /** Return the different words of a column in alphabetical order, null for a column of numbers. */
+  /**
+   * Return the numbers of a column, NaN where a design has none; of words, their places in `words(key)`.
+   * @param {string} key
+   */
+  numbers(key) {
+    return this.of(key).numbers;
+  }
+
+  /**
+   * Return the different words of a column in alphabetical order, null for a column of numbers.
+   * @param {string} key
+   */
   words(key) {
     return this.kept.get(key)?.words ?? null;
   }
 
-  /** Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined. */
+  /**
+   * Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined.
+   * @param {string} key
+   */
   range(key) {
-    return this.kept.get(key).range;
+    return this.of(key).range;
   }
 
-  /** Return what a design, counted from 0, has in a column: a number, a word, or null. */
+  /**
+   * Return what a design, counted from 0, has in a column: a number, a word, or null.
+   * @param {string} key
+   * @param {number} row
+   */
   cell(key, row) {
-    const { numbers, words } = this.kept.get(key);
+    const { numbers, words } = this.of(key);
     const number = numbers[row];
     if (Number.isNaN(number)) return null;
     return words ? words[number] : number;
   }
 
-  /** Return the best sense of a column: "maximise" where more is better, else "minimise". */
+  /**
+   * Return the best sense of a column: "maximise" where more is better, else "minimise".
+   * @param {string} key
+   */
   sense(key) {
     return this.objectives.find(({ column }) => column === key)?.sense ?? "minimise";
   }
 
-  /** Return all designs in the order of a column, smallest first, those without a value last. */
+  /**
+   * Return all designs in the order of a column, smallest first, those without a value last.
+   * @param {string} key
+   */
   order(key) {
-    if (!this.orders.has(key)) {
+    let order = this.orders.get(key);
+    if (!order) {
       const numbers = this.numbers(key);
+      /** @type {(row: number) => number} */
       const size = (row) => (Number.isNaN(numbers[row]) ? Infinity : numbers[row]);
-      this.orders.set(key, Uint32Array.from(numbers.keys()).sort((a, b) => size(a) - size(b) || a - b));
+      order = Uint32Array.from(numbers.keys()).sort((a, b) => size(a) - size(b) || a - b);
+      this.orders.set(key, order);
     }
-    return this.orders.get(key);
+    return order;
   }
 }
 
-/** Return a column as it is kept. Plain loops: of 10,000 designs and more, with iterators they take five times as long. */
+/**
+ * Return a column as it is kept. Plain loops: of 10,000 designs and more, with iterators they take five times as long.
+ * @param {Api.Row[string][]} cells
+ * @returns {Kept}
+ */
 function stored(cells) {
   const words = cells.some((cell) => typeof cell === "string") ? [...new Set(cells.filter((cell) => cell !== null).map(String))].sort() : null;
-  const place = new Map(words?.map((word, index) => [word, index]));
+  const place = new Map((words ?? []).map((word, index) => [word, index]));
   const numbers = new Float64Array(cells.length);
   let [low, high] = [Infinity, -Infinity];
   for (let row = 0; row < cells.length; row += 1) {
     const cell = cells[row];
-    const number = cell === null ? NaN : words ? place.get(String(cell)) : cell;
+    const number = cell === null ? NaN : typeof cell === "number" && !words ? cell : place.get(String(cell)) ?? NaN;
     numbers[row] = number;
     if (number < low) low = number;
     if (number > high) high = number;

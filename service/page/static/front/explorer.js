@@ -21,54 +21,74 @@ const OFTEN = 120; // ms between two tables while limits are dragged: rows are w
 const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
 const ORDER = ["marks", "table", "chosen", "all"];
 
-/** Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. */
+/**
+ * @import { Axis, Chosen } from "./choices.js"
+ * @typedef {"marks" | "table" | "chosen" | "all"} What What a change asks to be drawn, each with those before it.
+ */
+
+/**
+ * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already.
+ * @param {HTMLElement} place
+ * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, signal: AbortSignal }} given
+ */
 export async function explore(place, { job, front, values, query, signal }) {
-  const explorer = new Explorer(job, front, query, signal);
-  explorer.data.take(values);
-  await explorer.data.need(explorer.wanted());
-  if (!signal.aborted) explorer.build(place);
-  return explorer;
+  const data = new FrontData(job.id, front, signal);
+  const chosen = choicesFrom(query, front);
+  const limits = new Limits(data, chosen.limits, chosen.lasso);
+  data.take(values);
+  await data.need(wanted(chosen, limits));
+  if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, signal });
 }
 
-class Explorer {
-  constructor(job, front, query, signal) {
+/** Return the columns that are shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
+function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
+  const keys = [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
+  return keys.filter((key) => key !== "");
+}
+
+/** What is chosen in a front, and the parts that show it; they tell it what the reader does. */
+export class Explorer {
+  /**
+   * @param {HTMLElement} place
+   * @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given
+   */
+  constructor(place, { job, data, chosen, limits, signal }) {
+    this.place = place;
     this.job = job;
-    this.front = front;
+    this.front = data.front;
     this.signal = signal;
-    this.data = new FrontData(job.id, front, signal);
-    this.chosen = choicesFrom(query, front);
-    this.limits = new Limits(this.data, this.chosen.limits, this.chosen.lasso);
+    this.data = data;
+    this.chosen = chosen;
+    this.limits = limits;
+    /** @type {number | null} */
     this.pointed = null;
+    /** @type {number | null} */
     this.picked = null; // by weights
+    /** @type {What | null} */
     this.waiting = null;
     this.frame = 0;
-  }
-
-  /** Return the columns that are shown or limited. */
-  wanted() {
-    const { axes, x, y, colour, columns, sort } = this.chosen;
-    const { lasso } = this.limits;
-    return [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...this.limits.of.keys(), lasso?.x, lasso?.y].filter(Boolean);
-  }
-
-  build(place) {
-    const { data, chosen } = this;
+    this.width = 0;
+    this.ink = colours();
+    this.tabled = -Infinity; // when the table was drawn last, ms
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.settling = undefined;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.tabling = undefined;
     this.count = h("p", { class: "count", role: "status" });
     this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
     this.fields = axisFields(this);
     this.lines = parallel({
-      data, limits: this.limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
+      data, limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
     });
-    const dots = {
-      data, limits: this.limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"),
+    this.dots = scatter({
+      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
       box: (x, y) => {
         this.limits.set(chosen.x, x);
         this.limit(chosen.y, y);
       },
       lasso: (line) => this.surround(line),
-    };
-    this.dots = scatter(dots);
+    });
     this.scatterPanel = scatterPanel(this, this.dots);
     this.table = designTable(this);
     this.marksPanel = marksPanel(this);
@@ -85,7 +105,6 @@ class Explorer {
         h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
         this.table.place));
-    this.place = place;
     const again = () => this.update("all");
     const sizes = new ResizeObserver(() => this.width !== place.clientWidth && again());
     sizes.observe(place);
@@ -100,11 +119,15 @@ class Explorer {
     this.draw("all");
   }
 
-  /** Take over choices and draw what they change: "marks", "table", "chosen" (designs) or "all". */
+  /**
+   * Take over choices and draw what they change: "marks", "table", "chosen" (designs) or "all".
+   * @param {Partial<Chosen>} choices
+   * @param {What} what
+   */
   async change(choices, what) {
     Object.assign(this.chosen, choices);
     try {
-      await this.data.need(this.wanted());
+      await this.data.need(wanted(this.chosen, this.limits));
     } catch (problem) {
       sayProblem(problem);
       return;
@@ -112,7 +135,11 @@ class Explorer {
     this.update(what);
   }
 
-  /** Set a limit, null to let go. */
+  /**
+   * Set a limit, null to let go.
+   * @param {string} key
+   * @param {Page.Limit | null} limit
+   */
   limit(key, limit) {
     this.limits.set(key, limit);
     this.chosen.page = 1;
@@ -120,7 +147,10 @@ class Explorer {
     else this.change({}, "chosen");
   }
 
-  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. */
+  /**
+   * Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go.
+   * @param {Page.Point[] | null} line
+   */
   surround(line) {
     this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
     this.chosen.page = 1;
@@ -133,19 +163,24 @@ class Explorer {
     this.update("marks"); // a line around designs is drawn with them
   }
 
-  /** Draw in the next frame; several changes within a frame are drawn once. */
+  /**
+   * Draw in the next frame; several changes within a frame are drawn once.
+   * @param {What} what
+   */
   update(what) {
-    if (ORDER.indexOf(what) > ORDER.indexOf(this.waiting)) this.waiting = what;
+    if (!this.waiting || ORDER.indexOf(what) > ORDER.indexOf(this.waiting)) this.waiting = what;
     if (this.frame || this.signal.aborted) return;
     this.frame = requestAnimationFrame(() => {
       const { waiting } = this;
-      [this.frame, this.waiting] = [0, null];
-      this.draw(waiting);
+      this.frame = 0;
+      this.waiting = null;
+      if (waiting) this.draw(waiting);
       clearTimeout(this.settling);
       this.settling = setTimeout(() => keep(queryOf(this.chosen, this.limits.lasso)), SETTLED);
     });
   }
 
+  /** @param {What} what */
   draw(what) {
     if (what === "all" || what === "chosen") {
       this.limits.apply();
@@ -171,20 +206,27 @@ class Explorer {
     this.selected.draw();
   }
 
-  /** Draw the table; where it may wait, after the frame, and not again within a moment. */
+  /**
+   * Draw the table; where it may wait, after the frame, and not again within a moment.
+   * @param {boolean} waits
+   */
   drawTable(waits) {
     clearTimeout(this.tabling);
     if (waits) {
-      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - (performance.now() - (this.tabled ?? -Infinity)));
+      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - (performance.now() - this.tabled));
       return;
     }
     this.tabled = performance.now();
     this.table.draw();
   }
 
-  /** Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones. */
+  /**
+   * Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones.
+   * @param {"lines" | "dots"} kind
+   */
   marks(kind) {
     const { ink } = this;
+    /** @type {Page.Mark[]} */
     const found = [];
     if (kind === "dots") for (const [row, names] of this.names()) found.push({ row, colour: ink.text, name: names[0] });
     else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
@@ -196,7 +238,12 @@ class Explorer {
 
   /** Return the names of marked designs by their row: knee, best in an objective, by weights. */
   names() {
+    /** @type {Map<number, string[]>} */
     const names = new Map();
+    /**
+     * @param {number} row
+     * @param {string} name
+     */
     const add = (row, name) => names.set(row, [...(names.get(row) ?? []), name]);
     if (this.front.knee !== null) add(this.front.knee, "knee");
     for (const [quantity, row] of Object.entries(this.front.extremes)) {
@@ -206,49 +253,63 @@ class Explorer {
     return names;
   }
 
+  /** @param {number | null} row */
   point(row) {
     if (row === this.pointed) return;
     this.pointed = row;
     this.update("marks");
   }
 
+  /** @param {number} row */
   open(row) {
     keep(queryOf(this.chosen, this.limits.lasso)); // so that the way back leads here
     location.hash = this.hrefOf(row);
   }
 
-  /** Return the link of a design, beside the selected ones if it is one of them. */
+  /**
+   * Return the link of a design, beside the selected ones if it is one of them.
+   * @param {number} row
+   */
   hrefOf(row) {
     return link(["jobs", this.job.id, "designs", row + 1]);
   }
 
+  /** @param {number} row */
   select(row) {
     this.chosen.selected = toggled(this.chosen.selected, row + 1);
     this.update("marks");
   }
 
+  /** @param {string} key */
   sortBy(key) {
     const { sort, reverse } = this.chosen;
     const best = this.data.sense(key) === "maximise";
     this.change({ sort: key, reverse: sort === key ? !reverse : best, page: 1 }, "table");
   }
 
+  /** @param {Axis[]} axes */
   setAxes(axes) {
     this.change({ axes }, "all");
   }
 
+  /** @param {string[]} keys */
   chooseAxes(keys) {
     if (!keys.length) return;
     const { axes } = this.chosen;
     this.setAxes(keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }));
   }
 
+  /**
+   * @param {number} index
+   * @param {number} by
+   */
   moveAxis(index, by) {
     const axes = [...this.chosen.axes];
     axes.splice(index + by, 0, ...axes.splice(index, 1));
     this.setAxes(axes);
   }
 
+  /** @param {number} index */
   flipAxis(index) {
     this.setAxes(this.chosen.axes.map((axis, other) => (other === index ? { ...axis, flipped: !axis.flipped } : axis)));
   }

@@ -2,6 +2,8 @@
 
 import { inside } from "../charts/lasso.js";
 
+/** @import { FrontData } from "./data.js" */
+
 const NEAR = 1e-9; // relative: a design on a limit is within it, also where the limit was rounded on its way through a unit
 
 /**
@@ -9,6 +11,11 @@ const NEAR = 1e-9; // relative: a design on a limit is within it, also where the
  * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
  */
 export class Limits {
+  /**
+   * @param {FrontData} data
+   * @param {Map<string, Page.Limit>} given
+   * @param {Page.Lasso | null} lasso
+   */
   constructor(data, given = new Map(), lasso = null) {
     this.data = data;
     this.of = given;
@@ -17,7 +24,11 @@ export class Limits {
     this.chosen = 0;
   }
 
-  /** Set the limit of a column, or take it away with null. */
+  /**
+   * Set the limit of a column, or take it away with null.
+   * @param {string} key
+   * @param {Page.Limit | null} limit
+   */
   set(key, limit) {
     const open = !limit || (limit.words ? limit.words.length === 0 : limit.low === null && limit.high === null);
     if (open) this.of.delete(key);
@@ -63,6 +74,7 @@ export class Limits {
 
   /** Return the limits as conditions of the API, which knows no line around designs. */
   conditions() {
+    /** @type {string[]} */
     const found = [];
     for (const [key, limit] of this.of) {
       if (limit.words) {

@@ -1,13 +1,18 @@
 /** What is worth a look in a front: the extremes, the knee with its trade-offs, and what weights choose. */
 
-import { get } from "../lib/api.js";
+import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, withUnit } from "../lib/numbers.js";
 
+/** @import { Explorer } from "./explorer.js" */
+
 const PAUSE = 150; // ms after a slider moved
 
-/** Return {place, draw(what)} of the marks of an explorer. */
+/**
+ * Return {place, draw(what)} of the marks of an explorer.
+ * @param {Explorer} explorer
+ */
 export function marksPanel(explorer) {
   const { data, front, chosen } = explorer;
   const list = h("ul", { class: "marks" });
@@ -24,10 +29,15 @@ export function marksPanel(explorer) {
     several && [h("h3", {}, "Weigh the objectives"),
       h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
       h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
-  let timer = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
   let asked = "";
   explorer.signal.addEventListener("abort", () => clearTimeout(timer));
 
+  /**
+   * @param {Api.Objective} given
+   * @param {number} index
+   */
   function slider({ title }, index) {
     const value = h("output", { class: "number" });
     const input = h("input", { type: "range", min: 0, max: 10, step: 1, name: `weight-${index}`, oninput: () => {
@@ -38,6 +48,7 @@ export function marksPanel(explorer) {
     return { input, value, node: h("label", {}, h("span", {}, title), input, value) };
   }
 
+  /** @param {number[] | null} weights */
   function weigh(weights) {
     explorer.change({ weights }, "marks");
   }
@@ -67,15 +78,19 @@ export function marksPanel(explorer) {
         explorer.picked = number - 1;
         fill(picked, "These weights choose ", h("a", { href: explorer.hrefOf(number - 1) }, `design ${number}`), ".");
       } catch (problem) {
-        if (asked !== question || problem.name === "AbortError") return;
+        if (asked !== question || isAbort(problem)) return;
         explorer.picked = null;
-        if (problem.status === 404) picked.textContent = "No design is within all limits.";
+        if (statusOf(problem) === 404) picked.textContent = "No design is within all limits.";
         else sayProblem(problem);
       }
       explorer.update("marks");
     }, PAUSE);
   }
 
+  /**
+   * @param {number} row
+   * @param {string} name
+   */
   function item(row, name) {
     const of = data.objectives.map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4)).join(" · ");
     return h("li", { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
@@ -84,22 +99,23 @@ export function marksPanel(explorer) {
 
   /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
   async function drawCosts() {
-    if (!front.trade_offs.length) return;
+    if (!front.trade_offs.length || front.knee === null) return;
     const units = apiSystem();
     const asked = units && get(`jobs/${explorer.job.id}/designs/${front.knee + 1}/trade-offs`, { units }, explorer.signal);
     const sentences = asked ? (await asked).trade_offs : front.trade_offs;
     if (units === apiSystem()) fill(costs, sentences.map((sentence) => h("li", {}, sentence)));
   }
 
+  /** @param {string} what */
   async function draw(what) {
     sliders.forEach(({ input, value }, index) => {
-      input.value = chosen.weights?.[index] ?? 1;
-      value.textContent = chosen.weights ? chosen.weights[index] : "–";
+      input.value = String(chosen.weights?.[index] ?? 1);
+      value.textContent = chosen.weights ? String(chosen.weights[index]) : "–";
     });
     off.hidden = !chosen.weights;
     ask();
     if (what !== "all") return;
-    drawCosts().catch((problem) => problem.name !== "AbortError" && sayProblem(problem));
+    drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));
     await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
     fill(list, [...explorer.names()].map(([row, names]) => item(row, names.join(", "))));
   }

@@ -4,28 +4,43 @@ import { fill, h } from "../lib/dom.js";
 import { ends, withUnit } from "../lib/numbers.js";
 import { headed } from "./columns.js";
 
-/** Return {place, draw(), legend(), point()} around the scatter of an explorer. */
+/**
+ * @import { Explorer } from "./explorer.js"
+ * @import { scatter } from "../charts/scatter.js"
+ */
+
+/**
+ * Return {place, draw(), legend(), point()} around the scatter of an explorer.
+ * @param {Explorer} explorer
+ * @param {ReturnType<typeof scatter>} dots
+ */
 export function scatterPanel(explorer, dots) {
   const { data, chosen } = explorer;
-  const pick = (label, name, none) =>
-    h("label", {}, `${label} `, h("select", { name, onchange: (event) => explorer.change({ [name]: event.target.value }, "all") },
-      none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title))));
-  const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.target.value === "line") },
+  /**
+   * @param {string} label
+   * @param {"x" | "y" | "colour"} name
+   * @param {string} none
+   */
+  const pick = (label, name, none = "") => {
+    const select = h("select", { name, onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all") },
+      none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title)));
+    return { name, select, node: h("label", {}, `${label} `, select) };
+  };
+  const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.currentTarget.value === "line") },
     h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
   const tip = h("div", { class: "tip panel", hidden: true });
   const place = h("section", { class: "panel", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
-    h("div", { class: "row picks" }, picks, drag),
+    h("div", { class: "row picks" }, picks.map(({ node }) => node), drag),
     h("div", { class: "dots" }, dots.place, tip),
     key,
     h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
 
   function draw() {
     for (const one of picks) {
-      const select = one.querySelector("select");
-      select.value = chosen[select.name];
+      one.select.value = chosen[one.name];
     }
   }
 
@@ -37,6 +52,10 @@ export function scatterPanel(explorer, dots) {
     const column = data.column(chosen.colour);
     const words = data.words(chosen.colour);
     const inks = dots.colours();
+    /**
+     * @param {string} ink
+     * @param {boolean} [wide]
+     */
     const patch = (ink, wide) => {
       const node = h("span", { class: wide ? "shade" : "patch" });
       node.style.background = ink;
@@ -60,7 +79,7 @@ export function scatterPanel(explorer, dots) {
       const column = data.column(one);
       return [h("dt", {}, column.title), h("dd", { class: "number" }, withUnit(data.cell(one, row), column.unit))];
     })));
-    const at = dots.where(row);
+    const at = dots.where(row) ?? { x: 0, y: 0 };
     const left = at.x > dots.place.clientWidth / 2;
     tip.style.left = left ? "auto" : `${at.x + 14}px`;
     tip.style.right = left ? `${dots.place.clientWidth - at.x + 14}px` : "auto";

@@ -3,9 +3,15 @@
 import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 
-/** Return {place, draw()} for the selected designs of an explorer. */
+/** @import { Explorer } from "./explorer.js" */
+
+/**
+ * Return {place, draw()} for the selected designs of an explorer.
+ * @param {Explorer} explorer
+ */
 export function selectedBar(explorer) {
   const place = h("div", { class: "row selected-designs" });
+  /** @type {string | null} */
   let shown = null;
 
   function draw() {

@@ -1,12 +1,19 @@
 /** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
 
-import { fill, h } from "../lib/dom.js";
+import { fill, first as firstOf, focused, h } from "../lib/dom.js";
 import { grouped, inShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
 
-const PAGE = 20;
+/** @import { Explorer } from "./explorer.js" */
 
-/** Return {place, draw()} of the table of an explorer. */
+const PAGE = 20;
+/** @type {Record<string, number>} */
+const STEPS = { ArrowDown: 1, ArrowUp: -1 };
+
+/**
+ * Return {place, draw()} of the table of an explorer.
+ * @param {Explorer} explorer
+ */
 export function designTable(explorer) {
   const head = h("thead");
   const body = h("tbody");
@@ -38,21 +45,28 @@ export function designTable(explorer) {
     const last = Math.max(1, Math.ceil(found.length / PAGE));
     const page = Math.min(chosen.page, last);
     const columns = chosen.columns.filter((key) => data.has(key));
-    const held = document.activeElement?.closest?.("th, td, nav") && place.contains(document.activeElement) ? document.activeElement.dataset.act : null;
+    const held = focused(place)?.dataset.act;
     fill(head, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "hidden" }, "Selected")), h("th", { scope: "col" }, "design"), columns.map(heading)));
     const names = explorer.names();
     fill(body, [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)));
     if (!found.length) fill(body, h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")));
+    /**
+     * @param {string} sign
+     * @param {string} label
+     * @param {number} to
+     * @param {boolean} disabled
+     */
     const turn = (sign, label, to, disabled) => h("button", { type: "button", "aria-label": label, "data-act": label, disabled, onclick: () => explorer.change({ page: to }, "table") }, sign);
     const first = (page - 1) * PAGE;
     fill(pages,
       turn("«", "First page", 1, page === 1), turn("‹", "Previous page", page - 1, page === 1),
       h("span", {}, found.length ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${grouped(limits.chosen)}` : "0"),
       turn("›", "Next page", page + 1, page === last), turn("»", "Last page", last, page === last));
-    if (held) place.querySelector(`[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+    if (held) firstOf(place, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
     mark();
   }
 
+  /** @param {string} key */
   function heading(key) {
     const column = explorer.data.column(key);
     const { sort, reverse } = explorer.chosen;
@@ -64,6 +78,11 @@ export function designTable(explorer) {
       h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"));
   }
 
+  /**
+   * @param {number} row
+   * @param {string[]} columns
+   * @param {Map<number, string[]>} names
+   */
   function line(row, columns, names) {
     const { data, chosen } = explorer;
     const number = row + 1;
@@ -78,11 +97,15 @@ export function designTable(explorer) {
       }));
   }
 
-  /** Arrows go from row to row, Enter opens, the space bar selects. */
+  /**
+   * Arrows go from row to row, Enter opens, the space bar selects.
+   * @param {KeyboardEvent} event
+   */
   function keys(event) {
-    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    const row = event.target.closest("tr");
-    if (event.key === " " && event.target.matches("a")) {
+    const step = STEPS[event.key];
+    const at = event.target instanceof Element ? event.target : body;
+    const row = at.closest("tr");
+    if (event.key === " " && row && at.matches("a")) {
       event.preventDefault();
       explorer.select(Number(row.dataset.row));
     }
@@ -94,7 +117,7 @@ export function designTable(explorer) {
 
   /** Show which designs are selected and which is pointed at. */
   function mark() {
-    for (const row of body.children) {
+    for (const row of body.rows) {
       const design = Number(row.dataset.row);
       const selected = explorer.chosen.selected.includes(design + 1);
       row.classList.toggle("selected", selected);
@@ -107,7 +130,12 @@ export function designTable(explorer) {
   return { place, draw, mark };
 }
 
-/** Return a value with as many places as all of its column have, so that the points are in line; others as they are. */
+/**
+ * Return a value with as many places as all of its column have, so that the points are in line; others as they are.
+ * @param {Api.Row[string]} value
+ * @param {string} unit
+ * @param {Page.Range} range
+ */
 function aligned(value, unit, { low, high }) {
   const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));
   if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6)) return text(value, unit, 5);

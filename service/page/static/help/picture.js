@@ -2,20 +2,33 @@
 
 import { svg } from "../lib/dom.js";
 
+/**
+ * @typedef {{ pin: Page.Point, slider: Page.Point }} Pose
+ * @type {Page.Point}
+ */
 const O = [75, 112]; // crank pivot
 const LINE = 86; // slider line
+/** @type {Pose} */
 const POSE = { pin: [94, 79.1], slider: [223.8, LINE] };
+/** @type {Pose} */
 const STEEP = { pin: [75, 150], slider: [188.2, LINE] }; // crank normal to the slider line, pointing away: the least transmission angle
+/** @type {Pose} */
 const OUT = { pin: [112.5, 106.1], slider: [241, LINE] };
+/** @type {Pose} */
 const IN = { pin: [38.5, 122.7], slider: [163.2, LINE] };
 const RADIUS = 38;
 
-/** Return the picture of a kind of quantity; title: for readers of the screen. */
+/**
+ * Return the picture of a kind of quantity; title: for readers of the screen.
+ * @param {string} kind
+ * @param {string} title
+ */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
   return svg("svg", { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
 }
 
+/** @type {Record<string, { pose?: Pose, marks: () => Dom.Child }>} */
 const PICTURES = {
   crank: { marks: () => [bold(O, POSE.pin), label(42, 92, "crank")] },
   rod: { marks: () => [bold(POSE.pin, POSE.slider), label(140, 72, "rod")] },
@@ -48,38 +61,63 @@ function still() {
   ];
 }
 
+/** @param {Pose} pose */
 function linkage({ pin, slider }) {
   return [box(slider, "part"), svg("path", { class: "part", d: `M${O}L${pin}L${slider}` }), [O, pin, slider].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 4 }))];
 }
 
+/** @param {Pose} pose */
 function ghost({ pin, slider }) {
   return [svg("path", { class: "ghost", d: `M${O}L${pin}L${slider}` }), box(slider, "ghost")];
 }
 
+/**
+ * @param {Page.Point} centre
+ * @param {string} kind
+ */
 function box([x, y], kind) {
   return svg("rect", { class: kind === "dashed" ? "mark dashed" : kind, x: x - 18, y: y - 12, width: 36, height: 24, rx: 2 });
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ */
 function bold(from, to) {
   return svg("path", { class: "mark thick", d: `M${from}L${to}` });
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ */
 function thin(from, to) {
   return svg("path", { class: "mark dashed", d: `M${from}L${to}` });
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {number} to
+ */
 function drop([x, y], to) {
   return svg("path", { class: "mark dashed", d: `M${x} ${y}V${to}` });
 }
 
+/** @param {Page.Point} centre */
 function dot([cx, cy]) {
   return svg("circle", { class: "mark full", cx, cy, r: 4 });
 }
 
+/** @param {string} d */
 function stroked(d) {
   return svg("path", { class: "mark", d });
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ * @param {number} way
+ */
 function wide(from, to, way) {
   return svg("path", { class: "mark", d: `M${from}A${RADIUS} ${RADIUS} 0 1 ${way ? 0 : 1} ${to}` });
 }
@@ -88,20 +126,39 @@ function turning() {
   return svg("path", { class: "mark", d: "M48.1 85.1A38 38 0 0 0 42 130M34.5 122L42 130L46 120" });
 }
 
-/** A line with an arrow head at its end. */
+/**
+ * A line with an arrow head at its end.
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ * @param {boolean} both
+ */
 function arrow(from, to, both = false) {
+  /**
+   * @param {Page.Point} tip
+   * @param {Page.Point} other
+   */
   const head = (tip, other) => {
     const way = Math.atan2(other[1] - tip[1], other[0] - tip[0]);
+    /** @param {number} by */
     const wing = (by) => [tip[0] + 8 * Math.cos(way + by), tip[1] + 8 * Math.sin(way + by)].map((value) => value.toFixed(1));
     return `M${wing(0.45)}L${tip}L${wing(-0.45)}`;
   };
   return svg("path", { class: "mark", d: `M${from}L${to}${head(to, from)}${both ? head(from, to) : ""}` });
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ */
 function size(from, to) {
   return arrow(from, to, Math.hypot(to[0] - from[0], to[1] - from[1]) > 12);
 }
 
+/**
+ * @param {number} x
+ * @param {number} y
+ * @param {string} text
+ */
 function label(x, y, text) {
   return svg("text", { x, y }, text);
 }

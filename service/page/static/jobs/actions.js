@@ -1,6 +1,6 @@
 /** What can be done with a job: cancel, resume, clone, delete. */
 
-import { post, remove } from "../lib/api.js";
+import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 import { say, sayProblem } from "../lib/notices.js";
@@ -9,15 +9,23 @@ import { ENDED } from "./states.js";
 /**
  * Return the buttons of a job. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
  * whoever deleted it.
+ * @param {Api.Job} job
+ * @param {(job: Api.Job | null) => unknown} changed
  */
 export function actions(job, changed) {
   const of = `run ${job.id}, ${job.name}`;
+  /**
+   * @param {string} label
+   * @param {"cancel" | "resume"} path
+   * @param {string} told
+   */
   const act = (label, path, told) =>
     h("button", { type: "button", "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
       const now = await post(`jobs/${job.id}/${path}`);
       say(told);
       changed(now);
     }) }, label);
+  /** @param {{ currentTarget: HTMLButtonElement }} event */
   const gone = async (event) => {
     const button = event.currentTarget;
     if (!(await confirmed(`Delete run ${job.id}?`, `“${job.name}” and everything it found will be gone for good.`, "Delete"))) return;
@@ -27,12 +35,16 @@ export function actions(job, changed) {
       changed(null);
     });
   };
+  /**
+   * @param {HTMLButtonElement} button
+   * @param {() => Promise<void>} doing
+   */
   const run = async (button, doing) => {
     button.disabled = true;
     try {
       await doing();
     } catch (problem) {
-      if (problem.status === 404) {
+      if (statusOf(problem) === 404) {
         say(`Run ${job.id} is not there any more: somebody deleted it.`);
         changed(null);
       } else sayProblem(problem);
@@ -49,7 +61,13 @@ export function actions(job, changed) {
   ].filter(Boolean);
 }
 
-/** Ask whether something is meant; the promise gives the answer. */
+/**
+ * Ask whether something is meant; the promise gives the answer.
+ * @param {string} question
+ * @param {string} consequence
+ * @param {string} yes
+ * @returns {Promise<boolean>}
+ */
 function confirmed(question, consequence, yes) {
   return new Promise((answer) => {
     const dialog = h("dialog", { "aria-labelledby": "question" },

@@ -1,15 +1,29 @@
 /** What can be taken away of a run. */
 
-import { address, get } from "../lib/api.js";
+import { address, get, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem } from "../lib/numbers.js";
 
+/** @type {Record<string, string>} */
 const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs as Parquet" };
 
-/** Return a list of files behind a button; those that have to be asked for are asked for when it opens. */
+/**
+ * Return a list of files behind a button; those that have to be asked for are asked for when it opens.
+ * @param {Api.Job} job
+ * @param {{ designs: boolean, signal: AbortSignal }} given
+ */
 export function downloads(job, { designs, signal }) {
+  /**
+   * @param {string} path
+   * @param {string} name
+   */
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
   // In the units that the reader prefers at the moment.
+  /**
+   * @param {string} path
+   * @param {Dom.Attributes<HTMLAnchorElement>} attributes
+   * @param {string | undefined} name
+   */
   const shown = (path, attributes, name) => {
     const link = h("a", { ...attributes }, name);
     const renew = () => (link.href = address(`jobs/${job.id}/${path}`, { units: apiSystem() }));
@@ -25,11 +39,12 @@ export function downloads(job, { designs, signal }) {
     h("h2", {}, "Files of the job"), files,
     designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;
+  const summary = h("summary", { class: "button" }, "Download");
   const node = h("details", { class: "chooser", ontoggle: async () => {
     if (!node.open || asked) return;
     asked = true;
     await Promise.all([listFiles(), designs && listFigures()]);
-  } }, h("summary", { class: "button" }, "Download"), list);
+  } }, summary, list);
 
   async function listFiles() {
     try {
@@ -37,7 +52,7 @@ export function downloads(job, { designs, signal }) {
       fill(exported, found.exports.map((ending) => h("li", {}, shown(`export.${ending}`, { download: "" }, FRONT[ending]))));
       fill(files, found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)));
     } catch (problem) {
-      fill(files, h("li", {}, problem.message));
+      fill(files, h("li", {}, sentenceOf(problem)));
     }
   }
 
@@ -45,17 +60,21 @@ export function downloads(job, { designs, signal }) {
     fill(figures, h("li", { class: "quiet" }, "Looking …"));
     try {
       const found = await get(`jobs/${job.id}/figures`, {}, signal);
+      /**
+       * @param {string} name
+       * @param {string} kind
+       */
       const as = (name, kind) => shown(`figures/${name}.${kind}`, { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
       fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
     } catch (problem) {
-      fill(figures, h("li", {}, problem.message));
+      fill(figures, h("li", {}, sentenceOf(problem)));
     }
   }
 
   node.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !node.open) return;
     node.open = false;
-    node.querySelector("summary").focus();
+    summary.focus();
   });
   return node;
 }

@@ -3,7 +3,7 @@
 import { history } from "../charts/history.js";
 import { points } from "../charts/points.js";
 import { columnOf } from "../front/columns.js";
-import { get } from "../lib/api.js";
+import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
@@ -21,6 +21,9 @@ const AT_LEAST = 5000; // ms that this takes at least
 /**
  * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
  * is gone.
+ * @param {HTMLElement} place
+ * @param {Api.Job} job
+ * @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} given
  */
 export function watch(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
@@ -30,16 +33,26 @@ export function watch(place, job, { signal, changed }) {
   const front = h("div");
   const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
   const why = h("p", { class: "quiet", hidden: true }, "The first search after an installation compiles the model of the machine. That takes a minute or two, once.");
+  /** @type {{ x: number, y: number }} */
   const axes = { x: 0, y: 1 };
   const pickers = h("div", { class: "row picks" });
+  /** @type {Api.Progress[]} */
   const rounds = [];
+  /** @type {Api.FrontSoFar | null} */
   let latest = null;
+  /** @type {ReturnType<typeof setTimeout> | null} */
   let timer = null;
   let over = false;
   let asking = false;
   let silent = setTimeout(explain, LONG);
-  let stale = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let stale;
+  /** @type {number | null} */
   let drawing = null;
+
+  function rest() {
+    for (const one of [timer, silent, stale]) clearTimeout(one ?? undefined);
+  }
 
   function explain() {
     why.hidden = over || job.state !== "running" || rounds.length > 2;
@@ -53,46 +66,61 @@ export function watch(place, job, { signal, changed }) {
       h("section", { class: "panel", "aria-labelledby": "history-title" }, h("h2", { id: "history-title" }, "Hypervolume of the front"), curve)),
     h("section", { class: "panel", "aria-labelledby": "log-title" }, h("h2", { id: "log-title" }, "Log"), log));
 
+  /** @param {Api.Event} event */
   function told(event) {
     if (event.kind === "progress") {
-      if (!event.data.steps) grow(event.data);
+      const data = /** @type {Api.Progress} */ (event.data);
+      if (!data.steps) grow(data);
       why.hidden = true;
       clearTimeout(silent);
       silent = setTimeout(explain, LONG);
-      stand(event.data);
+      stand(data);
       soon();
     } else if (event.kind === "state") {
-      note(event.at, `${stateWord(event.data.state)}${event.data.reason ? `: ${event.data.reason}` : ""}`);
-      if (event.number > job.events || event.data.state !== job.state) soon(0);
-    } else note(event.at, event.data.text);
+      const { state, reason } = /** @type {Api.Job} */ (event.data);
+      note(event.at, `${stateWord(state)}${reason ? `: ${reason}` : ""}`);
+      if (event.number > job.events || state !== job.state) soon(0);
+    } else note(event.at, String(event.data.text));
   }
 
+  /**
+   * @param {number} at
+   * @param {string} sentence
+   */
   function note(at, sentence) {
     log.prepend(h("li", {}, h("span", { class: "quiet number" }, clock(at)), ` ${sentence}`));
-    while (log.children.length > LOG) log.lastChild.remove();
+    while (log.children.length > LOG) log.lastElementChild?.remove();
   }
 
-  /** Take in the end of a round; a search that began anew takes the place of the one before. */
+  /**
+   * Take in the end of a round; a search that began anew takes the place of the one before.
+   * @param {Api.Progress} data
+   */
   function grow(data) {
-    while (rounds.length && rounds.at(-1).round >= data.round) rounds.pop();
+    while (rounds.length && rounds[rounds.length - 1].round >= data.round) rounds.pop();
     rounds.push(data);
     // Once for all events that are told again together.
     drawing ??= requestAnimationFrame(() => {
       drawing = null;
-      fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", rounds.at(-1).rounds));
+      fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", data.rounds));
     });
   }
 
+  /**
+   * @param {Api.Progress} data
+   * @param {boolean} running
+   */
   function stand(data, running = true) {
     const steps = data.steps ?? 0; // a long stage between two rounds, of which nobody knows how long it takes
     bar.max = steps || data.rounds;
     bar.value = steps ? data.step : data.round;
-    const each = data.seconds / data.round;
+    const each = (data.seconds ?? 0) / data.round;
     const left = running && !steps && data.round > 1 && data.round < data.rounds ? each * (data.rounds - data.round) : null;
     clearTimeout(stale);
     show(left);
     if (left !== null) stale = setTimeout(show, Math.max(AT_LEAST, 1000 * STALE * each), null);
 
+    /** @param {number | null} left */
     function show(left) {
       const shown = [
         ["stage", data.stage],
@@ -107,10 +135,15 @@ export function watch(place, job, { signal, changed }) {
     }
   }
 
-  /** Look at the job soon: its front so far, and its state. */
+  /**
+   * Look at the job soon: its front so far, and its state.
+   * @param {number} wait
+   */
   function soon(wait = OFTEN) {
-    if (timer !== null && wait > 0) return;
-    clearTimeout(timer);
+    if (timer !== null) {
+      if (wait > 0) return;
+      clearTimeout(timer);
+    }
     timer = setTimeout(look, wait);
   }
 
@@ -129,8 +162,8 @@ export function watch(place, job, { signal, changed }) {
         changed(now);
       }
     } catch (problem) {
-      if (problem.status === 404) end(null);
-      else if (problem.name !== "AbortError") {
+      if (statusOf(problem) === 404) end(null);
+      else if (!isAbort(problem)) {
         lost.hidden = false;
         soon(AGAIN);
       }
@@ -139,13 +172,18 @@ export function watch(place, job, { signal, changed }) {
     }
   }
 
+  /** @param {Api.FrontSoFar} found */
   function drawFront(found) {
     latest = found;
     const columns = found.columns.map(columnOf);
     if (columns.length > 2 && !pickers.childElementCount) {
+      /**
+       * @param {string} label
+       * @param {"x" | "y"} name
+       */
       const pick = (label, name) => h("label", {}, `${label} `, h("select", { onchange: (event) => {
-        axes[name] = Number(event.target.value);
-        drawFront(latest);
+        axes[name] = Number(event.currentTarget.value);
+        drawFront(found);
       } }, columns.map(({ title }, index) => h("option", { value: index, selected: index === axes[name] }, title))));
       fill(pickers, pick("Across", "x"), pick("Up", "y"));
     }
@@ -157,10 +195,12 @@ export function watch(place, job, { signal, changed }) {
     fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`));
   }
 
+  /** @param {string} state */
   function noFront(state) {
     fill(front, h("p", { class: "quiet" }, state === "queued" ? "Waits for a worker." : "Nothing yet."));
   }
 
+  /** @param {null} now */
   function end(now) {
     over = true;
     stop();
@@ -168,9 +208,10 @@ export function watch(place, job, { signal, changed }) {
   }
 
   // The events stop when the service is away, and when the job has ended: the look at the job tells which.
+  /** @param {boolean} yes */
   const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
-  signal.addEventListener("abort", () => [timer, silent, stale].forEach(clearTimeout));
+  signal.addEventListener("abort", rest);
   noFront(job.state);
   if (job.progress) {
     stand(job.progress, job.state === "running");
@@ -178,7 +219,7 @@ export function watch(place, job, { signal, changed }) {
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
   return () => {
     over = true;
-    [timer, silent, stale].forEach(clearTimeout);
+    rest();
     stop();
   };
 }

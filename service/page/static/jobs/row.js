@@ -9,13 +9,17 @@ import { actions } from "./actions.js";
 import { badge } from "./states.js";
 import { ago } from "./times.js";
 
-/** Return a run as an item of the list. compare(number, yes): it is ticked or not; changed(): something was done with it. */
+/**
+ * Return a run as an item of the list. compare(number, yes): it is ticked or not; changed(): something was done with it.
+ * @param {Api.Job} job
+ * @param {{ chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.Job | null) => unknown }} given
+ */
 export function runRow(job, { chosen, compare, changed }) {
   const { summary, progress } = job;
   const points = summary?.points.length ? summary.points : progress?.front?.points.map((point) => point.slice(0, 2)) ?? [];
   return h("li", { class: "panel run" },
     h("label", { class: "tick" },
-      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !summary?.designs && !chosen, onchange: (event) => compare(job.id, event.target.checked) }),
+      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !summary?.designs && !chosen, onchange: (event) => compare(job.id, event.currentTarget.checked) }),
       h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`)),
     h("div", { class: "what" },
       h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
@@ -26,7 +30,10 @@ export function runRow(job, { chosen, compare, changed }) {
     h("div", { class: "row acts" }, actions(job, changed)));
 }
 
-/** Return how far a job is, or what it found. */
+/**
+ * Return how far a job is, or what it found.
+ * @param {Api.Job} job
+ */
 function standing(job) {
   if (job.summary?.designs) {
     const { designs, best } = job.summary;

@@ -2,17 +2,27 @@
 
 import { h } from "../lib/dom.js";
 
+/** @type {Record<string, string>} */
 const SIGNS = { queued: "…", running: "▶", stopping: "◼", done: "✓", infeasible: "∅", cancelled: "◼", failed: "✕" };
+/** @type {Record<string, string>} */
 const WORDS = { infeasible: "no solution" };
+/** @type {Api.Job["state"][]} */
 export const STATES = ["queued", "running", "done", "infeasible", "cancelled", "failed"];
+/** @type {string[]} */
 export const ENDED = ["done", "infeasible", "cancelled", "failed"];
 
-/** Return what a state is called. */
+/**
+ * Return what a state is called.
+ * @param {string} state
+ */
 export function stateWord(state) {
   return WORDS[state] ?? state;
 }
 
-/** Return a badge that says in which state a job is. */
+/**
+ * Return a badge that says in which state a job is.
+ * @param {Api.Job} job
+ */
 export function badge(job) {
   const state = job.state === "running" && job.cancel_asked ? "stopping" : job.state;
   return h("span", { class: `state ${state}` }, h("span", { "aria-hidden": "true" }, SIGNS[state] ?? ""), ` ${stateWord(state)}`);

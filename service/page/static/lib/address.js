@@ -6,19 +6,29 @@ export function read() {
   return { parts: path.split("/").filter(Boolean).map(decodeURIComponent), query: new URLSearchParams(query) };
 }
 
-/** Return a link to a view: link(["jobs", 7], {x: "crank_mm"}). Values that are null or empty are left out. */
+/**
+ * Return a link to a view: link(["jobs", 7], {x: "crank_mm"}). Values that are null or empty are left out.
+ * @param {readonly (string | number)[]} parts
+ * @param {Record<string, Dom.Value>} query
+ */
 export function link(parts, query = {}) {
-  const parameters = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== null && value !== ""));
+  const parameters = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "").map(([key, value]) => [key, String(value)]));
   const text = parameters.toString();
   return `#/${parts.map(encodeURIComponent).join("/")}${text ? `?${text}` : ""}`;
 }
 
-/** Keep what is chosen in the address of this view, without a step in the history and without drawing anew. */
+/**
+ * Keep what is chosen in the address of this view, without a step in the history and without drawing anew.
+ * @param {Record<string, Dom.Value>} query
+ */
 export function keep(query) {
   history.replaceState(null, "", link(read().parts, query));
 }
 
-/** Return the address of a view as the reader left it, or the plain one: the way back keeps what was chosen there. */
+/**
+ * Return the address of a view as the reader left it, or the plain one: the way back keeps what was chosen there.
+ * @param {readonly (string | number)[]} parts
+ */
 export function left(parts) {
   return sessionStorage.getItem(`left ${link(parts)}`) ?? link(parts);
 }
@@ -28,7 +38,11 @@ window.addEventListener("hashchange", ({ oldURL }) => {
   sessionStorage.setItem(`left ${hash.split("?")[0]}`, hash);
 });
 
-/** Go to a view. */
+/**
+ * Go to a view.
+ * @param {readonly (string | number)[]} parts
+ * @param {Record<string, Dom.Value>} query
+ */
 export function go(parts, query = {}) {
   location.hash = link(parts, query);
 }

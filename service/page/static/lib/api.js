@@ -4,50 +4,95 @@ const PREFIX = "api/v1";
 
 /** What the service refused, in its own sentence; status 0 is no answer at all. */
 export class Problem extends Error {
+  /** @param {number} status @param {string} detail */
   constructor(status, detail) {
     super(detail);
     this.status = status;
   }
 }
 
-/** Return the address of something in the API; query: an object, its arrays repeat a key, null leaves one out. */
+/** Whether something was only given up. @type {(error: unknown) => boolean} */
+export function isAbort(error) {
+  return error instanceof Error && error.name === "AbortError";
+}
+
+/** Return what is wrong, as a sentence. @type {(error: unknown) => string} */
+export function sentenceOf(error) {
+  return error instanceof Error ? error.message : String(error);
+}
+
+/** Return the status of the answer that is a problem; null of any other one. @type {(error: unknown) => number | null} */
+export function statusOf(error) {
+  return error instanceof Problem ? error.status : null;
+}
+
+/**
+ * Return the address of something in the API; query: an object, its arrays repeat a key, null leaves one out.
+ * @param {string} path
+ * @param {Api.Query} query
+ */
 export function address(path, query = {}) {
   const parameters = new URLSearchParams();
   for (const [key, value] of Object.entries(query)) {
     for (const one of Array.isArray(value) ? value : [value]) {
-      if (one !== null && one !== undefined) parameters.append(key, one);
+      if (one !== null && one !== undefined) parameters.append(key, String(one));
     }
   }
   const text = parameters.toString();
   return `${PREFIX}/${path}${text ? `?${text}` : ""}`;
 }
 
-/** Return what is at a path, as JSON. Throws a Problem; AbortError once `signal` is aborted. */
+/**
+ * Return what is at a path, as JSON. Throws a Problem; AbortError once `signal` is aborted.
+ * @template {Api.Text} Path
+ * @param {Path} path
+ * @param {Api.Query} query
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<Api.Answer<"get", Path>>}
+ */
 export function get(path, query = {}, signal = undefined) {
   return ask("GET", address(path, query), undefined, signal);
 }
 
-/** Send JSON and return the answer. headers: further ones. */
+/**
+ * Send JSON and return the answer. headers: further ones.
+ * @template {Api.Text} Path
+ * @param {Path} path
+ * @param {unknown} body
+ * @param {{ signal?: AbortSignal, headers?: Record<string, string> }} options
+ * @returns {Promise<Api.Answer<"post", Path>>}
+ */
 export function post(path, body = undefined, { signal, headers } = {}) {
   return ask("POST", address(path), body, signal, headers);
 }
 
-/** Delete what is at a path. */
+/**
+ * Delete what is at a path.
+ * @template {Api.Text} Path
+ * @param {Path} path
+ */
 export function remove(path) {
   return ask("DELETE", address(path));
 }
 
-async function ask(method, url, body, signal, headers = {}) {
-  const options = { method, signal, headers: { Accept: "application/json", ...headers } };
-  if (body !== undefined) {
-    options.headers["Content-Type"] ??= "application/json";
-    options.body = typeof body === "string" ? body : JSON.stringify(body);
-  }
+/**
+ * The answer is what the description of the API says, which the tests of the service hold it to.
+ * @param {string} method
+ * @param {string} url
+ * @param {unknown} [body]
+ * @param {AbortSignal} [signal]
+ * @param {Record<string, string>} [more]
+ */
+async function ask(method, url, body, signal, more = {}) {
+  /** @type {Record<string, string>} */
+  const headers = { Accept: "application/json", ...more };
+  if (body !== undefined) headers["Content-Type"] ??= "application/json";
+  const sent = body === undefined || typeof body === "string" ? body : JSON.stringify(body);
   let response;
   try {
-    response = await fetch(url, options);
+    response = await fetch(url, { method, signal, headers, body: sent });
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (isAbort(error)) throw error;
     throw new Problem(0, "The service does not answer; the page goes on when it is back.");
   }
   if (response.status === 401) location.reload(); // the service asks for its token, and comes back to this view

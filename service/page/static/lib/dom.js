@@ -2,33 +2,81 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 
-/** Return an HTML element. Attributes that are null or false are left out; on... are listeners; children are nodes or text. */
+/**
+ * Return an HTML element. Attributes that are null or false are left out; on... are listeners; children are nodes or text.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Dom.Attributes<HTMLElementTagNameMap[Tag]>} attributes
+ * @param {...Dom.Child} children
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
 export function h(tag, attributes = {}, ...children) {
   return dress(document.createElement(tag), attributes, children);
 }
 
-/** Return an SVG element, in the same way. */
+/**
+ * Return an SVG element, in the same way.
+ * @template {keyof SVGElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Dom.Attributes} attributes
+ * @param {...Dom.Child} children
+ * @returns {SVGElementTagNameMap[Tag]}
+ */
 export function svg(tag, attributes = {}, ...children) {
   return dress(document.createElementNS(SVG, tag), attributes, children);
 }
 
-/** Put children in place of those that a node has. */
-export function fill(node, ...children) {
-  node.replaceChildren(...kept(children));
-  return node;
+/**
+ * Return the element of the document that has an id; the document that comes with the page has it.
+ * @param {string} id
+ */
+export function byId(id) {
+  return /** @type {HTMLElement} */ (document.getElementById(id));
 }
 
+/**
+ * Return the first element within a node that a selector names; null if there is none.
+ * @param {Element} node
+ * @param {string} selector
+ * @returns {HTMLElement | null}
+ */
+export function first(node, selector) {
+  return node.querySelector(selector);
+}
+
+/** Return the element that has the focus within a node; null if that is elsewhere. @type {(node: Element) => HTMLElement | null} */
+export function focused(node) {
+  const { activeElement } = document;
+  return activeElement instanceof HTMLElement && node.contains(activeElement) ? activeElement : null;
+}
+
+/**
+ * Put children in place of those that a node has.
+ * @param {Element} node
+ * @param {...Dom.Child} children
+ */
+export function fill(node, ...children) {
+  node.replaceChildren(...kept(children));
+}
+
+/**
+ * @template {Element} Made
+ * @param {Made} node
+ * @param {object} attributes
+ * @param {Dom.Child[]} children
+ */
 function dress(node, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-    else if (name === "value" || name === "checked" || name === "selected" || name === "disabled") node[name] = value;
+    else if (name === "value" || name === "checked" || name === "selected" || name === "disabled") Object.assign(node, { [name]: value });
     else node.setAttribute(name, value === true ? "" : value);
   }
   node.append(...kept(children));
   return node;
 }
 
+/** @type {(children: readonly Dom.Child[]) => (Node | string)[]} */
 function kept(children) {
-  return children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false);
+  return children.flatMap((child) => (typeof child === "string" || child instanceof Node ? [child] : child ? kept(child) : []));
 }

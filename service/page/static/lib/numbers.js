@@ -2,10 +2,15 @@
 
 import { get } from "./api.js";
 
+/** @type {{ si: Api.Units, inch: Api.Units | null }} */
 const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the service, when it is first needed
+/** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
 
-/** The system of units that the reader chose: "si" or "inch". */
+/**
+ * The system of units that the reader chose: "si" or "inch".
+ * @returns {"si" | "inch"}
+ */
 export function system() {
   return localStorage.getItem("units") === "inch" ? "inch" : "si";
 }
@@ -20,30 +25,50 @@ export async function readySystem() {
   SYSTEMS.inch ??= (await get("units")).inch;
 }
 
-/** Choose a system; everything that shows numbers is drawn again (event "units" of the window). */
+/**
+ * Choose a system; everything that shows numbers is drawn again (event "units" of the window).
+ * @param {string} name
+ */
 export async function chooseSystem(name) {
   await readySystem();
   localStorage.setItem("units", name);
   window.dispatchEvent(new Event("units"));
 }
 
-/** Return the unit that is shown for one of the API, such as "in" for "mm". */
+/**
+ * Return the unit that is shown for one of the API, such as "in" for "mm".
+ * @param {string} unit
+ * @returns {string}
+ */
 export function unitOf(unit) {
   const name = SYSTEMS[system()]?.[unit]?.unit ?? unit;
   return PRETTY[name] ?? name?.replace("^2", "²").replace("^3", "³");
 }
 
-/** Return a value of the API in the unit that is shown for it. */
+/**
+ * Return a value of the API in the unit that is shown for it.
+ * @param {number} value
+ * @param {string} unit
+ */
 export function inShown(value, unit) {
   return value * (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
-/** Return a shown value in the unit of the API. */
+/**
+ * Return a shown value in the unit of the API.
+ * @param {number} value
+ * @param {string} unit
+ */
 export function fromShown(value, unit) {
   return value / (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
-/** Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash. */
+/**
+ * Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash.
+ * @param {Api.Row[string] | undefined} value
+ * @param {string} unit
+ * @param {number} digits
+ */
 export function text(value, unit = "", digits = 5) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (typeof value !== "number") return String(value);
@@ -58,35 +83,3 @@ export function text(value, unit = "", digits = 5) {
 /**
  * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
  * asked for: what optimise/feasibility/safe_side.py does for sentences, in the unit that is shown.
- */
-export function limitText(value, unit, side, digits = 5) {
-  const shown = inShown(value, unit);
-  if (shown === 0) return "0";
-  const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
-  const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one
-  const scaled = (shown + (side === "up" ? -rounding : rounding)) * 10 ** places;
-  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replaceAll("-", "−");
-}
-
-/** Return a number with its unit: "41.2 mm", "38°". */
-export function withUnit(value, unit = "", digits = 5) {
-  if (typeof value !== "number" || Number.isNaN(value)) return text(value);
-  const shown = unitOf(unit);
-  return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
-}
-
-/** Return the ends of an axis as text: a millionth of the axis is zero to every reader. */
-export function ends({ low, high }, unit, digits = 4) {
-  return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
-}
-
-/** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. */
-export function grouped(count) {
-  return String(count).replace(/\B(?=(\d{3})+$)/g, ",");
-}
-
-/** Return a heading with its unit: "crank (mm)". */
-export function heading(column) {
-  const unit = unitOf(column.unit);
-  return unit ? `${column.title} (${unit})` : column.title;
-}

@@ -7,7 +7,10 @@ const LONGEST = 110; // pixels, of the greatest force over the turn
 const SHORTEST = 3;
 const HEAD = 7;
 
-/** What the arrows are. at: 0 pivot, 1 crank pin, 2 slider pin; along: keys of the curves of its components in x and y. */
+/**
+ * What the arrows are. at: 0 pivot, 1 crank pin, 2 slider pin; along: keys of the curves of its components in x and y.
+ * @type {{ name: string, title: string, at: number, along: [string | null, string | null] }[]}
+ */
 export const ARROWS = [
   { name: "pivot", title: "frame on crank", at: 0, along: ["pivot_x_N", "pivot_y_N"] },
   { name: "crank-pin", title: "crank on rod", at: 1, along: ["crank_pin_x_N", "crank_pin_y_N"] },
@@ -16,11 +19,14 @@ export const ARROWS = [
   { name: "load-force", title: "load on slider", at: 2, along: ["load_N", null] },
 ];
 
-/** Return the greatest force among curves, N; 0 where they have none. */
+/**
+ * Return the greatest force among curves, N; 0 where they have none.
+ * @param {Api.Curves} curves
+ */
 export function largestForce(curves) {
   let greatest = 0;
   for (const { along } of ARROWS) {
-    const [x, y] = along.map((key) => curves[key]);
+    const [x, y] = along.map((key) => (key === null ? undefined : curves[key]));
     for (let n = 0; n < (x ?? y ?? []).length; n += 1) greatest = Math.max(greatest, Math.hypot(x?.[n] ?? 0, y?.[n] ?? 0));
   }
   return greatest;
@@ -29,14 +35,26 @@ export function largestForce(curves) {
 /** Return {node, size(curves, view, largest), move(pivot, pin, slider, angle)}: all arrows in one group. */
 export function arrows() {
   const lines = ARROWS.map(({ name }) => svg("path", { class: `force ${name}` }));
-  let curves = null;
+  /** @type {Api.Curves} */
+  let curves = {};
   let unit = 0; // pixels in a newton
   return {
     node: svg("g", { class: "forces", hidden: true }, lines),
+    /**
+     * @param {Api.Curves} motion
+     * @param {unknown} _view
+     * @param {number | undefined} largest
+     */
     size(motion, _view, largest = largestForce(motion)) {
       curves = motion;
       unit = largest > 0 ? LONGEST / largest : 0;
     },
+    /**
+     * @param {Page.Point} pivot
+     * @param {Page.Point} pin
+     * @param {Page.Point} slider
+     * @param {number} angle
+     */
     move(pivot, pin, slider, angle) {
       const places = [pivot, pin, slider];
       ARROWS.forEach(({ at, along }, n) => {
@@ -47,11 +65,17 @@ export function arrows() {
   };
 }
 
+/**
+ * @param {Page.Point} from
+ * @param {number} right
+ * @param {number} down
+ */
 function arrow([x, y], right, down) {
   const size = Math.hypot(right, down);
   if (size < SHORTEST) return "M0 0";
   const [tip, turn] = [[x + right, y + down], Math.atan2(down, right)];
   const head = Math.min(HEAD, size);
+  /** @param {number} by */
   const wing = (by) => `${(tip[0] - head * Math.cos(turn + by)).toFixed(1)} ${(tip[1] - head * Math.sin(turn + by)).toFixed(1)}`;
   return `M${x.toFixed(1)} ${y.toFixed(1)}L${tip[0].toFixed(1)} ${tip[1].toFixed(1)}M${wing(0.45)}L${tip[0].toFixed(1)} ${tip[1].toFixed(1)}L${wing(-0.45)}`;
 }

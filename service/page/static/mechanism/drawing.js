@@ -1,11 +1,16 @@
 /** A mechanism that moves: drawn once, then only moved. */
 
-import { between, extremes } from "../charts/cycle.js";
+import { between } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
 import { text } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
-import { fitted, frameOf } from "./frame.js";
+import { fitted, frameOf, reachOf } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
+
+/**
+ * @import { Frame, View } from "./frame.js"
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number }} Options
+ */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
 
@@ -18,6 +23,8 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
+ * @param {HTMLElement} place
+ * @param {{ label: string }} given
  */
 export function drawing(place, { label }) {
   const parts = movingParts();
@@ -26,7 +33,9 @@ export function drawing(place, { label }) {
   const [still, moving] = [svg("svg", { class: "still" }), svg("svg", { class: "moving" }, parts.nodes, handle)];
   const node = h("div", { class: "mechanism", role: "img", "aria-label": label }, still, moving);
   place.append(node);
+  /** @type {{ linkage: Page.Lengths, motion: Api.Curves, options: Options } | null} */
   let shown = null; // {linkage, motion, options}
+  /** @type {View | null} */
   let view = null;
   let angle = 0;
   let arrowed = false;
@@ -40,22 +49,27 @@ export function drawing(place, { label }) {
     for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1 }));
-    for (const [name, number] of Object.entries({ cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link })) handle.setAttribute(name, number);
+    measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({ linkage, view, block: own.block, link });
     parts.forces.size(motion, view, options.largest_force);
     turn(angle);
   }
 
+  /**
+   * @param {number} to
+   * @param {boolean} settled
+   */
   function turn(to, settled = true) {
     angle = to;
-    if (!view) return;
+    if (!view || !shown) return;
     const { linkage, motion } = shown;
-    const position = between(motion.slider_position_mm, angle);
+    const position = between(motion.slider_position_mm, angle) ?? NaN;
     const radians = (angle * Math.PI) / 180;
-    const pin = [view.x(linkage.crank_mm * Math.cos(radians)), view.y(linkage.crank_mm * Math.sin(radians))];
-    const slider = [view.x(position), view.y(linkage.offset_mm)];
-    parts.move([view.x(0), view.y(0)], pin, slider, motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle), settled);
-    if (arrowed) parts.forces.move([view.x(0), view.y(0)], pin, slider, angle);
+    const pin = /** @type {Page.Point} */ ([view.x(linkage.crank_mm * Math.cos(radians)), view.y(linkage.crank_mm * Math.sin(radians))]);
+    const slider = /** @type {Page.Point} */ ([view.x(position), view.y(linkage.offset_mm)]);
+    const pivot = /** @type {Page.Point} */ ([view.x(0), view.y(0)]);
+    parts.move(pivot, pin, slider, motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle), settled);
+    if (arrowed) parts.forces.move(pivot, pin, slider, angle);
   }
 
   const watcher = new ResizeObserver(() => Math.round(place.clientWidth) !== view?.width && arrange());
@@ -63,18 +77,30 @@ export function drawing(place, { label }) {
   return {
     node,
     handle,
+    /**
+     * @param {Page.Lengths} linkage
+     * @param {Api.Curves} motion
+     * @param {Options} options
+     */
     show(linkage, motion, options = {}) {
       shown = { linkage, motion, options };
       arrange();
     },
     turn,
+    /** @param {boolean} yes */
     fade: (yes) => node.classList.toggle("faded", yes),
+    /** @param {boolean} yes */
     forces(yes) {
       arrowed = yes;
       parts.forces.node.toggleAttribute("hidden", !yes);
       turn(angle);
     },
+    /**
+     * @param {number} x
+     * @param {number} y
+     */
     angleAt(x, y) {
+      if (!view) return angle;
       const box = node.getBoundingClientRect();
       const factor = view.width / box.width;
       return (Math.atan2(view.y(0) - (y - box.top) * factor, (x - box.left) * factor - view.x(0)) * 180) / Math.PI;
@@ -83,10 +109,19 @@ export function drawing(place, { label }) {
   };
 }
 
+/**
+ * @param {Api.Curves} motion
+ * @param {Page.Point | undefined} angles
+ */
 function deadCentres(motion, angles) {
-  const { low, high } = extremes(motion.slider_position_mm);
+  const { low, high } = reachOf(motion);
   const found = angles ?? [low.angle, high.angle];
-  return found.map((angle) => ({ angle, position: between(motion.slider_position_mm, angle) }));
+  return found.map((angle) => ({ angle, position: between(motion.slider_position_mm, angle) ?? NaN }));
+}
+
+/** Give an element numbers as attributes. @type {(node: Element, numbers: Record<string, number>) => void} */
+function measure(node, numbers) {
+  for (const [name, number] of Object.entries(numbers)) node.setAttribute(name, String(number));
 }
 
 /** Few elements are moved in a frame: what is joined to a link is drawn in the link's own coordinates. */
@@ -106,19 +141,27 @@ function movingParts() {
   return {
     nodes: [sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
+    /** @param {{ linkage: Page.Lengths, view: View, block: number, link: number }} given */
     size({ linkage, view, block: height, link }) {
       const size = height * view.unit;
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
-      for (const [name, number] of Object.entries({ x: -0.75 * size, y: -0.5 * size, width: 1.5 * size, height: size })) block.setAttribute(name, number);
-      for (const one of pins) one.setAttribute("r", Math.max(2.5, 0.28 * link));
-      pins[1].setAttribute("cx", linkage.crank_mm * view.unit);
-      pins[2].setAttribute("cx", linkage.rod_mm * view.unit);
+      measure(block, { x: -0.75 * size, y: -0.5 * size, width: 1.5 * size, height: size });
+      for (const one of pins) measure(one, { r: Math.max(2.5, 0.28 * link) });
+      measure(pins[1], { cx: linkage.crank_mm * view.unit });
+      measure(pins[2], { cx: linkage.rod_mm * view.unit });
       const line = view.y(linkage.offset_mm);
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
       radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));
       side = "";
     },
+    /**
+     * @param {Page.Point} pivot
+     * @param {Page.Point} crankPin
+     * @param {Page.Point} slider
+     * @param {number | null | undefined} degrees
+     * @param {boolean} settled
+     */
     move(pivot, crankPin, slider, degrees, settled) {
       crankGroup.setAttribute("transform", placed(pivot, crankPin));
       rodGroup.setAttribute("transform", placed(crankPin, slider));
@@ -129,7 +172,12 @@ function movingParts() {
     },
   };
 
-  /** Mark the angle between the rod and the normal of the slider line, on the rod's side. along: from the slider pin. */
+  /**
+   * Mark the angle between the rod and the normal of the slider line, on the rod's side. along: from the slider pin.
+   * @param {Page.Point} along
+   * @param {number | null | undefined} degrees
+   * @param {boolean} settled
+   */
   function angleBetween(along, degrees, settled) {
     const [away, up] = [along[0] < 0 ? 1 : -1, along[1] < 0 ? -1 : 1];
     const size = Math.hypot(...along) / radius;

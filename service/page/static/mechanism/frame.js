@@ -2,12 +2,32 @@
 
 import { extremes } from "../charts/cycle.js";
 
+/**
+ * @typedef {{ left: number, right: number, low: number, high: number, block: number }} Frame
+ * @typedef {ReturnType<typeof fitted>} View
+ */
+
 const MARGIN = 26; // pixels, for what stands beside the mechanism
 const HEIGHTS = [170, 430];
 
-/** Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider. */
-export function frameOf({ crank_mm: r, offset_mm: e }, { slider_position_mm: positions }) {
-  const { low, high } = extremes(positions);
+/**
+ * Return the inner and outer end of the slider's way, each {angle, value}; whoever draws a mechanism has one that turns.
+ * @param {Api.Curves} motion
+ */
+export function reachOf(motion) {
+  const found = extremes(motion.slider_position_mm);
+  if (!found) throw new Error("A mechanism that is drawn must turn; this one has no slider position.");
+  return found;
+}
+
+/**
+ * Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider.
+ * @param {Page.Lengths} linkage
+ * @param {Api.Curves} motion
+ * @returns {Frame}
+ */
+export function frameOf({ crank_mm: r, offset_mm: e }, motion) {
+  const { low, high } = reachOf(motion);
   const far = Math.max(Math.abs(low.value), Math.abs(high.value));
   const block = Math.max(0.16 * (r + Math.max(r, Math.abs(e))), 0.05 * (far + r));
   return {
@@ -19,8 +39,13 @@ export function frameOf({ crank_mm: r, offset_mm: e }, { slider_position_mm: pos
   };
 }
 
-/** Return the frame that holds all of these; mechanisms drawn in one frame have one scale. */
+/**
+ * Return the frame that holds all of these; mechanisms drawn in one frame have one scale.
+ * @param {Frame[]} frames
+ * @returns {Frame}
+ */
 export function around(frames) {
+  /** @param {keyof Frame} name */
   const all = (name) => frames.map((frame) => frame[name]);
   return {
     left: Math.min(...all("left")),
@@ -31,7 +56,11 @@ export function around(frames) {
   };
 }
 
-/** Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre. */
+/**
+ * Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre.
+ * @param {Frame} frame
+ * @param {number} width
+ */
 export function fitted(frame, width) {
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
   const across = (width - 2 * MARGIN) / wide;
@@ -43,7 +72,9 @@ export function fitted(frame, width) {
     width,
     height,
     unit,
+    /** @param {number} millimetres */
     x: (millimetres) => left + unit * (millimetres - frame.left),
+    /** @param {number} millimetres */
     y: (millimetres) => top + unit * (frame.high - millimetres),
   };
 }

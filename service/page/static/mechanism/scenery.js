@@ -3,16 +3,26 @@
 import { svg } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 
+/** @typedef {{ angle: number, position: number }} Centre A dead centre, deg and mm. */
+
+/** @import { View } from "./frame.js" */
+
 const PITCH = 9; // pixels between the strokes of a hatching
 
 /**
  * Return the parts that stand still, as SVG elements.
  * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels.
+ * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number }} given
  */
 export function scenery({ linkage, centres, view, block, link, direction }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const ends = centres.map((centre) => centre.position);
+  /**
+   * @param {string} kind
+   * @param {Page.Point} from
+   * @param {Page.Point} to
+   */
   const line = (kind, from, to) => svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
   const [start, end] = [x(Math.min(...ends) - 1.2 * block), x(Math.max(...ends) + 1.2 * block)];
   const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
@@ -29,16 +39,29 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
   ];
 }
 
+/**
+ * @param {number} start
+ * @param {number} end
+ * @param {number} y
+ * @param {number} side
+ */
 function guide(start, end, y, side) {
   const strokes = [];
   for (let foot = start + PITCH; foot <= end; foot += PITCH) strokes.push(`M${foot} ${y}l${-PITCH * 0.8} ${-side * PITCH * 0.8}`);
   return svg("path", { class: "guide", d: `M${start} ${y}H${end}${strokes.join("")}` });
 }
 
+/**
+ * @param {Centre} centre
+ * @param {Page.Lengths} linkage
+ * @param {View} view
+ * @param {number} block
+ * @param {number} link
+ */
 function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, link) {
   const turn = (angle * Math.PI) / 180;
-  const pin = [view.x(r * Math.cos(turn)), view.y(r * Math.sin(turn))];
-  const slider = [view.x(position), view.y(e)];
+  const pin = /** @type {Page.Point} */ ([view.x(r * Math.cos(turn)), view.y(r * Math.sin(turn))]);
+  const slider = /** @type {Page.Point} */ ([view.x(position), view.y(e)]);
   const size = block * view.unit;
   return svg(
     "g",
@@ -49,18 +72,33 @@ function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, 
   );
 }
 
+/**
+ * @param {View} view
+ * @param {number} r
+ * @param {number} direction
+ */
 function rotation(view, r, direction) {
   if (!direction) return null;
+  /**
+   * @param {number} degrees
+   * @returns {Page.Point}
+   */
   const at = (degrees) => [view.x(0) + view.unit * r * Math.cos(degrees), view.y(0) - view.unit * r * Math.sin(degrees)];
   const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
   const [start, end] = [at(from), at(to)];
   const radius = view.unit * r;
   const head = to + (direction > 0 ? Math.PI / 2 : -Math.PI / 2); // which way it points there
+  /** @param {number} by */
   const wing = (by) => `${end[0] - 9 * Math.cos(head + by)} ${end[1] + 9 * Math.sin(head + by)}`;
   const arc = `M${start}A${radius} ${radius} 0 0 ${direction > 0 ? 0 : 1} ${end}`;
   return svg("path", { class: "rotation", d: `${arc}M${wing(0.4)}L${end}L${wing(-0.4)}` });
 }
 
+/**
+ * @param {View} view
+ * @param {number} e
+ * @param {number} x
+ */
 function offset(view, e, x) {
   const [from, to] = [view.y(0), view.y(e)];
   if (Math.abs(to - from) < 16) return null;
@@ -75,6 +113,11 @@ function offset(view, e, x) {
   );
 }
 
+/**
+ * @param {number} x
+ * @param {number} y
+ * @param {number} link
+ */
 function bearing(x, y, link) {
   const foot = 1.7 * link;
   const ground = y + foot;
@@ -87,13 +130,21 @@ function bearing(x, y, link) {
   );
 }
 
-/** Return the outline of a link with round ends, from the origin along +x. */
+/**
+ * Return the outline of a link with round ends, from the origin along +x.
+ * @param {number} length
+ * @param {number} width
+ */
 export function bar(length, width) {
   const half = width / 2;
   return `M0 ${-half}H${length}A${half} ${half} 0 0 1 ${length} ${half}H0A${half} ${half} 0 0 1 0 ${-half}Z`;
 }
 
-/** Return the transform that lays such a link from one point towards another. */
+/**
+ * Return the transform that lays such a link from one point towards another.
+ * @param {Page.Point} from
+ * @param {Page.Point} to
+ */
 export function placed(from, to) {
   const turn = (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
   return `translate(${from[0].toFixed(2)} ${from[1].toFixed(2)}) rotate(${turn.toFixed(3)})`;

@@ -2,7 +2,7 @@ import { points, sign } from "../charts/points.js";
 import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
 import { keep, link } from "../lib/address.js";
-import { get } from "../lib/api.js";
+import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { grouped, text, withUnit } from "../lib/numbers.js";
@@ -13,52 +13,80 @@ export const title = "Compare runs";
 const MOST = 6;
 const SHOWN = 300; // designs of each run in the picture
 
-/** Fronts of several runs over each other, and their best values side by side. */
+/**
+ * Fronts of several runs over each other, and their best values side by side.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { query, signal }) {
   const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter((number) => Number.isInteger(number) && number > 0);
   if (asked.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
+  /** @type {string[]} */
   const missing = [];
   const runs = (await Promise.all(asked.slice(0, MOST).map(async (number) => {
     try {
       const [job, front] = await Promise.all([get(`jobs/${number}`, {}, signal), get(`jobs/${number}/front`, {}, signal)]);
-      if (front.count) return { job, front, data: new FrontData(number, front, signal) };
+      if (front.count) return [{ job, front, data: new FrontData(number, front, signal) }];
       missing.push(`Run ${number} has no designs.`);
     } catch (problem) {
-      if (problem.name === "AbortError") throw problem;
-      missing.push(problem.status === 404 ? `Run ${number} is not there any more.` : problem.message);
+      if (isAbort(problem)) throw problem;
+      missing.push(statusOf(problem) === 404 ? `Run ${number} is not there any more.` : sentenceOf(problem));
     }
-    return null;
-  }))).filter(Boolean);
+    return [];
+  }))).flat();
   if (asked.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
 
   const objectives = new Map(runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])));
-  const shared = runs.length ? [...objectives.keys()].filter((key) => runs.every(({ data }) => data.column(key))) : [];
-  const axes = { x: shared.includes(query.get("x")) ? query.get("x") : shared[0], y: shared.includes(query.get("y")) ? query.get("y") : shared[1] };
+  const shared = runs.length ? [...objectives.keys()].filter((key) => runs.every(({ data }) => data.knows(key))) : [];
+  /** @type {{ x: string, y: string }} */
+  const axes = { x: chosen("x", shared[0]), y: chosen("y", shared[1]) };
   const picture = h("div");
   const table = h("div", { class: "scroll" });
 
+  /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
+  function chosen(name, otherwise) {
+    const asked = query.get(name);
+    return asked !== null && shared.includes(asked) ? asked : otherwise;
+  }
+
+  /** Return an objective of the runs. @type {(key: string) => Api.Objective} */
+  function known(key) {
+    return /** @type {Api.Objective} */ (objectives.get(key));
+  }
+
   function drawPicture() {
-    const [x, y] = [axes.x, axes.y].map((key) => objectives.get(key));
+    const [x, y] = [axes.x, axes.y].map(known);
     const series = runs.map(({ data, job }) => ({ name: job.name, points: spread(data.count).map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]) }));
     fill(picture, points(series, x, y, `The fronts of ${runs.length} runs`));
   }
 
   function drawTable() {
+    /**
+     * @param {string} key
+     * @param {string} sense
+     * @param {number | null | undefined} target
+     * @returns {Api.Row[string][]}
+     */
     const best = (key, sense, target) => runs.map(({ front, data }) => {
       const own = front.objectives.find((objective) => objective.column === key);
       if (own) return data.cell(key, front.extremes[own.quantity]);
       const { low, high } = data.range(key);
       return target === undefined ? (sense === "maximise" ? high : low) : null;
     });
-    const rows = [...objectives.values()].filter(({ column }) => runs.every(({ data }) => data.column(column))).map(({ column, sense, target }) => {
+    const rows = [...objectives.values()].filter(({ column }) => runs.every(({ data }) => data.knows(column))).map(({ column, sense, target }) => {
       const values = best(column, sense, target);
+      /** @param {Api.Row[string]} value */
       const rank = (value) => (typeof value !== "number" ? Infinity : target !== undefined && target !== null ? Math.abs(value - target) : sense === "maximise" ? -value : value);
       const least = Math.min(...values.map(rank));
-      const unit = objectives.get(column).unit;
+      const { unit } = known(column);
       return h("tr", {},
-        h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(objectives.get(column))}`)),
+        h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(known(column))}`)),
         values.map((value) => h("td", { class: "number" }, text(value, unit, 5), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
     });
+    /**
+     * @param {string} name
+     * @param {(run: (typeof runs)[0]) => Dom.Child} value
+     */
     const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
       h("thead", {}, h("tr", {}, h("td", {}), runs.map(({ job }, index) => h("th", { scope: "col", class: "number" }, sign(index), " ", h("a", { href: link(["jobs", job.id]) }, job.name), h("div", { class: "quiet" }, `run ${job.id}`))))),
@@ -69,13 +97,17 @@ export async function show(place, { query, signal }) {
         plain("seed", ({ front }) => String(front.seed)))));
   }
 
+  /**
+   * @param {string} label
+   * @param {"x" | "y"} name
+   */
   const pick = (label, name) => h("label", {}, `${label} `, h("select", { name, onchange: (event) => {
-    axes[name] = event.target.value;
+    axes[name] = event.currentTarget.value;
     keep({ jobs: asked.join(","), ...axes });
     drawPicture();
-  } }, shared.map((key) => h("option", { value: key, selected: key === axes[name] }, objectives.get(key).title))));
+  } }, shared.map((key) => h("option", { value: key, selected: key === axes[name] }, known(key).title))));
 
-  await Promise.all(runs.map(({ data }) => data.need([...objectives.keys()].filter((key) => data.column(key)))));
+  await Promise.all(runs.map(({ data }) => data.need([...objectives.keys()].filter((key) => data.knows(key)))));
   if (signal.aborted) return;
   fill(place, h("h1", {}, title),
     missing.map((sentence) => h("p", { class: "error" }, sentence)),
@@ -93,7 +125,10 @@ export async function show(place, { query, signal }) {
   window.addEventListener("units", draw, { signal });
 }
 
-/** Return at most `SHOWN` rows, evenly spread. */
+/**
+ * Return at most `SHOWN` rows, evenly spread.
+ * @param {number} count
+ */
 function spread(count) {
   const shown = Math.min(count, SHOWN);
   return Array.from({ length: shown }, (_, index) => Math.floor((index * (count - 1)) / Math.max(1, shown - 1)));

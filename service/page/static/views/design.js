@@ -22,12 +22,16 @@ export const title = "Design";
 const SOON = 150; // ms
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** Show the design that the address names. */
+/**
+ * Show the design that the address names.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { parts, query, signal }) {
   const [, job, , given] = parts;
   const number = Number(given);
   if (!Number.isInteger(number) || number < 1) throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
-  const path = `jobs/${job}/designs/${number}`;
+  const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
   const [front, main, requirements] = await Promise.all([
     get(`jobs/${job}/front`, {}, signal), loadDesign(job, number, 1, signal), get(`${path}/requirements`, {}, signal)]);
   const { names } = requirements;
@@ -38,6 +42,10 @@ export async function show(place, { parts, query, signal }) {
   const objectives = front.objectives;
   const shared = { job, number, front, objectives, rows, main, others, requirements, names, signal };
   const angle = turning(requirements.speed_rpm, signal);
+  /**
+   * @param {number} at
+   * @param {boolean} taken
+   */
   const hold = (at, taken) => {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
@@ -53,10 +61,12 @@ export async function show(place, { parts, query, signal }) {
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
   signal.addEventListener("abort", () => clearTimeout(later), { once: true });
 
+  /** @type {Api.WhatIf | null} */
   let changed = null; // the answer to "what if"
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
   const draw = () => {
-    const asked = changed && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
+    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
     machines.show(moving);
     machines.fade(false);
@@ -68,6 +78,10 @@ export async function show(place, { parts, query, signal }) {
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
     start: startOf(query),
+    /**
+     * @param {Api.WhatIf | null} answer
+     * @param {Page.Lengths} [lengths]
+     */
     changed(answer, lengths) {
       changed = answer;
       clearTimeout(later);
@@ -88,11 +102,19 @@ export async function show(place, { parts, query, signal }) {
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
 
+/**
+ * @param {URLSearchParams} query
+ * @returns {Page.Lengths | null}
+ */
 function startOf(query) {
-  const lengths = LENGTHS.map((key) => [key, Number.parseFloat(query.get(key))]);
+  const lengths = LENGTHS.map((key) => [key, Number.parseFloat(query.get(key) ?? "")]);
   return lengths.every(([, value]) => Number.isFinite(value)) ? Object.fromEntries(lengths) : null;
 }
 
+/**
+ * @param {HTMLElement} place
+ * @param {{ series: number | string, name: string }[]} series
+ */
 function legend(place, series) {
   const old = place.querySelector(".legend");
   const items = series.map((one) => h("li", { "data-series": one.series }, one.name));

@@ -8,6 +8,7 @@ import { unitOf } from "../lib/numbers.js";
 
 export const title = "Help";
 
+/** @type {[string, string, string | null, string | null][]} */
 const STEPS = [
   ["Ask", "Say what the machine must do: speed, stroke, loads, what the dimensions may be, and what is wanted. Begin with a shipped job if one is near.", "#/new", "New run"],
   ["Watch", "The search runs on its own. The front of best compromises grows while you look; it can be cancelled and goes on later.", "#/", "Runs"],
@@ -23,7 +24,11 @@ const DOCUMENTS = [
   ["docs/api.md", "the API that this page uses"],
 ];
 
-/** Show one quantity, or all with a field to search. */
+/**
+ * Show one quantity, or all with a field to search.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { parts, query, signal }) {
   const { quantities } = await get("quantities", {}, signal);
   const name = parts[1];
@@ -34,6 +39,11 @@ export async function show(place, { parts, query, signal }) {
   one(place, found, quantities);
 }
 
+/**
+ * @param {HTMLElement} place
+ * @param {Api.Quantity[]} quantities
+ * @param {string} sought
+ */
 function overview(place, quantities, sought) {
   const list = h("ul", { class: "quantities" });
   const none = h("p", { class: "quiet", role: "status" });
@@ -65,12 +75,22 @@ function overview(place, quantities, sought) {
   draw();
 }
 
+/** @param {Api.Quantity} quantity */
 function card(quantity) {
   return h("li", { class: "panel" }, picture(quantity.picture, quantity.title), h("div", {}, h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)), h("p", {}, quantity.sentence)));
 }
 
+/**
+ * @param {HTMLElement} place
+ * @param {Api.Quantity} quantity
+ * @param {Api.Quantity[]} quantities
+ */
 function one(place, quantity, quantities) {
   const unit = unitOf(quantity.unit);
+  /**
+   * @param {string} term
+   * @param {Dom.Child} text
+   */
   const row = (term, text) => [h("dt", {}, term), h("dd", {}, text)];
   const alike = quantities.filter((other) => other.picture === quantity.picture && other.name !== quantity.name);
   fill(

@@ -11,13 +11,17 @@ import { sections } from "../form/sections.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob } from "../form/start.js";
 import { go, keep } from "../lib/address.js";
-import { get, post } from "../lib/api.js";
+import { get, post, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { system } from "../lib/numbers.js";
 
 export const title = "New run";
 
-/** Show the form: what was typed before, a preset, or a copy of a job. */
+/**
+ * Show the form: what was typed before, a preset, or a copy of a job.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { query, signal }) {
   const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal)]);
   const draft = await first(query, shipped, signal);
@@ -26,30 +30,49 @@ export async function show(place, { query, signal }) {
   build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, shipped, signal });
 }
 
-/** Return the draft that the address asks for: what was typed in it before comes first. */
+/**
+ * Return the draft that the address asks for: what was typed in it before comes first.
+ * @param {URLSearchParams} query
+ * @param {Api.Preset[]} shipped
+ * @param {AbortSignal} signal
+ * @returns {Promise<Form.Draft>}
+ */
 async function first(query, shipped, signal) {
   const [preset, from] = [query.get("preset"), query.get("from")];
   const source = preset ? `preset ${preset}` : from ? `job ${from}` : null;
   const before = kept();
   if (before && (source === null || before.source === source)) return before;
-  if (from) return begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), source);
+  if (from) return begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`);
   if (!preset) return begin(firstJob(system()), "");
   const found = shipped.find(({ name }) => name === preset);
   if (!found) throw new Error(`No shipped job is called "${preset}".`);
-  return begin(found.job, source);
+  return begin(found.job, `preset ${preset}`);
 }
 
+/**
+ * @param {Form.Job} job
+ * @param {string} source
+ * @returns {Form.Draft}
+ */
 function begin(job, source) {
   return { job: structuredClone(job), submission: {}, source, key: newKey() };
 }
 
-/** Return what the address says of where a draft began. */
+/**
+ * Return what the address says of where a draft began.
+ * @param {string} source
+ */
 function addressOf(source) {
   const [kind, name] = source.split(" ");
   return kind === "preset" ? { preset: name } : kind === "job" ? { from: name } : {};
 }
 
+/**
+ * @param {HTMLElement} place
+ * @param {{ draft: Form.Draft, before: Form.Draft | null, schema: ReturnType<typeof reader>, quantities: Api.Quantity[], shipped: Api.Preset[], signal: AbortSignal }} given
+ */
 function build(place, { draft, before, schema, quantities, shipped, signal }) {
+  /** @type {Api.Preview | null} */
   let checked = null; // what the service said of the job as it is; null while it has not
   let undone = before; // what was typed elsewhere, when the address asks for something else
   const drawn = sketch(signal);
@@ -61,6 +84,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
   const undo = h("button", { type: "button", hidden: undone === null, onclick: () => undone && take(undone) }, "Bring back what was there");
   const body = h("div", { class: "sections" });
 
+  /** @type {Form.Whole} */
   const form = {
     ...{ schema, fields: [], quantities: new Map(quantities.map((one) => [one.name, one])), submission: draft.submission },
     job: draft.job,
@@ -74,19 +98,20 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
       else form.submission[key] = value;
       changed({ check: false });
     },
-    register: (one) => form.fields.push(one),
-    quantity: (name) => form.quantities.get(name),
+    register: (one) => void form.fields.push(one),
+    quantity: (name) => /** @type {Api.Quantity} */ (form.quantities.get(name)), // those that the form names itself
     judging: () => quantities.filter(({ name }) => schema.property(["objectives", name])),
-    why: (name) => ({ sentence: form.quantities.get(name).sentence, name }),
+    why: (name) => ({ sentence: form.quantity(name).sentence, name }),
     redraw,
   };
   const file = jobFile(form, (job, source) => take({ ...begin(job, source === null ? draft.source : `file ${source}`), submission: form.submission }, { text: source === null }));
   const check = checker(({ answer, problem }) => {
     checked = answer ?? null;
-    if (problem) say(problem.message);
-    else tell(answer);
+    if (answer) tell(answer);
+    else say(sentenceOf(problem));
   }, signal);
 
+  /** @param {{ check?: boolean }} given */
   function changed({ check: again = true } = {}) {
     draft.key = newKey();
     keepDraft(draft);
@@ -96,14 +121,19 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     checked = null;
     check(form.job);
   }
+  /** @param {string | null | undefined} focus */
   function redraw(focus = document.activeElement?.id) {
     const folds = [...body.querySelectorAll("details[open] > summary")].map((one) => one.textContent);
     fill(body, sections(form));
-    for (const fold of body.querySelectorAll("details")) fold.open = folds.includes(fold.firstChild.textContent);
+    for (const fold of body.querySelectorAll("details")) fold.open = folds.includes(fold.firstChild?.textContent ?? "");
     if (focus) document.getElementById(focus)?.focus();
     if (checked) mark(checked.wrong);
   }
-  /** Put another draft in place of this one, which can be brought back. */
+  /**
+   * Put another draft in place of this one, which can be brought back.
+   * @param {Pick<Form.Draft, "job" | "submission" | "source">} other
+   * @param {{ text?: boolean }} given
+   */
   function take(other, { text = false } = {}) {
     if (!text) undone = structuredClone({ ...draft });
     Object.assign(draft, structuredClone(other), { key: newKey() });
@@ -117,15 +147,18 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     checked = null;
     check(form.job, { now: true });
   }
+  /** @param {Api.Wrong[]} wrong */
   function mark(wrong) {
     const { elsewhere, first: worst } = showWrong(form.fields, wrong);
     fill(general, elsewhere.map((sentence) => h("li", {}, sentence)));
     general.hidden = !elsewhere.length;
     return worst;
   }
+  /** @param {string} sentence */
   function say(sentence) {
     status.textContent = sentence;
   }
+  /** @param {Api.Preview} answer */
   function tell(answer) {
     mark(answer.wrong);
     const count = answer.wrong.length;
@@ -135,6 +168,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     drawn.show(answer.example);
   }
 
+  /** @param {SubmitEvent} event */
   async function submit(event) {
     event.preventDefault();
     refusal.hidden = true;
@@ -153,12 +187,13 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
       go(["jobs", String(job.id)]);
     } catch (error) {
       start.disabled = false;
-      const lines = error.message.split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
-      const wrong = lines.map((line) => /^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, ""))).filter(Boolean);
-      if (error.status === 422) showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })));
-      refuse(error.message);
+      const lines = sentenceOf(error).split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
+      const wrong = lines.flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []]).filter((found) => found.length);
+      if (statusOf(error) === 422) showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })));
+      refuse(sentenceOf(error));
     }
   }
+  /** @param {string} sentence */
   function refuse(sentence) {
     refusal.textContent = sentence;
     refusal.hidden = false;
@@ -186,7 +221,8 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
   whole.addEventListener("dragover", (event) => event.preventDefault());
   whole.addEventListener("drop", (event) => {
     event.preventDefault();
-    if (event.dataTransfer.files[0]) file.load(event.dataTransfer.files[0]);
+    const [given] = event.dataTransfer?.files ?? [];
+    if (given) file.load(given);
   });
   fill(place, whole);
   redraw(null);

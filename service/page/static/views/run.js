@@ -3,29 +3,37 @@ import { downloads } from "../jobs/downloads.js";
 import { outcome } from "../jobs/outcome.js";
 import { badge, ENDED } from "../jobs/states.js";
 import { ago, duration } from "../jobs/times.js";
-import { get, Problem } from "../lib/api.js";
+import { get, isAbort, Problem, statusOf } from "../lib/api.js";
 import { go, read } from "../lib/address.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, first, focused, h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
 
 export const title = "Run";
 
 const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** A run: while it goes on its progress, afterwards the explorer of its front. */
+/**
+ * A run: while it goes on its progress, afterwards the explorer of its front.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1) throw new Problem(404, "A run has a number; choose one of the list.");
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
+  /** @type {{ control: AbortController, live: boolean } | null} */
   let inner = null; // ends what the body shows
   const explorer = import("../front/explorer.js"); // comes while the job is asked for
 
-  /** Show a job as it stands; null: somebody deleted it. */
+  /**
+   * Show a job as it stands; null: somebody deleted it.
+   * @param {Api.Job | null} job
+   */
   async function stand(job) {
     if (signal.aborted) return;
     if (job === null) {
-      inner?.abort();
+      inner?.control.abort();
       fill(place, h("h1", {}, `Run ${number} is not there any more`), h("p", {}, "It was deleted, here or elsewhere."), h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")));
       return;
     }
@@ -33,15 +41,17 @@ export async function show(place, { parts, signal }) {
     const live = !ENDED.includes(job.state);
     const watched = live && inner?.live;
     if (!watched) {
-      inner?.abort();
-      inner = Object.assign(new AbortController(), { live });
-      signal.addEventListener("abort", () => inner.abort(), { signal: inner.signal });
+      inner?.control.abort();
+      const control = new AbortController();
+      inner = { control, live };
+      signal.addEventListener("abort", () => control.abort(), { signal: control.signal });
     }
-    const own = inner.signal;
-    const asked = live || !job.summary?.designs ? [] : designs(job, own); // on their way while the head is drawn
-    const held = head.contains(document.activeElement);
+    const own = /** @type {{ control: AbortController }} */ (inner).control.signal;
+    const asked = live || !job.summary?.designs ? null : designs(job.id, job.summary.best, own); // on its way while the head is drawn
+    asked?.catch(() => {}); // who waits for it says so
+    const held = focused(head);
     drawHead(job);
-    if (held) head.querySelector("button, a")?.focus();
+    if (held) first(head, "button, a")?.focus();
     if (watched) return;
     if (live) {
       const { watch } = await import("../jobs/live.js");
@@ -49,12 +59,18 @@ export async function show(place, { parts, signal }) {
     } else await ended(job, asked, own);
   }
 
-  /** Ask for what the explorer shows of a job unless it is told otherwise. */
-  function designs(job, own) {
-    const columns = [...SIZES, ...Object.keys(job.summary.best)].join(",");
-    return [get(`jobs/${job.id}/front`, {}, own), get(`jobs/${job.id}/columns`, { columns }, own)];
+  /**
+   * Ask for what the explorer shows of a job unless it is told otherwise.
+   * @param {number} id
+   * @param {object} best of the objectives, by column
+   * @param {AbortSignal} own
+   */
+  function designs(id, best, own) {
+    const columns = [...SIZES, ...Object.keys(best)].join(",");
+    return Promise.all([get(`jobs/${id}/front`, {}, own), get(`jobs/${id}/columns`, { columns }, own)]);
   }
 
+  /** @param {Api.Job} job */
   function drawHead(job) {
     const { summary } = job;
     const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
@@ -67,16 +83,21 @@ export async function show(place, { parts, signal }) {
     go([]);
   }
 
+  /**
+   * @param {Api.Job} job
+   * @param {ReturnType<typeof designs> | null} asked
+   * @param {AbortSignal} own
+   */
   async function ended(job, asked, own) {
-    const place = asked.length ? h("div", { class: "explorer" }) : null;
+    const place = asked && h("div", { class: "explorer" });
     fill(body, outcome(job), place);
-    if (!place) return;
+    if (!place || !asked) return;
     try {
-      const [[front, { values }], { explore }] = await Promise.all([Promise.all(asked), explorer]);
+      const [[front, { values }], { explore }] = await Promise.all([asked, explorer]);
       await explore(place, { job, front, values, query: read().query, signal: own });
     } catch (problem) {
-      if (problem.name === "AbortError") return;
-      if (problem.status === 404) await stand(null);
+      if (isAbort(problem)) return;
+      if (statusOf(problem) === 404) await stand(null);
       else throw problem;
     }
   }

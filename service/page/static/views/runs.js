@@ -1,6 +1,6 @@
-import { get } from "../lib/api.js";
+import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { keep, link } from "../lib/address.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, first, focused, h } from "../lib/dom.js";
 import { STATES, stateWord } from "../jobs/states.js";
 import { runRow } from "../jobs/row.js";
 
@@ -9,27 +9,38 @@ export const title = "Runs";
 const EACH = 2000; // ms between two looks while the page is seen
 const PAGE = 25;
 
-/** The list of runs, kept up to date while it is looked at. */
+/**
+ * The list of runs, kept up to date while it is looked at.
+ * @param {HTMLElement} place
+ * @param {Page.Visit} given
+ */
 export async function show(place, { query, signal }) {
+  /** @type {{ state: string, name: string, before: string }} */
   const asked = { state: query.get("state") ?? "", name: query.get("name") ?? "", before: query.get("before") ?? "" };
   const compared = new Set((query.get("jobs") ?? "").split(",").filter(Boolean).map(Number));
+  /** @type {Map<number, { text: string, node: HTMLElement, held: string | null }>} */
   const rows = new Map(); // number: {text, node}
   const list = h("ul", { class: "runs" });
   const said = h("p", { class: "quiet", role: "status" });
   const pages = h("nav", { class: "row", "aria-label": "Pages" });
   const comparing = h("div", { class: "row" });
-  let shown = [];
-  let timer = null;
+  /** @type {Api.JobPage} */
+  let shown = { jobs: [], next: null };
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
 
-  const changed = (...keys) => {
-    for (const key of keys) delete asked[key];
+  const changed = () => {
     keep({ ...asked, jobs: [...compared].join(",") });
   };
   const search = h("form", { class: "row search", role: "search", onsubmit: (event) => event.preventDefault() },
-    h("label", {}, "Name ", h("input", { type: "search", name: "name", value: asked.name, maxlength: 200, oninput: (event) => choose("name", event.target.value) })),
-    h("label", {}, "State ", h("select", { name: "state", onchange: (event) => choose("state", event.target.value) },
+    h("label", {}, "Name ", h("input", { type: "search", name: "name", value: asked.name, maxlength: 200, oninput: (event) => choose("name", event.currentTarget.value) })),
+    h("label", {}, "State ", h("select", { name: "state", onchange: (event) => choose("state", event.currentTarget.value) },
       h("option", { value: "" }, "all"), STATES.map((state) => h("option", { value: state, selected: state === asked.state }, stateWord(state))))),
     comparing);
+  /**
+   * @param {"name" | "state"} key
+   * @param {string} value
+   */
   const choose = (key, value) => {
     asked[key] = value;
     asked.before = "";
@@ -37,11 +48,16 @@ export async function show(place, { query, signal }) {
     clearTimeout(timer);
     timer = setTimeout(look, key === "name" ? 200 : 0);
   };
+  /** @param {string} before */
   const turn = (before) => {
     asked.before = before;
     changed();
-    look().then(() => place.querySelector("h1").scrollIntoView());
+    look().then(() => first(place, "h1")?.scrollIntoView());
   };
+  /**
+   * @param {number} number
+   * @param {boolean} yes
+   */
   const compare = (number, yes) => {
     if (yes) compared.add(number);
     else compared.delete(number);
@@ -61,30 +77,31 @@ export async function show(place, { query, signal }) {
     try {
       const page = await get("jobs", { limit: PAGE, state: asked.state || null, name: asked.name || null, before }, signal);
       if (before !== (asked.before || null)) return;
-      shown = page.jobs;
+      shown = page;
       draw(page);
     } catch (problem) {
-      if (problem.name === "AbortError") return;
-      said.textContent = problem.message;
+      if (isAbort(problem)) return;
+      said.textContent = sentenceOf(problem);
     }
     if (!signal.aborted) timer = setTimeout(() => (document.hidden ? null : look()), EACH);
   }
 
+  /** @param {Api.JobPage} page */
   function draw(page) {
     const wanted = page.jobs.map((job) => {
       const text = `${JSON.stringify(job)}${Math.floor(Date.now() / 60_000)}`;
       const known = rows.get(job.id);
       if (known?.text === text) return known.node;
-      const held = known?.node.contains(document.activeElement) ? document.activeElement.dataset.act : null;
+      const held = (known && focused(known.node)?.dataset.act) ?? null;
       const node = runRow(job, { chosen: compared.has(job.id), compare, changed: look });
       rows.set(job.id, { text, node, held });
       return node;
     });
     const same = wanted.length === list.children.length && wanted.every((node, index) => list.children[index] === node);
     if (!same) {
-      const held = page.jobs.map(({ id }) => rows.get(id)).find((row) => row.held);
+      const held = page.jobs.map(({ id }) => rows.get(id)).find((row) => row?.held);
       fill(list, wanted);
-      if (held) (held.node.querySelector(`[data-act="${held.held}"]`) ?? held.node.querySelector("a")).focus();
+      if (held) (first(held.node, `[data-act="${held.held}"]`) ?? first(held.node, "a"))?.focus();
       for (const row of rows.values()) row.held = null;
     }
     for (const number of rows.keys()) if (!page.jobs.some(({ id }) => id === number)) rows.delete(number);
@@ -94,9 +111,10 @@ export async function show(place, { query, signal }) {
     search.hidden = empty;
     welcome.hidden = !empty;
     said.textContent = page.jobs.length || empty ? "" : asked.before ? "There are no older runs." : "No run is like this; change the name or the state.";
+    const { next } = page;
     fill(pages,
       asked.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
-      page.next !== null && h("button", { type: "button", onclick: () => turn(page.next) }, "Older"));
+      next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"));
   }
 
   const welcome = h("section", { class: "panel welcome", hidden: true },
@@ -111,7 +129,7 @@ export async function show(place, { query, signal }) {
   const seen = () => document.hidden || look();
   const again = () => {
     rows.clear();
-    draw({ jobs: shown, next: null });
+    draw(shown);
     look();
   };
   document.addEventListener("visibilitychange", seen, { signal });

@@ -1,0 +1,79 @@
+/** Shapes that several modules of the page share. */
+
+declare namespace Page {
+  /** What a view is shown with; `signal` ends what it began. */
+  interface Visit {
+    parts: string[];
+    query: URLSearchParams;
+    signal: AbortSignal;
+  }
+  interface View {
+    title: string;
+    show(place: HTMLElement, visit: Visit): Promise<void> | void;
+  }
+  interface Range {
+    low: number;
+    high: number;
+  }
+  interface Scale extends Range {
+    ticks: number[];
+    at(value: number): number;
+    value(pixel: number): number;
+    text(tick: number): string;
+  }
+  /** An axis of a chart on canvas: ticks with their texts. */
+  interface Axis extends Omit<Scale, "ticks"> {
+    ticks: [number, string][];
+    column: Heading;
+  }
+  interface Heading {
+    title: string;
+    unit: string;
+  }
+  interface Room {
+    left: number;
+    right: number;
+    top: number;
+    bottom: number;
+  }
+  type Point = [number, number];
+  type Canvas = CanvasRenderingContext2D;
+  /** The colours of the style by name. */
+  type Ink = Record<string, string>;
+  /** A limit on a column: ends of numbers, null where it is open, or the words that are let through. */
+  type Limit = { low: number | null; high: number | null; words?: undefined } | { words: string[]; low?: undefined; high?: undefined };
+  /** A line drawn around designs: its corners in the units of two columns. */
+  interface Lasso {
+    x: string;
+    y: string;
+    line: Point[];
+  }
+  /** A design that is marked in a chart. */
+  interface Mark {
+    row: number;
+    colour: string;
+    width?: number;
+    name?: string;
+  }
+  /** A design as its view shows it. */
+  interface Machine {
+    number?: number;
+    name: string;
+    series: number | string;
+    row: Api.Row;
+    curves: Api.Curves;
+    curveColumns: Api.Column[];
+    centres: Point;
+  }
+  interface Lengths {
+    crank_mm: number;
+    rod_mm: number;
+    offset_mm: number;
+  }
+  /** The crank angle that the parts of a view share, as it changes. */
+  interface Turn {
+    angle: number;
+    playing: boolean;
+    settled: boolean;
+  }
+}
