@@ -11,6 +11,9 @@ IN_NODE := $(JAVASCRIPT)/node_modules/.bin
 ifneq ($(shell sh -c 'command -v npm'),)
 lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed
 	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 $(JAVASCRIPT) service tests
+	$(BIN)/python $(JAVASCRIPT)/describe.py >$(JAVASCRIPT)/openapi.json
+	$(IN_NODE)/openapi-typescript $(JAVASCRIPT)/openapi.json --output $(JAVASCRIPT)/openapi.d.ts >/dev/null
+	$(IN_NODE)/tsc --project service/page
 else
 lint-javascript:
 	@echo 'SKIPPED: lint and types of the JavaScript, which need npm; on Debian: apt install nodejs npm' >&2

@@ -83,3 +83,46 @@ export function text(value, unit = "", digits = 5) {
 /**
  * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
  * asked for: what optimise/feasibility/safe_side.py does for sentences, in the unit that is shown.
+ * @param {number} value
+ * @param {string} unit
+ * @param {"up" | "down"} side
+ * @param {number} digits
+ */
+export function limitText(value, unit, side, digits = 5) {
+  const shown = inShown(value, unit);
+  if (shown === 0) return "0";
+  const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
+  const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one
+  const scaled = (shown + (side === "up" ? -rounding : rounding)) * 10 ** places;
+  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replaceAll("-", "−");
+}
+
+/**
+ * Return a number with its unit: "41.2 mm", "38°".
+ * @param {Api.Row[string] | undefined} value
+ * @param {string} unit
+ * @param {number} digits
+ */
+export function withUnit(value, unit = "", digits = 5) {
+  if (typeof value !== "number" || Number.isNaN(value)) return text(value);
+  const shown = unitOf(unit);
+  return `${text(value, unit, digits)}${shown && shown !== "°" ? "\u00a0" : ""}${shown}`;
+}
+
+/**
+ * Return the ends of an axis as text: a millionth of the axis is zero to every reader.
+ * @param {Page.Range} given
+ * @param {string} unit
+ * @param {number} digits
+ */
+export function ends({ low, high }, unit, digits = 4) {
+  return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
+}
+
+/**
+ * Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms.
+ * @param {number} count
+ */
+export function grouped(count) {
+  return String(count).replace(/\B(?=(\d{3})+$)/g, ",");
+}

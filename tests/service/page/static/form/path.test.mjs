@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { at, idOf, put, read, written } from "../../../../../service/page/static/form/path.js";
+import { at, idOf, isTable, put, written } from "../../../../../service/page/static/form/path.js";
 import { draws } from "../draws.mjs";
 
 const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
@@ -13,15 +13,20 @@ function path({ whole, one, number }) {
   return found;
 }
 
-test("a path that is written is read as itself", () => {
+test("a path is written as the service writes it, places counted from 1", () => {
   const draw = draws(5);
   for (let n = 0; n < 1000; n += 1) {
     const one = path(draw).map((key) => (key === 0 ? draw.whole(0, 30) : key));
-    assert.deepEqual(read(written(one)), one);
+    const read = written(one).split(".").flatMap((part) => part.split(" #").map((key, place) => (place ? Number(key) - 1 : key)));
+    assert.deepEqual(read, one);
   }
-  assert.deepEqual(read('variables."own length".choices #2'), ["variables", "own length", "choices", 1]);
-  assert.deepEqual(read(""), []);
+  assert.equal(written(["load", 0, "force"]), "load #1.force");
   assert.equal(written([]), "");
+});
+
+test("tables and lists are tables, and nothing else is", () => {
+  for (const part of [{}, [], { a: 1 }]) assert.equal(isTable(part), true);
+  for (const part of [null, undefined, "5 kg", 0, NaN, true]) assert.equal(isTable(part), false);
 });
 
 test("what is put is there, and nothing is left once it is taken away", () => {

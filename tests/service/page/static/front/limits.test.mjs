@@ -63,7 +63,7 @@ test("a line around designs keeps those inside a triangle, whichever way it is d
   for (let n = 0; n < 300; n += 1) {
     const { data, cells, count } = front(draw);
     const line = Array.from({ length: 3 }, () => [draw.number(20, 100), draw.number(-5, 5)]);
-    const limits = new Limits(data, new Map(), { x: "crank_mm", y: "peak_torque_Nm", line: n % 2 ? line : line.toReversed() });
+    const limits = new Limits(data, new Map(), { x: "crank_mm", y: "peak_torque_Nm", line: n % 2 ? line : [...line].reverse() });
     limits.apply();
     const turns = (x, y) => line.map(([x1, y1], side) => {
       const [x2, y2] = line[(side + 1) % 3];
