@@ -13,7 +13,7 @@ from fastapi import Depends, Path, Request
 
 from ...model.errors import NotFound
 from ..designs.columns import Column, find_column
-from ..designs.stored_designs import StoredDesign, design_of, front_of
+from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..store import Job, Store
@@ -103,7 +103,8 @@ class StoredFront:
 
     def design(self, number: int) -> StoredDesign:
         """Return a design, by its number, as the machine that it is."""
-        return design_of(self.problem, self.row(number))
+        self.row(number)
+        return stored_design(self.problem, self.result, number)
 
 
 class StoredFronts:

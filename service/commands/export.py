@@ -107,9 +107,9 @@ def _angle(at: str | None) -> float:
 
 def _made(result: Result, folder: Path, number: int, files: dict[str, Path | None], angle: float) -> dict[Path, bytes]:
     """Return the contents of the files that are asked for of one design."""
-    from ..designs.stored_designs import design_of
+    from ..designs.stored_designs import stored_design
 
-    found = design_of(problem_of(folder, result), result.designs[number - 1])
+    found = stored_design(problem_of(folder, result), result, number)
     makers: dict[str, Callable[[], bytes]] = {
         "--dxf": lambda: _dxf(found, result.name, number, angle),
         "--svg": lambda: _svg(found, result.name, number, angle),

@@ -66,13 +66,13 @@ def wanted_in(wanted: Wanted, system: System) -> Wanted:
 
 
 def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
-    from .stored_designs import design_of, front_of
+    from .stored_designs import front_of, stored_design
     from .trade_offs import trade_offs_of
 
     if result.knee is None:
         return []
     try:
-        design = design_of(problem, result.designs[result.knee])
+        design = stored_design(problem, result, result.knee + 1)
         return trade_offs_of(front_of(problem, result), result.knee, design, system)
     except SlidercrankError:  # nothing is to be said of them
         return []

@@ -13,6 +13,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import Varying
 from ...objectives.varying_column import varying_column
 from ...optimise.problem.problem import Problem, Range, Variant, choice_field
+from ..runs.exact import Exact
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -40,39 +41,65 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
     Raises `RunError` for a row that does not belong to the problem.
     """
     values = _values(row, _factors(problem.mechanism))
-    part = problem.part(_variant(problem, row, values))
+    return _stored(problem, values, _variant(problem, row, values))
+
+
+def _stored(problem: Problem, values: tuple[float, ...], variant: int) -> StoredDesign:
+    part = problem.part(variant)
     mechanism = part.mechanism.at(values[3:])
     crank, rod, offset = values[:3]
     return StoredDesign(part, values, mechanism, Linkage(crank, rod, offset, mechanism.branch))
 
 
+def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
+    """Return a design of a result by its number, counted from 1: exactly where that is kept, else as `design_of`."""
+    if result.exact is None:
+        return design_of(problem, result.designs[number - 1])
+    variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
+    return _stored(problem, values, variants[number - 1] if variants else 0)
+
+
 def front_of(problem: Problem, result: Result) -> ParetoFront:
-    """Return a stored front with its problem, for figures: of the slopes at the designs nothing is known."""
+    """Return a stored front with its problem; without `Result.exact`, of the slopes at the designs nothing is known."""
     import numpy as np
     import pandas as pd
 
     from ...optimise.front.front import ParetoFront
     from .picking_options import minimised_values
 
-    sizes = _factors(problem.mechanism)
-    dimensions = [_values(row, sizes) for row in result.designs]
-    variants = [_variant(problem, *of) for of in zip(result.designs, dimensions, strict=True)]
+    exact = result.exact or _reconstructed(problem, result.designs)
     factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     return ParetoFront(
         problem=problem,
         status="done",
         message=result.message,
         designs=pd.DataFrame(result.designs),
-        dimensions=np.array(dimensions).reshape(len(dimensions), -1),
+        dimensions=exact.dimensions,
         values=minimised_values(result) / factors,
-        goals=(),
-        active=(),
+        goals=exact.goals,
+        active=exact.active,
         hypervolume=result.hypervolume,
         history=(),
         evaluations=result.evaluations,
         seconds=result.seconds,
         seed=result.seed,
-        variants=tuple(variants) if problem.variants else (),
+        variants=exact.variants,
+    )
+
+
+def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
+    """Return what the shown rows tell of the designs: all but slopes, which are of no piece and no unknown."""
+    import numpy as np
+
+    sizes = _factors(problem.mechanism)
+    dimensions = [_values(row, sizes) for row in rows]
+    variants = [_variant(problem, *of) for of in zip(rows, dimensions, strict=True)]
+    nothing = np.zeros((0, 0))
+    return Exact(
+        np.array(dimensions).reshape(len(dimensions), -1),
+        tuple(variants) if problem.variants else (),
+        ((np.zeros(0), nothing),) * len(rows),
+        (nothing,) * len(rows),
     )
 
 

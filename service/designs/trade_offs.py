@@ -1,4 +1,4 @@
-"""Trade-off rates at any design of a stored front: its slopes are not stored, and computed anew."""
+"""Trade-off rates at any design of a stored front: from its slopes; where these are not stored, computed anew."""
 
 from __future__ import annotations
 
@@ -41,6 +41,8 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
             f'trade-off rates need the gradient of every quantity; got {", ".join(lacking)} with gradient = "none"; '
             'set gradient = "finite differences"'
         )
+    if front.goals[row][1].size and design.values == tuple(front.dimensions[row].tolist()):
+        return front.trade_offs(row, system)
     values = np.array(design.values)
     for sheet in sheets(design.part):
         point = _point(sheet, values)

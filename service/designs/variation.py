@@ -73,7 +73,7 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
 
     from ...optimise.front.constant import spread
 
-    own = minimised_values(replace(result, designs=[row]))[0]
+    own = minimised_values(replace(result, designs=[row], exact=None))[0]
     if not len(minimised) or not np.isfinite(own).all():
         return {"dominated_by": [], "dominates": []}
     finite = np.where(np.isfinite(minimised), minimised, math.inf)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...objectives.kinds import System
 from ..designs.shown_units import result_in, row_in
-from ..designs.stored_designs import StoredDesign, design_of, front_of
+from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.variation import Variation, with_lengths
 from ..runs.result import Result, Row
 
@@ -72,7 +72,7 @@ def subject_of(
 
     Raises `RunError` for a design that does not belong to the problem.
     """
-    design = design_of(problem, result.designs[number - 1])
+    design = stored_design(problem, result, number)
     if changed is not None:
         linkage = changed.linkage
         lengths = (float(linkage.crank), float(linkage.rod), float(linkage.offset))

@@ -7,8 +7,10 @@ import io
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from .exact import Exact, exact_of
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -45,7 +47,8 @@ class Result:
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
-    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words.
+    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words. exact: the designs as
+    the search left them; None for a run read from its files, and from stores of early versions.
     """
 
     run: str
@@ -62,6 +65,7 @@ class Result:
     knee: int | None
     trade_offs: list[str]
     warnings: tuple[str, ...] = ()
+    exact: Exact | None = field(default=None, repr=False, compare=False)
 
     @property
     def strokes_differ(self) -> bool:
@@ -130,6 +134,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
         warnings=(*front_warnings(front), *idle_rules(front.problem)),
+        exact=exact_of(front),
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
+from .exact import Exact
 from .result import Result, Row, Wanted, finite, rows_from_csv
 from .run_folder import MARK
 
@@ -36,8 +37,10 @@ def read_run(folder: Path) -> Result:
     return result
 
 
-def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
+def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact | None = None) -> Result:
     """Return the result of a record as front.json has it, designs apart, with the rows of its designs.
+
+    exact: the same designs as the search left them, where that is kept.
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
@@ -57,7 +60,10 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str) -> Result:
         knee=None if record["knee"] is None else int(record["knee"]),
         trade_offs=[str(sentence) for sentence in record["trade_offs"]],
         warnings=tuple(str(sentence) for sentence in record.get("warnings", ())),  # runs of earlier versions have none
+        exact=exact,
     )
+    if exact is not None and len(exact.dimensions) != len(rows):
+        raise ValueError(f"{len(rows)} designs, dimensions of {len(exact.dimensions)}")
     marked = [*result.extremes.values(), *([] if result.knee is None else [result.knee])]
     if any(not 0 <= row < len(rows) for row in marked):
         raise ValueError("a marked design is not among the designs")

@@ -18,8 +18,9 @@ from .claiming import MOST_DELAY
 from .clock import JUMP, now
 from .database import Database, Full, Unavailable
 from .events_log import Told, add_events, state_event
+from .exact_bytes import packed_exact
 from .records import NOT_DONE, Artefact, Job
-from .schema import designs, jobs, records, workers
+from .schema import designs, exact, jobs, records, workers
 from .serialisation import cells_of, packed, plain, summary_of, text_of, unpacked
 from .submitting import put_files
 
@@ -135,10 +136,15 @@ class Claim:
             {"job": self.job.id, "number": number, "cells": cells_of(row)} for number, row in enumerate(result.designs)
         ]
 
+        content = None if result.exact is None else packed_exact(result.exact)
+
         def rest(connection: Connection) -> None:
-            connection.execute(delete(designs).where(designs.c.job == self.job.id))
+            for table in (designs, exact):
+                connection.execute(delete(table).where(table.c.job == self.job.id))
             if rows:
                 connection.execute(insert(designs), rows)
+            if content is not None:
+                connection.execute(insert(exact), {"job": self.job.id, "content": content})
             put_files(connection, self.job.id, files)
             if result.status != "cancelled":  # a cancelled one can go on
                 connection.execute(delete(records).where(records.c.job == self.job.id))

@@ -3,7 +3,8 @@
     jobs          one row a job: what is asked, where it stands, who has it until when
     events        what happened to a job, numbered 1, 2, 3, ... without gaps: states, progress, messages
     records       what the search of a job has found out, step by step: it resumes from these
-    designs       the front of a finished job, one row a design
+    designs       the front of a finished job, one row a design, as it is shown
+    exact         the same designs in SI with their slopes, one file a front; fronts of early stores have none
     artefacts     files of a job
     workers       who solves jobs, and when each was heard of last
 
@@ -111,6 +112,8 @@ designs = Table(
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("cells", Text, nullable=False),
 )
+
+exact = Table("exact", metadata, _of_a_job(), Column("content", LargeBinary, nullable=False))
 
 artefacts = Table(
     "artefacts",

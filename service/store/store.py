@@ -19,9 +19,10 @@ from .claiming import ENDED_LEASE, any_claimable, claim_next, running
 from .clock import Jumps, now
 from .database import Database
 from .events_log import add_events
+from .exact_bytes import unpacked_exact
 from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
 from .rows import become, damaged, require_resumable, the_job, the_record
-from .schema import artefacts, designs, events, jobs, workers
+from .schema import artefacts, designs, events, exact, jobs, workers
 from .schema_version import upgrade
 from .serialisation import plain, rows_of
 from .submitting import add_job, in_hand, require_bounds, require_room, submitted_before, take_turns
@@ -225,9 +226,11 @@ class Store:
             stored = the_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
             found = connection.execute(cells).scalars().all()
+            content = connection.execute(select(exact.c.content).where(exact.c.job == number)).scalar_one_or_none()
         try:
             columns = stored.pop("columns")
-            return result_from(stored, rows_of(columns, found), str(stored["run"]))
+            known = None if content is None else unpacked_exact(content)
+            return result_from(stored, rows_of(columns, found), str(stored["run"]), known)
         except (ValueError, KeyError, TypeError) as error:
             raise damaged(number, error) from error
 
