@@ -75,12 +75,11 @@ def _answer(request: Request, name: str) -> Response:
     return Response(file.content, media_type=file.media_type, headers=headers)
 
 
-def _files() -> dict[str, _File]:
-    """Return the files by name: read once, so that no name from a client is ever a path.
+def files_of(folder: Path) -> dict[str, _File]:
+    """Return the files of a folder by name: read once, so that no name from a client is ever a path.
 
     The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
     """
-    folder = Path(__file__).parent / "static"
     paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
     texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}
     styles = {name: text for name, text in texts.items() if name.endswith(".css")}
@@ -93,4 +92,4 @@ def _file(kind: str, content: bytes) -> _File:
     return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), tag)
 
 
-_FILES = _files()
+_FILES = files_of(Path(__file__).parent / "static")
