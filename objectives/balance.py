@@ -3,17 +3,64 @@
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
-from .quantity import NEWTON, NEWTON_METRE
+from .kinds import FORCE, TORQUE
+from .needs import MASSES, MOTION, SWINGING_MASSES
+from .quantity import Group
+
+_SECTION = "10. Motor and balance"
 
 PEAK_SHAKING_FORCE = CyclePeak(
-    "peak_shaking_force", "peak_shaking_force_N", "peak shaking force", NEWTON, Signal.SHAKING_FORCE
+    name="peak_shaking_force",
+    title="peak shaking force",
+    kind=FORCE,
+    signal=Signal.SHAKING_FORCE,
+    place=240,
+    group=Group.FORCES,
+    sentence="The greatest force with which the moving links shake the frame within a turn.",
+    advice="A counterweight on the crank lowers it, never to zero: the slider remains.",
+    formula="max |F_s|, F_s = minus the rate of change of the momentum of all links",
+    section=_SECTION,
+    picture="shaking force",
+    needs=(MOTION, MASSES),
 )
 RMS_SHAKING_FORCE = CycleAverage(
-    "rms_shaking_force", "rms_shaking_force_N", "RMS shaking force", NEWTON, Signal.SHAKING_FORCE, "rms"
+    name="rms_shaking_force",
+    title="RMS shaking force",
+    kind=FORCE,
+    signal=Signal.SHAKING_FORCE,
+    which="rms",
+    place=250,
+    group=Group.FORCES,
+    sentence="The root mean square, over a turn, of the force with which the moving links shake the frame.",
+    formula="sqrt(mean of |F_s|^2 over the crank angle)",
+    section=_SECTION,
+    picture="shaking force",
+    needs=(MOTION, MASSES),
 )
 PEAK_SHAKING_MOMENT = CyclePeak(
-    "peak_shaking_moment", "peak_shaking_moment_Nm", "peak shaking moment", NEWTON_METRE, Signal.SHAKING_MOMENT
+    name="peak_shaking_moment",
+    title="peak shaking moment",
+    kind=TORQUE,
+    signal=Signal.SHAKING_MOMENT,
+    place=260,
+    group=Group.FORCES,
+    sentence="The greatest moment about the crank pivot with which the moving links twist the frame within a turn.",
+    formula="max |M_s|, M_s = minus the rate of change of the angular momentum of all links",
+    section=_SECTION,
+    picture="shaking moment",
+    needs=(MOTION, MASSES, SWINGING_MASSES),
 )
 RMS_SHAKING_MOMENT = CycleAverage(
-    "rms_shaking_moment", "rms_shaking_moment_Nm", "RMS shaking moment", NEWTON_METRE, Signal.SHAKING_MOMENT, "rms"
+    name="rms_shaking_moment",
+    title="RMS shaking moment",
+    kind=TORQUE,
+    signal=Signal.SHAKING_MOMENT,
+    which="rms",
+    place=270,
+    group=Group.FORCES,
+    sentence="The root mean square, over a turn, of the moment with which the moving links twist the frame.",
+    formula="sqrt(mean of M_s^2 over the crank angle)",
+    section=_SECTION,
+    picture="shaking moment",
+    needs=(MOTION, MASSES, SWINGING_MASSES),
 )

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
-from .quantity import Array, Pieces, Unit, Values
+from .quantity import Array, Pieces, Quantity, Values
 
 
-@dataclass(frozen=True)
-class ClosedFormQuantity:
-    """A quantity given by one closed form, or by the greatest of several (`forms`)."""
+@dataclass(frozen=True, kw_only=True)
+class ClosedFormQuantity(Quantity):
+    """A quantity given by one closed form, or by the greatest of several (`forms`).
 
-    name: str
-    field: str
-    title: str
-    unit: Unit
+    rises: whether it rises with crank, rod and |offset|, where the derivatives have one sign for all that turns fully.
+    """
+
     forms: tuple[ClosedForm, ...]
+    rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -7,39 +7,30 @@ from typing import Literal
 
 import numpy as np
 
-from ..model.machine.dissipation import works_over_a_turn
 from ..model.machine.loads import require_word
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
 from ..model.machine.parameters import Raw
 from ..model.signals.averages import average
 from ..model.signals.signals import Signal
-from .quantity import Array, Pieces, Unit, Values
+from .quantity import Array, Pieces, Quantity, Values
 
 Which = Literal["mean", "rms"]
 
 
-@dataclass(frozen=True)
-class CycleAverage:
+@dataclass(frozen=True, kw_only=True)
+class CycleAverage(Quantity):
     """The mean or the root mean square of a signal over crank angle.
 
     The torque counts with its sign. times_speed: the average times the crank speed, a power from a torque.
     """
 
-    name: str
-    field: str
-    title: str
-    unit: Unit
     signal: Signal
     which: Which
     times_speed: bool = False
 
     def __post_init__(self) -> None:
         require_word("which", self.which, Which)
-
-    def zero_for(self, mechanism: Mechanism) -> bool:
-        """Return whether it is zero for every design: a mean torque or power of a machine that takes no work."""
-        return self.which == "mean" and self.signal is Signal.TORQUE and not works_over_a_turn(mechanism)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

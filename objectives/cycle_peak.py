@@ -9,20 +9,16 @@ from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import find_peaks
 from ..model.signals.screening import screen, screens
 from ..model.signals.signals import Signal
-from .quantity import Array, Pieces, Unit, Values
+from .quantity import Array, Pieces, Quantity, Values
 
 
-@dataclass(frozen=True)
-class CyclePeak:
+@dataclass(frozen=True, kw_only=True)
+class CyclePeak(Quantity):
     """The greatest value of `signal` over the cycle, or over one stroke.
 
     Exact over continuous crank angle. `screen_peaks` trades that for speed where thousands of designs are only sorted.
     """
 
-    name: str
-    field: str
-    title: str
-    unit: Unit
     signal: Signal
     during: str = "cycle"
 

@@ -8,7 +8,8 @@ acceleration of gravity (3rd CGPM, 1901), horsepower as 550 foot-pounds-force a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import Literal
 
 System = Literal["metric", "inch"]
@@ -31,15 +32,23 @@ class Kind:
     name: with its article, "a length". unit: the SI unit, "" if none. example: as a job file has it.
     limit: the greatest magnitude in SI that is believed. It lies orders beyond any machine: what exceeds it is a
     mistaken unit (80 Mm for 80 mm), and products of several values stay far from the ends of a double.
-    metric, inch: how it is shown, None where no column has it; inch is metric where both systems use the same unit.
+    metric, inch: how it is shown; inch is None where both systems use the same unit.
+    typed: units that a form offers, the SI unit first; usual: the one that it begins with, the metric one if left out.
     """
 
     name: str
     unit: str
     example: str
     limit: float
-    metric: Face | None = None
+    metric: Face
     inch: Face | None = None
+    typed: tuple[str, ...] = ()
+    usual: str = ""
+
+    @property
+    def plain(self) -> str:
+        """The name without its article: "length"."""
+        return self.name.split(" ", 1)[-1]
 
 
 _INCH = 0.0254
@@ -52,6 +61,7 @@ LENGTH = Kind(
     limit=1e4,
     metric=Face("mm", "_mm", 1e3),
     inch=Face("in", "_in", 1.0 / _INCH),
+    typed=("m", "mm", "cm", "µm", "in", "foot"),
 )
 AREA = Kind(
     name="an area",
@@ -60,10 +70,23 @@ AREA = Kind(
     limit=1e8,
     metric=Face("m^2", "_m2"),
     inch=Face("in^2", "_in2", 1.0 / _INCH**2),
+    typed=("m^2", "cm^2", "mm^2", "in^2"),
 )
-ANGLE = Kind(name="an angle", unit="rad", example="0.1 deg", limit=1e4, metric=Face("deg", "_deg", 57.29577951308232))
+ANGLE = Kind(
+    name="an angle",
+    unit="rad",
+    example="0.1 deg",
+    limit=1e4,
+    metric=Face("deg", "_deg", 57.29577951308232),
+    typed=("rad", "deg"),
+)
 ANGULAR_SPEED = Kind(
-    name="an angular speed", unit="rad/s", example="300 rpm", limit=1e6, metric=Face("rpm", "_rpm", 9.549296585513721)
+    name="an angular speed",
+    unit="rad/s",
+    example="300 rpm",
+    limit=1e6,
+    metric=Face("rpm", "_rpm", 9.549296585513721),
+    typed=("rad/s", "rpm", "rev/s"),
 )
 ANGULAR_ACCELERATION = Kind(
     name="an angular acceleration",
@@ -71,6 +94,7 @@ ANGULAR_ACCELERATION = Kind(
     example="20 rad/s^2",
     limit=1e9,
     metric=Face("rad/s^2", "_rad_s2"),
+    typed=("rad/s^2", "deg/s^2"),
 )
 MASS = Kind(
     name="a mass",
@@ -79,6 +103,7 @@ MASS = Kind(
     limit=1e8,
     metric=Face("kg", "_kg"),
     inch=Face("lb", "_lb", 1.0 / _POUND),
+    typed=("kg", "g", "t", "lb"),
 )
 INERTIA = Kind(
     name="a moment of inertia",
@@ -87,6 +112,7 @@ INERTIA = Kind(
     limit=1e12,
     metric=Face("kg m^2", "_kg_m2"),
     inch=Face("lb in^2", "_lb_in2", 1.0 / (_POUND * _INCH**2)),
+    typed=("kg m^2", "kg mm^2", "lb in^2"),
 )
 DENSITY = Kind(
     name="a density",
@@ -95,6 +121,7 @@ DENSITY = Kind(
     limit=1e6,
     metric=Face("kg/m^3", "_kg_m3"),
     inch=Face("lb/in^3", "_lb_in3", _INCH**3 / _POUND),
+    typed=("kg/m^3", "g/cm^3", "lb/in^3"),
 )
 SPEED = Kind(
     name="a speed",
@@ -103,6 +130,7 @@ SPEED = Kind(
     limit=1e6,
     metric=Face("m/s", "_m_s"),
     inch=Face("in/s", "_in_s", 1.0 / _INCH),
+    typed=("m/s", "mm/s", "in/s"),
 )
 ACCELERATION = Kind(
     name="an acceleration",
@@ -111,6 +139,7 @@ ACCELERATION = Kind(
     limit=1e9,
     metric=Face("m/s^2", "_m_s2"),
     inch=Face("in/s^2", "_in_s2", 1.0 / _INCH),
+    typed=("m/s^2", "mm/s^2", "in/s^2"),
 )
 FORCE = Kind(
     name="a force",
@@ -119,6 +148,7 @@ FORCE = Kind(
     limit=1e12,
     metric=Face("N", "_N"),
     inch=Face("lbf", "_lbf", 1.0 / _LBF),
+    typed=("N", "kN", "lbf"),
 )
 TORQUE = Kind(
     name="a torque",
@@ -127,6 +157,7 @@ TORQUE = Kind(
     limit=1e15,
     metric=Face("N m", "_Nm"),
     inch=Face("lbf in", "_lbf_in", 1.0 / (_LBF * _INCH)),
+    typed=("N m", "kN m", "N mm", "lbf in", "lbf ft"),
 )
 POWER = Kind(
     name="a power",
@@ -135,6 +166,7 @@ POWER = Kind(
     limit=1e15,
     metric=Face("W", "_W"),
     inch=Face("hp", "_hp", 1.0 / (6600.0 * _LBF * _INCH)),
+    typed=("W", "kW", "hp"),
 )
 STIFFNESS = Kind(
     name="a stiffness",
@@ -143,6 +175,8 @@ STIFFNESS = Kind(
     limit=1e15,
     metric=Face("N/m", "_N_per_m"),
     inch=Face("lbf/in", "_lbf_per_in", _INCH / _LBF),
+    typed=("N/m", "N/mm", "lbf/in"),
+    usual="N/mm",
 )
 DAMPING = Kind(
     name="a viscous coefficient",
@@ -151,6 +185,7 @@ DAMPING = Kind(
     limit=1e15,
     metric=Face("N s/m", "_Ns_per_m"),
     inch=Face("lbf s/in", "_lbf_s_per_in", _INCH / _LBF),
+    typed=("N s/m", "N s/mm", "lbf s/in"),
 )
 PRESSURE = Kind(
     name="a pressure",
@@ -159,22 +194,24 @@ PRESSURE = Kind(
     limit=1e15,
     metric=Face("MPa", "_MPa", 1e-6),
     inch=Face("psi", "_psi", _INCH**2 / _LBF),
+    typed=("Pa", "MPa", "GPa", "psi"),
 )
-RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9)
+RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9, metric=Face("", ""))
+JERK = Kind(
+    name="a jerk",
+    unit="m/s^3",
+    example="2000 m/s^3",
+    limit=1e12,
+    metric=Face("m/s^3", "_m_s3"),
+    inch=Face("in/s^3", "_in_s3", 1.0 / _INCH),
+    typed=("m/s^3", "in/s^3"),
+)
 
 KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO),
+    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO, JERK),
 )
-TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9)
-_JERK = Kind(
-    name="a jerk",
-    unit="m/s^3",
-    example="",
-    limit=0.0,
-    metric=Face("m/s^3", "_m_s3"),
-    inch=Face("in/s^3", "_in_s3", 1.0 / _INCH),
-)
+TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9, metric=Face("s", "_s"), typed=("s", "min"))
 _PER_ANGLE = Kind(
     name="a length per angle",
     unit="m/rad",
@@ -191,8 +228,8 @@ _PER_SQUARED_ANGLE = Kind(
     metric=Face("mm/rad^2", "_mm_per_rad2", 1e3),
     inch=Face("in/rad^2", "_in_per_rad2", 1.0 / _INCH),
 )
-SHOWN = (*(kind for kind in KINDS if kind.metric is not None), _JERK, _PER_ANGLE, _PER_SQUARED_ANGLE)
-"""Kinds that are shown: the one table of units for columns, figures, reports and the page."""
+SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
+"""Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
 
 
 def shown_in(symbol: str, system: System) -> tuple[str, float]:
@@ -202,6 +239,21 @@ def shown_in(symbol: str, system: System) -> tuple[str, float]:
     quantity, stays as it is.
     """
     for kind in SHOWN if system == "inch" else ():
-        if kind.metric is not None and kind.inch is not None and kind.metric.symbol == symbol:
+        if kind.inch is not None and kind.metric.symbol == symbol:
             return kind.inch.symbol, kind.inch.factor / kind.metric.factor
     return symbol, 1.0
+
+
+def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
+    """Return the kind of a value that is shown in any unit, with the suffix that follows from the unit's symbol.
+
+    factor: what one SI unit is in it. kind: that of the table, if it is known; else one named after the unit.
+    """
+    plain = symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
+    name = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
+    face = Face(symbol, f"_{name}" if name else "", factor)
+    if kind is None:
+        return Kind(
+            name=f"a value in {symbol or 'no unit'}", unit=symbol, example=f"1 {symbol}", limit=1e30, metric=face
+        )
+    return replace(kind, metric=face, inch=None)

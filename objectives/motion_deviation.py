@@ -5,7 +5,8 @@ These quantities exist for a target motion only; a `Problem` has them among its 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,60 +14,90 @@ from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit
 from ..model.kinematics.target_pieces import fit_pieces
 from ..model.machine.loads import require_word
 from ..model.machine.mechanism import Mechanism
-from .quantity import DEGREE, MILLIMETRE, Array, Pieces, Unit, Values
-
-DEVIATIONS: dict[str, tuple[str, Measure]] = {
-    "motion_deviation": ("motion deviation, greatest", "greatest"),
-    "motion_deviation_rms": ("motion deviation, root mean square", "rms"),
-}
-"""Title and measure of the quantities, by name."""
+from .kinds import ANGLE, LENGTH
+from .quantity import Array, Group, Pieces, Quantity, Values
 
 
-@dataclass(frozen=True)
-class MotionDeviation:
-    """The deviation from a target motion, greatest or root mean square; phase and shift at their best where free."""
+@dataclass(frozen=True, kw_only=True)
+class MotionDeviation(Quantity):
+    """The deviation from a target motion, greatest or root mean square; phase and shift at their best where free.
 
-    name: str
-    field: str
-    title: str
-    unit: Unit
-    target: TargetMotion
+    target: None where no job has said yet from what: facts without values.
+    """
+
+    target: TargetMotion | None = None
     measure: Measure
+    table: ClassVar[str] = "target_motion"
 
     def __post_init__(self) -> None:
         require_word("measure", self.measure, Measure)
 
+    @property
+    def _given(self) -> TargetMotion:
+        assert self.target is not None
+        return self.target
+
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""
         if not gradients:
-            return Values(fit(self.target, _sign(mechanism), self.measure, dimensions[:, :3]).values, None)
+            return Values(fit(self._given, _sign(mechanism), self.measure, dimensions[:, :3]).values, None)
         found = self.pieces(mechanism, dimensions)
         return Values(found.values[:, 0], found.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
-        found = fit_pieces(self.target, _sign(mechanism), self.measure, dimensions[:, :3])
+        found = fit_pieces(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
         more = dimensions.shape[1] - 3  # what varies beside the dimensions does not move the slider
         return Pieces(found.values, np.pad(found.gradients, ((0, 0), (0, 0), (0, more))), found.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return phase (deg) and shift (mm) of the best fit for designs (n, 3), each if it is free, by column."""
-        found: Fit = fit(self.target, _sign(mechanism), self.measure, dimensions[:, :3])
+        found: Fit = fit(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
-        if self.target.phase == "free":
-            columns[f"motion_phase{suffix}_deg"] = DEGREE.factor * found.phase
-        if self.target.shift == "free":
-            columns[f"motion_shift{suffix}_mm"] = MILLIMETRE.factor * found.shift
+        if self._given.phase == "free":
+            columns[f"motion_phase{suffix}_deg"] = ANGLE.metric.factor * found.phase
+        if self._given.shift == "free":
+            columns[f"motion_shift{suffix}_mm"] = LENGTH.metric.factor * found.shift
         return columns
+
+
+MOTION_DEVIATION = MotionDeviation(
+    name="motion_deviation",
+    title="motion deviation, greatest",
+    kind=LENGTH,
+    measure="greatest",
+    place=280,
+    group=Group.ACCURACY,
+    sentence="The greatest distance between the slider and the points of the wanted motion.",
+    formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
+    section="12. Position error",
+    source="derived there",
+    picture="wanted motion",
+    example="0.3 mm",
+)
+MOTION_DEVIATION_RMS = MotionDeviation(
+    name="motion_deviation_rms",
+    title="motion deviation, root mean square",
+    kind=LENGTH,
+    measure="rms",
+    place=290,
+    group=Group.ACCURACY,
+    sentence="The distance between the slider and the points of the wanted motion, as a root mean square.",
+    advice="One point that is far off counts less than in the greatest deviation.",
+    formula="sqrt(mean of (x(theta_i + psi) + s - t_i)^2)",
+    section="12. Position error",
+    source="derived there",
+    picture="wanted motion",
+    example="0.2 mm",
+)
+DEVIATIONS = {each.name: each for each in (MOTION_DEVIATION, MOTION_DEVIATION_RMS)}
+"""Facts of the quantities that a target motion makes, by name."""
 
 
 def motion_deviations(target: TargetMotion) -> tuple[MotionDeviation, ...]:
     """Return the quantities that a target motion makes."""
-    return tuple(
-        MotionDeviation(name, f"{name}_mm", title, MILLIMETRE, target, measure)
-        for name, (title, measure) in DEVIATIONS.items()
-    )
+    return tuple(replace(each, target=target) for each in DEVIATIONS.values())
 
 
 def _sign(mechanism: Mechanism) -> float:

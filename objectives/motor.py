@@ -1,16 +1,55 @@
-"""What sizes a motor beside its torque: greatest and mean power, greatest inertia that it feels."""
+"""Loads of a motor beyond its torque: greatest and mean power, greatest inertia that it feels."""
 
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
-from .quantity import KILOGRAM_SQUARE_METRE, WATT
+from .kinds import INERTIA, POWER
+from .needs import DRIVEN, MASSES, SPEED, WORK
+from .quantity import Group
 
-PEAK_POWER = CyclePeak("peak_power", "peak_power_W", "peak power", WATT, Signal.POWER)
-MEAN_POWER = CycleAverage("mean_power", "mean_power_W", "mean power", WATT, Signal.TORQUE, "mean", times_speed=True)
+_SECTION = "10. Motor and balance"
+
+PEAK_POWER = CyclePeak(
+    name="peak_power",
+    title="peak power",
+    kind=POWER,
+    signal=Signal.POWER,
+    place=210,
+    group=Group.DRIVE,
+    sentence="The greatest power that passes between drive and crank within a turn, driving or braking.",
+    formula="max |T omega|",
+    section=_SECTION,
+    picture="power",
+    needs=(SPEED, DRIVEN),
+)
+MEAN_POWER = CycleAverage(
+    name="mean_power",
+    title="mean power",
+    kind=POWER,
+    signal=Signal.TORQUE,
+    which="mean",
+    times_speed=True,
+    place=220,
+    group=Group.DRIVE,
+    sentence="The average power of the drive over a turn: the energy that the machine takes.",
+    formula="omega times the mean of T",
+    section=_SECTION,
+    picture="power",
+    signed=True,
+    needs=(SPEED, DRIVEN, WORK),
+    instead=PEAK_POWER.name,
+)
 PEAK_REFLECTED_INERTIA = CyclePeak(
-    "peak_reflected_inertia",
-    "peak_reflected_inertia_kg_m2",
-    "greatest reflected inertia",
-    KILOGRAM_SQUARE_METRE,
-    Signal.REFLECTED_INERTIA,
+    name="peak_reflected_inertia",
+    title="greatest reflected inertia",
+    kind=INERTIA,
+    signal=Signal.REFLECTED_INERTIA,
+    place=230,
+    group=Group.DRIVE,
+    sentence="The greatest moment of inertia that the drive feels at the crank, with rod and slider counted in.",
+    advice="To compare it with the inertia of a motor, divide it by the square of the gear ratio.",
+    formula="max J, where J omega^2 / 2 is the kinetic energy of all links",
+    section=_SECTION,
+    picture="inertia",
+    needs=(MASSES,),
 )

@@ -1,18 +1,121 @@
 """Proportions of the linkage: stroke, rod to offset, rod to crank, footprint."""
 
+from __future__ import annotations
+
+import math
+
+from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
-from .quantity import MILLIMETRE, RATIO, SQUARE_METRE
+from .domain import Domain
+from .kinds import AREA, LENGTH, RATIO
+from .quantity import Group
+from .reach import Ranges, Reach
 
-STROKE = ClosedFormQuantity("stroke", "stroke_mm", "stroke", MILLIMETRE, (ClosedForm.STROKE,))
-ROD_TO_OFFSET = ClosedFormQuantity(
-    "rod_to_offset", "rod_to_offset", "rod to offset", RATIO, (ClosedForm.ROD_TO_OFFSET,)
+_SECTION = "2. Closed forms"
+_ABOVE_ONE = Domain(
+    lower=1.0,
+    idle=True,
+    rule="the rod exceeds crank + |offset| for full rotation, so this is above 1",
+    remedy="raise it",
 )
-ROD_TO_CRANK = ClosedFormQuantity("rod_to_crank", "rod_to_crank", "rod to crank", RATIO, (ClosedForm.ROD_TO_CRANK,))
+
+
+def _strokes(box: Ranges) -> tuple[float, float]:
+    r = box.crank
+    greatest = geometry.stroke(box.r1, box.l0, box.a1) if box.turns else 2.0 * math.sqrt(r * min(box.l1, r + box.a1))
+    return float(geometry.stroke(box.r0, box.l1, box.a0)), float(greatest)
+
+
+def _to_offset(box: Ranges) -> tuple[float, float]:
+    return (max(box.l0 / box.a1, 1.0) if box.a1 else math.inf), (box.l1 / box.a0 if box.a0 else math.inf)
+
+
+def _to_crank(box: Ranges) -> tuple[float, float]:
+    return max(box.l0 / box.r1, 1.0), box.l1 / box.r0
+
+
+STROKE = ClosedFormQuantity(
+    name="stroke",
+    title="stroke",
+    kind=LENGTH,
+    forms=(ClosedForm.STROKE,),
+    rises=(True, False, True),
+    place=100,
+    group=Group.MOTION,
+    sentence="The stroke is the way of the slider from one dead centre to the other.",
+    advice="It equals twice the crank only without offset.",
+    formula="S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)",
+    section=_SECTION,
+    picture="stroke",
+    example="280 mm",
+    reach=Reach(
+        bounds=_strokes,
+        more="raise the upper end of crank or of offset",
+        less="lower the lower end of crank: a stroke is never shorter than 2 crank",
+    ),
+    offered=("motion",),
+    on_sheet=True,
+)
+ROD_TO_OFFSET = ClosedFormQuantity(
+    name="rod_to_offset",
+    title="rod to offset",
+    kind=RATIO,
+    forms=(ClosedForm.ROD_TO_OFFSET,),
+    rises=(True, True, False),
+    place=110,
+    group=Group.PROPORTIONS,
+    sentence="The length of the rod divided by the size of the offset: a rule such as rod = 3.2 offset.",
+    advice="Held at one value it leaves one choice fewer, and the search meets it exactly.",
+    formula="l / |e|, infinite without offset",
+    section=_SECTION,
+    picture="offset",
+    domain=_ABOVE_ONE,
+    in_line=math.inf,
+    reach=Reach(
+        bounds=_to_offset,
+        more="raise the upper end of rod or lower the lower end of offset",
+        less="lower the lower end of rod or raise the upper end of offset",
+    ),
+    offered=("proportions",),
+    on_sheet=True,
+    plain=True,
+)
+ROD_TO_CRANK = ClosedFormQuantity(
+    name="rod_to_crank",
+    title="rod to crank",
+    kind=RATIO,
+    forms=(ClosedForm.ROD_TO_CRANK,),
+    rises=(False, True, True),
+    place=120,
+    group=Group.PROPORTIONS,
+    sentence="The length of the rod divided by that of the crank; the higher, the more evenly the slider moves.",
+    formula="l / r",
+    section=_SECTION,
+    picture="rod",
+    example=2.5,
+    better="high",
+    domain=_ABOVE_ONE,
+    reach=Reach(
+        bounds=_to_crank,
+        more="raise the upper end of rod or lower the lower end of crank",
+        less="lower the lower end of rod or raise the upper end of crank",
+    ),
+    offered=("proportions",),
+    on_sheet=True,
+    plain=True,
+)
 FOOTPRINT = ClosedFormQuantity(
-    "footprint",
-    "footprint_m2",
-    "footprint",
-    SQUARE_METRE,
-    (ClosedForm.FOOTPRINT_OF_CRANK, ClosedForm.FOOTPRINT_OF_OFFSET),
+    name="footprint",
+    title="footprint",
+    kind=AREA,
+    forms=(ClosedForm.FOOTPRINT_OF_CRANK, ClosedForm.FOOTPRINT_OF_OFFSET),
+    place=130,
+    group=Group.PROPORTIONS,
+    sentence="The footprint is the area of the rectangle that the pin centres need over a whole turn.",
+    formula="(x_out + r) (r + max(r, |e|)) with x_out = sqrt((l+r)^2 - e^2)",
+    section=_SECTION,
+    picture="footprint",
+    offered=("objective",),
+    on_sheet=True,
 )

@@ -1,36 +1,40 @@
-"""The protocol of every quantity that can be an objective or stand in a constraint."""
+"""A quantity and its facts: all that anyone asks about a number that can be an objective or stand in a constraint."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import field as _field
+from enum import Enum
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model.machine.mechanism import Mechanism
+from .domain import Domain
+from .kinds import Face, Kind
+from .needs import Need, Without
+from .reach import Reach
 
 Array = NDArray[np.float64]
+Better = Literal["low", "high"]
+Offer = Literal["motion", "proportions", "requirement", "objective"]
+"""Parts of a form that ask for a quantity unasked: the wanted motion, rules of proportion, what must hold, what is
+wanted."""
+MECHANICS = "derived there from plane rigid-body mechanics"
 
 
-@dataclass(frozen=True)
-class Unit:
-    """How a quantity is shown. symbol: pint-readable ("mm"). factor: what one SI unit is in it (1000.0 for mm)."""
+class Group(Enum):
+    """Groups in which quantities are shown, in their order."""
 
-    symbol: str
-    factor: float
-
-
-RATIO = Unit("", 1.0)
-MILLIMETRE = Unit("mm", 1e3)
-SQUARE_METRE = Unit("m^2", 1.0)
-DEGREE = Unit("deg", 180.0 / np.pi)
-NEWTON_METRE = Unit("N m", 1.0)
-NEWTON = Unit("N", 1.0)
-WATT = Unit("W", 1.0)
-KILOGRAM_SQUARE_METRE = Unit("kg m^2", 1.0)
-METRE_PER_SECOND = Unit("m/s", 1.0)
-METRE_PER_SECOND_SQUARED = Unit("m/s^2", 1.0)
+    DIMENSIONS = "Dimensions"
+    MOTION = "Motion"
+    PROPORTIONS = "Transmission and proportions"
+    DRIVE = "Drive"
+    FORCES = "Forces"
+    ACCURACY = "Accuracy"
+    FURTHER = "Further quantities"
 
 
 @dataclass(frozen=True)
@@ -61,39 +65,103 @@ class Pieces:
     least: bool = False
 
 
-class Quantity(Protocol):
-    """A number that judges a design: its name, its unit, its values and gradients for a batch of designs.
+def _fact(default: Any) -> Any:
+    """Return a fact that is told, not computed with: quantities that differ in it alone compute the same."""
+    return _field(default=default, compare=False)
 
-    name: as in job files. field: the key of tables and JSON, carrying the unit. title: for people. unit: as shown.
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity(ABC):
+    """A number that judges a design: its facts, and its values and gradients for a batch of designs.
+
+    name: in job files. title: for people. kind: of value, with its units. key: how its column begins, the name if left
+    out. short: title where room is scarce, the title if left out. place: in tables, lower first.
+
+    group: that it is shown in. sentence: of the help, for an engineer who meets it first. advice: what is usual, or
+    what it trades against. formula: in plain text, its symbols those of docs/theory.md. section: of docs/theory.md.
+    source: of the equations. picture: what a picture of the linkage points out.
+
+    example: a usual value as job files have it, that of the kind if left out. better: the usual direction. signed:
+    whether it may be negative. domain: values that some linkage has. floor: least value that holds where a job sets
+    none, SI. in_line: its value for every design without offset. needs: of the machine. instead: quantities that serve
+    where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances: whether it includes
+    tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a design has it.
+    plain: whether it follows from others at a glance, so that a short table leaves it out.
     """
 
+    name: str
+    title: str = _field(compare=False)
+    kind: Kind
+    key: str = _fact("")
+    short: str = _fact("")
+    place: int = _fact(1000)
+    group: Group = _fact(Group.FURTHER)
+    sentence: str = _fact("")
+    advice: str = _fact("")
+    formula: str = _fact("")
+    section: str = _fact("")
+    source: str = _fact(MECHANICS)
+    picture: str = _fact("")
+    example: str | float | None = _fact(None)
+    better: Better = _fact("low")
+    signed: bool = _fact(False)
+    domain: Domain | None = _fact(None)
+    floor: float | None = _fact(None)
+    in_line: float | None = _fact(None)
+    needs: tuple[Need, ...] = _fact(())
+    instead: str = _fact("")
+    reach: Reach | None = _fact(None)
+    about_tolerances: bool = _fact(False)
+    offered: tuple[Offer, ...] = _fact(())
+    on_sheet: bool = _fact(False)
+    plain: bool = _fact(False)
+    table: ClassVar[str] = ""
+    """Table of a job without which there is no such quantity; none for one that every problem has."""
+
     @property
-    def name(self) -> str:
-        """Name in job files."""
-        ...
+    def stem(self) -> str:
+        """Its column without the unit."""
+        return self.key or self.name
 
     @property
     def field(self) -> str:
-        """Key in tables and JSON."""
-        ...
+        """Key in tables and JSON, carrying the unit: "stroke_mm"."""
+        return self.stem + self.kind.metric.suffix
 
     @property
-    def title(self) -> str:
-        """Name for people."""
-        ...
-
-    @property
-    def unit(self) -> Unit:
+    def unit(self) -> Face:
         """Unit in tables, JSON and figures."""
-        ...
+        return self.kind.metric
 
+    @property
+    def short_title(self) -> str:
+        """Title where room is scarce."""
+        return self.short or self.title
+
+    @property
+    def usual(self) -> str | float:
+        """A usual value as job files have it."""
+        if self.example is not None:
+            return self.example
+        return self.kind.example if self.kind.unit else float(self.kind.example)
+
+    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+        """Return rule, value and remedy for the first unmet need of a machine; None if there is none.
+
+        without: what becomes of the quantity: "undefined", "equal" to another one, or "zero" for every design.
+        """
+        for need in self.needs:
+            if need.without == without and not need.met(mechanism):
+                return need.missing.format(instead=self.instead)
+        return None
+
+    @abstractmethod
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k), each turning fully.
 
         Columns: crank, rod, offset, m, then the value of each of the machine's varying numbers, SI.
         """
-        ...
 
+    @abstractmethod
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces."""
-        ...

@@ -1,54 +1,30 @@
-"""All quantities by name."""
+"""All quantities by name, found in the modules of this folder; their order in tables is that of their places."""
 
 from __future__ import annotations
 
 import difflib
+import pkgutil
 from collections.abc import Iterable
+from importlib import import_module
 
 from ..model.errors import InputError
-from .average_torque import MEAN_TORQUE, RMS_TORQUE
-from .balance import PEAK_SHAKING_FORCE, PEAK_SHAKING_MOMENT, RMS_SHAKING_FORCE, RMS_SHAKING_MOMENT
-from .joint_forces import PEAK_CRANK_PIN_FORCE, PEAK_GUIDE_FORCE, PEAK_PIVOT_FORCE, PEAK_SLIDER_PIN_FORCE
-from .motor import MEAN_POWER, PEAK_POWER, PEAK_REFLECTED_INERTIA
-from .peak_torque import PEAK_TORQUE, PEAK_TORQUE_INWARD, PEAK_TORQUE_OUTWARD
-from .position_error import POSITION_ERROR, POSITION_ERROR_RSS
-from .proportions import FOOTPRINT, ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from .quantity import Quantity
-from .self_locking import SELF_LOCKING_MARGIN
-from .slider_motion import PEAK_SLIDER_ACCELERATION, PEAK_SLIDER_SPEED
-from .time_ratio import TIME_RATIO
-from .transmission_angle import TRANSMISSION_ANGLE
 
-_ALL: tuple[Quantity, ...] = (
-    TIME_RATIO,
-    PEAK_TORQUE,
-    TRANSMISSION_ANGLE,
-    POSITION_ERROR,
-    PEAK_TORQUE_OUTWARD,
-    PEAK_TORQUE_INWARD,
-    RMS_TORQUE,
-    MEAN_TORQUE,
-    POSITION_ERROR_RSS,
-    STROKE,
-    ROD_TO_OFFSET,
-    ROD_TO_CRANK,
-    FOOTPRINT,
-    PEAK_PIVOT_FORCE,
-    PEAK_CRANK_PIN_FORCE,
-    PEAK_SLIDER_PIN_FORCE,
-    PEAK_GUIDE_FORCE,
-    PEAK_SLIDER_SPEED,
-    PEAK_SLIDER_ACCELERATION,
-    SELF_LOCKING_MARGIN,
-    PEAK_POWER,
-    MEAN_POWER,
-    PEAK_REFLECTED_INERTIA,
-    PEAK_SHAKING_FORCE,
-    RMS_SHAKING_FORCE,
-    PEAK_SHAKING_MOMENT,
-    RMS_SHAKING_MOMENT,
-)
-QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
+
+def declared(package: str) -> tuple[Quantity, ...]:
+    """Return every quantity that the modules of a package declare, those of sub-packages left out, by their places."""
+    found: dict[str, Quantity] = {}
+    for module in pkgutil.iter_modules(import_module(package).__path__):
+        if not module.ispkg and f"{package}.{module.name}" != __name__:
+            values = vars(import_module(f"{package}.{module.name}")).values()
+            found |= {value.name: value for value in values if isinstance(value, Quantity)}
+    return tuple(sorted(found.values(), key=lambda quantity: quantity.place))
+
+
+FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared(__package__)}
+"""Every quantity of the product, also those whose values need a table of the job."""
+QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.items() if not quantity.table}
+"""Quantities that every problem has."""
 
 
 def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:

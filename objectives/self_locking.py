@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..model.cycle.self_locking import varied_margin
 from ..model.machine.mechanism import Mechanism
-from .quantity import DEGREE, Array, Pieces, Unit, Values
+from .domain import Domain
+from .kinds import ANGLE
+from .needs import FRICTION
+from .quantity import Array, Group, Pieces, Quantity, Values
+from .transmission_angle import TRANSMISSION_ANGLE
 
 
-@dataclass(frozen=True)
-class ClosedFormMargin:
+@dataclass(frozen=True, kw_only=True)
+class ClosedFormMargin(Quantity):
     """The least transmission angle minus the angles of friction; -inf where the pins alone lock (no such angle)."""
-
-    name: str = "self_locking_margin"
-    field: str = "self_locking_margin_deg"
-    title: str = "self-locking margin"
-    unit: Unit = DEGREE
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -32,4 +32,29 @@ class ClosedFormMargin:
         return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
 
 
-SELF_LOCKING_MARGIN = ClosedFormMargin()
+SELF_LOCKING_MARGIN = ClosedFormMargin(
+    name="self_locking_margin",
+    title="self-locking margin",
+    kind=ANGLE,
+    place=200,
+    group=Group.PROPORTIONS,
+    sentence=(
+        "By how many degrees the least transmission angle exceeds the one at which friction would lock the "
+        "linkage, so that no torque could drive it."
+    ),
+    advice="It must stay above 0; 10 deg and more are usual. Without friction there is none.",
+    formula="mu_min - arctan(f) - arcsin((rho_A + rho_B) / l): friction f of the guide, friction circles rho",
+    section="15. Self-locking",
+    picture="self-locking",
+    example="10 deg",
+    better="high",
+    domain=Domain(
+        lower=0.0,
+        upper=0.5 * math.pi,
+        rule="the self-locking margin lies between 0, where friction locks, and 90 deg, ends excluded",
+        remedy="10 deg and more are usual (a plain number is in rad)",
+    ),
+    floor=float(np.radians(5.0)),  # forces grow as 1 / sin(margin)
+    needs=(FRICTION,),
+    instead=TRANSMISSION_ANGLE.name,
+)

@@ -1,13 +1,57 @@
 """Transmission angle: the least angle between rod and the normal of the slider line over the cycle."""
 
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
-from .quantity import DEGREE
+from .domain import Domain
+from .kinds import ANGLE
+from .quantity import Group
+from .reach import Ranges, Reach
+
+
+def _within(box: Ranges) -> tuple[float, float]:
+    flattest = geometry.least_transmission_angle(box.r1, box.l0, box.a1) if box.turns else 0.0
+    return float(flattest), float(geometry.least_transmission_angle(box.r0, box.l1, box.a0))
+
 
 TRANSMISSION_ANGLE = ClosedFormQuantity(
-    "transmission_angle",
-    "least_transmission_angle_deg",
-    "least transmission angle",
-    DEGREE,
-    (ClosedForm.TRANSMISSION_ANGLE,),
+    name="transmission_angle",
+    key="least_transmission_angle",
+    title="least transmission angle",
+    kind=ANGLE,
+    forms=(ClosedForm.TRANSMISSION_ANGLE,),
+    rises=(False, True, False),
+    place=30,
+    group=Group.PROPORTIONS,
+    sentence=(
+        "The transmission angle is the angle between the rod and the normal of the slider line; its least value "
+        "over the turn says how well the rod pushes the slider along instead of against its guide."
+    ),
+    advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
+    formula="cos(mu_min) = (r + |e|) / l",
+    section="2. Closed forms",
+    picture="transmission angle",
+    example="40 deg",
+    better="high",
+    domain=Domain(
+        lower=0.0,
+        upper=0.5 * math.pi,
+        rule="the least transmission angle lies between 0 and 90 deg, ends excluded",
+        remedy="30 to 50 deg are usual (a plain number is in rad)",
+    ),
+    # Torque and error grow without bound towards locking.
+    floor=float(np.radians(10.0)),
+    reach=Reach(
+        bounds=_within,
+        more="raise the upper end of rod, or lower the lower end of crank or offset",
+        less="lower the lower end of rod, or raise the upper end of crank or offset",
+    ),
+    offered=("requirement", "objective"),
+    on_sheet=True,
 )

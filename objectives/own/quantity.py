@@ -17,7 +17,7 @@ from ...model.cycle.self_locking import locking_margin
 from ...model.errors import InputError
 from ...model.kernel.batches import turning
 from ...model.machine.mechanism import Mechanism
-from ..quantity import Array, Pieces, Quantity, Unit, Values
+from ..quantity import Array, Pieces, Quantity, Values
 from .apply import Answer, Function, Refused, apply
 from .worker import Worker
 
@@ -55,11 +55,12 @@ class _Session:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OwnQuantity:
+class OwnQuantity(Quantity):
     """A function of designs as a quantity.
 
     function: takes `Designs`, returns (n,), or (n, k) of which the greatest counts, SI. "module:function" runs in a
-    process of its own, within the limit; a Python function runs in this one, without. unit: as it is shown.
+    process of its own, within the limit; a Python function runs in this one, without. kind: a kind of the table, or
+    `kinds.kind_in` of any unit.
     gradient: "complex step" for a function that runs on complex numbers, else "finite differences"; "none" for methods
     that need no gradient. folders: where the module may lie. limit: s, of a call for up to 256 designs. longest: what
     whoever runs the function lets a call take, whatever the limit is.
@@ -68,10 +69,8 @@ class OwnQuantity:
     of the right shape, does not return in time, ends the process, or has no such gradient.
     """
 
-    name: str
     function: str | Function
-    title: str
-    unit: Unit
+    signed: bool = field(default=True, compare=False)
     gradient: Gradient = "complex step"
     folders: tuple[str, ...] = ()
     limit: float = LIMIT
@@ -89,13 +88,6 @@ class OwnQuantity:
             raise InputError(f"gradient must be {' or '.join(map(repr, get_args(Gradient)))}; got {self.gradient!r}")
         if not 0.0 < self.limit < float("inf"):
             raise InputError(f"the time limit must be more than zero and finite; got {self.limit:g} s")
-
-    @property
-    def field(self) -> str:
-        """The name with the unit, as tables and JSON have it: "least_jerk_m_s3"."""
-        symbol = self.unit.symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
-        suffix = re.sub(r"[^A-Za-z0-9]+", "_", symbol).strip("_")
-        return f"{self.name}_{suffix}" if suffix else self.name
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3); see `Quantity`."""

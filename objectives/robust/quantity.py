@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from dataclasses import field as _field
 from typing import Literal
 
 import numpy as np
@@ -13,13 +13,14 @@ from ...model.errors import InputError
 from ...model.machine.loads import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
-from ..quantity import Array, Pieces, Quantity, Unit, Values
+from ..kinds import Kind
+from ..quantity import Array, Pieces, Quantity, Values
 from .points import Around, around, corners, followed, limits_of, star, uncertain
 from .quantile import interpolation, linear, linear_quantile, sample, weights
 from .within import within
 
 Side = Literal["high", "low"]
-Kind = Literal["worst case", "percentile"]
+Case = Literal["worst case", "percentile"]
 
 SAMPLES = 2048
 """Machines of a percentile."""
@@ -32,16 +33,16 @@ _FAINT = 1e-15  # weights below are rounding
 _BLOCK = 1 << 22  # numbers of a sample held at once
 
 
-@dataclass(frozen=True)
-class RobustQuantity:
+@dataclass(frozen=True, kw_only=True)
+class RobustQuantity(Quantity):
     """A quantity as it is within the tolerances of crank, rod and offset.
 
     inner: the quantity. side: which side is bad, "high" where it should be low.
-    kind "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the
+    case "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the
     worst f in the box, exactly, hence with the second order and all above it: at a corner, at offset zero where the
     limits span it, or within, where `within` finds that f turns. Order 1 is of order 2 where the limits span offset
     zero: what depends on its size has no derivative there.
-    kind "percentile": the value that a share of all machines keeps, `P(f <= v) = share` (high) or `P(f >= v) = share`
+    case "percentile": the value that a share of all machines keeps, `P(f <= v) = share` (high) or `P(f >= v) = share`
     (low), errors being independent and spread as `shape` says, in units of the limits T_i = absolute + fraction |x_i|.
     samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
 
@@ -50,9 +51,12 @@ class RobustQuantity:
     corner or a point of the star does not turn fully. Raises `InputError` for options out of range.
     """
 
+    name: str = _field(init=False)
+    title: str = _field(init=False, compare=False)
+    kind: Kind = _field(init=False)
     inner: Quantity
     side: Side
-    kind: Kind = "percentile"
+    case: Case = "percentile"
     order: int = 2
     share: float = 0.99
     samples: int = SAMPLES
@@ -62,32 +66,21 @@ class RobustQuantity:
 
     def __post_init__(self) -> None:
         require_word("side", self.side, Side)
-        require_options(self.kind, self.order, self.share, self.samples, self.shape)
-
-    @property
-    def name(self) -> str:
-        """Name in problems: "peak_torque_robust"."""
-        return f"{self.inner.name}_{self.suffix}"
-
-    @property
-    def field(self) -> str:
-        """Key in tables and JSON: "peak_torque_robust_Nm"."""
-        symbol = self.unit.symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
-        unit = re.sub(r"[^A-Za-z0-9]+", "_", symbol).strip("_")
-        stem = self.inner.field.removesuffix(f"_{unit}") if unit else self.inner.field
-        return "_".join(part for part in (stem, self.suffix, unit) if part)
-
-    @property
-    def title(self) -> str:
-        """Name for people: "peak torque, 99 % of machines"."""
-        title = self.inner.title.removesuffix(", worst case")
-        whose = "all within tolerances" if self.kind == "worst case" else f"{100.0 * self.share:.6g} % of machines"
-        return f"{title}, {whose}"
-
-    @property
-    def unit(self) -> Unit:
-        """That of the quantity."""
-        return self.inner.unit
+        require_options(self.case, self.order, self.share, self.samples, self.shape)
+        whose = "all within tolerances" if self.case == "worst case" else f"{100.0 * self.share:.6g} % of machines"
+        own = {
+            "name": f"{self.inner.name}_{self.suffix}",
+            "key": f"{self.inner.stem}_{self.suffix}",
+            "title": f"{self.inner.short_title}, {whose}",
+            "short": "",
+            "signed": True,  # errors may take a quantity beyond what any linkage has
+            "domain": None,
+            "floor": None,
+            "in_line": None,
+            "reach": None,
+        }
+        for fact in fields(Quantity):  # the others are those of the quantity
+            object.__setattr__(self, fact.name, own.get(fact.name, getattr(self.inner, fact.name)))
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -108,7 +101,7 @@ class RobustQuantity:
         if not columns:
             found = self.inner.pieces(mechanism, dimensions)
             return found if self.side == "high" else _lowest(found)
-        if self.kind == "percentile":
+        if self.case == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
         low = self.side == "low"
         spans = (np.abs(dimensions[:, 2]) < limits[:, 2]) | (self.order == 2)
@@ -135,7 +128,7 @@ class RobustQuantity:
         limits = limits_of(mechanism, dimensions)
         steps = inner.gradients[:, :3] * limits
         sign = 1.0 if self.side == "high" else -1.0
-        if self.kind == "percentile":
+        if self.case == "percentile":
             from scipy.special import ndtri
 
             width = float(ndtri(self.share)) * np.sqrt((steps**2).sum(axis=1) * float(spread(self.shape).var()))
@@ -319,9 +312,9 @@ def _each(sums: str, *factors: Array) -> Array:
     return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))
 
 
-def require_options(kind: str, order: int, share: float, samples: int, shape: str) -> None:
+def require_options(case: str, order: int, share: float, samples: int, shape: str) -> None:
     """Raise `InputError` for options of a robust quantity that are out of range."""
-    require_word("kind", kind, Kind)
+    require_word("kind", case, Case)
     require_word("shape", shape, Shape)
     if order not in (1, 2):
         raise InputError(f"the order of a worst case must be 1 or 2; got {order}")
@@ -329,7 +322,7 @@ def require_options(kind: str, order: int, share: float, samples: int, shape: st
         raise InputError(f"share must be at least 0.5 and below 1; got {share:g}; 0.99 is 99 of 100 machines")
     if not _LEAST <= samples <= _MOST:
         raise InputError(f"samples must be {_LEAST} to {_MOST}; got {samples}")
-    if samples * (1.0 - share) < 10.0 and kind == "percentile":
+    if samples * (1.0 - share) < 10.0 and case == "percentile":
         raise InputError(
             f"samples times 1 - share must be at least 10, so that the tail is known; got {samples} samples for a "
             f"share of {share:g}; raise samples or lower share"

@@ -186,7 +186,7 @@ class Search:
 
     def certificate(self) -> Certificate:
         """Return what is proven, the added designs polished and no more of them than it takes."""
-        from ...objectives.analysis import analyse
+        from ...objectives.tables.analysis import analyse
 
         tree, proven = self.tree, self._proven()
         needy = np.concatenate(self.needy)

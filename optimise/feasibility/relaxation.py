@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from ..front.stationarity import Array
 from ..problem.problem import Constraint, Problem, Sense
-from ..search.evaluation import FEASIBLE, FLOORS
+from ..search.evaluation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe
 
 _LOWEST = 0.02
 """Of a floor: what is kept of it where it is let go. Nearer to locking nothing is worth telling."""
-_UNBOUNDED = ("rod_to_offset",)
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,8 @@ def relaxations(
     for relation, sense, bound in sides(constraint):
         free = _without(problem, constraint, relation)
         # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
-        sought: Sense = "target" if constraint.quantity in _UNBOUNDED else sense
+        unbounded = problem.quantity(constraint.quantity).in_line == math.inf
+        sought: Sense = "target" if unbounded else sense
         reached = best(wanting(free, constraint.quantity, sought, bound if sought == "target" else None))
         if reached is None:
             continue
@@ -125,7 +126,8 @@ def _without(problem: Problem, constraint: Constraint, relation: str) -> Problem
     """
     lower = constraint.lower if relation == "at most" else None
     upper = constraint.upper if relation == "at least" else None
-    if lower is None and constraint.lower is not None and constraint.quantity in FLOORS:
+    floor = problem.quantity(constraint.quantity).floor
+    if lower is None and constraint.lower is not None and floor is not None:
         lower = _LOWEST * constraint.lower
     kept = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
     if lower is not None or upper is not None:

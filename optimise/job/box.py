@@ -1,13 +1,4 @@
-"""What is possible within the ranges of crank, rod and offset: bounds that hold for every design that turns fully.
-
-With a = |offset|, stroke and time ratio rise with r and a and fall with l; the transmission angle does the reverse:
-
-    dS/dr = (l+r)/x_out + (l-r)/x_in > 0      dS/da = a/x_in - a/x_out > 0      dS/dl = (l+r)/x_out - (l-r)/x_in < 0
-    b = asin(a/(l-r)) - asin(a/(l+r)), the excess angle, likewise term by term; cos(mu) = (r + a)/l.
-
-So one extreme is at least crank, greatest rod, least offset. The other is at the opposite corner if that turns fully,
-else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r + a) and mu = 0.
-"""
+"""What is possible within the ranges of crank, rod and offset, by the `Reach` of quantities."""
 
 from __future__ import annotations
 
@@ -16,8 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...model.errors import JobError
-from ...model.kinematics import geometry
+from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
+from ...objectives.quantity import Quantity
+from ...objectives.reach import CLEAR, Ranges
 from ...objectives.registry import QUANTITIES
+from ...objectives.time_ratio import TIME_RATIO, ratio_of
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Constraint, Problem, Range
 
 if TYPE_CHECKING:
@@ -25,26 +20,9 @@ if TYPE_CHECKING:
 
 _SLACK = 1.0 + 1e-9
 """What is asked at the very edge is left to the optimiser: rounding must not make it a contradiction."""
-_CLEAR = 1.0 + 1e-12
-"""Closer to locking than this, rounding decides."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other rules on the dimensions"
 _ANY = Range(lower=0.0, upper=1.0)
-
-_MORE = {
-    "stroke": "raise the upper end of crank or of offset",
-    "time_ratio": "raise the upper end of crank or of offset",
-    "transmission_angle": "raise the upper end of rod, or lower the lower end of crank or offset",
-    "rod_to_offset": "raise the upper end of rod or lower the lower end of offset",
-    "rod_to_crank": "raise the upper end of rod or lower the lower end of crank",
-}
-_LESS = {
-    "stroke": "lower the lower end of crank: a stroke is never shorter than 2 crank",
-    "time_ratio": "lower the lower end of offset",
-    "transmission_angle": "lower the lower end of rod, or raise the upper end of crank or offset",
-    "rod_to_offset": "lower the lower end of rod or raise the upper end of offset",
-    "rod_to_crank": "lower the lower end of rod or raise the upper end of crank",
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,34 +34,16 @@ class Box:
     offset: Range
     share: Range = Range(lower=0.0, upper=1.0)
 
-    def possible(self, quantity: str) -> tuple[float, float]:
-        """Return bounds of stroke, time ratio, transmission angle or a ratio, SI; needs `turns`."""
-        r0, r1 = self.crank.lower, self.crank.upper
-        l0, l1 = self.rod.lower, self.rod.upper
-        a0, a1 = self.offset.lower, self.offset.upper
-        if quantity == "rod_to_crank":
-            return max(l0 / r1, 1.0), l1 / r0
-        if quantity == "rod_to_offset":
-            return (max(l0 / a1, 1.0) if a1 else math.inf), (l1 / a0 if a0 else math.inf)
-        turns = (r1 + a1) * _CLEAR < l0
-        r = min(r1, l1 - a0)  # the longest crank that turns
-        if quantity == "stroke":
-            greatest = geometry.stroke(r1, l0, a1) if turns else 2.0 * math.sqrt(r * min(l1, r + a1))
-            return float(geometry.stroke(r0, l1, a0)), float(greatest)
-        if quantity == "time_ratio":
-            if turns:
-                greatest = geometry.time_ratio(r1, l0, a1)
-            else:
-                a = max(a0, l0 - r)
-                greatest = _ratio(math.acos(a / (2.0 * r + a))) if a1 else 1.0
-            return float(geometry.time_ratio(r0, l1, a0)), float(greatest)
-        flattest = geometry.least_transmission_angle(r1, l0, a1) if turns else 0.0
-        return float(flattest), float(geometry.least_transmission_angle(r0, l1, a0))
+    def possible(self, of: Quantity) -> tuple[float, float]:
+        """Return bounds of a quantity that has a reach, SI; needs `turns`."""
+        assert of.reach is not None
+        ends = ((ends.lower, ends.upper) for ends in (self.crank, self.rod, self.offset))
+        return of.reach.bounds(Ranges(*(end for pair in ends for end in pair)))
 
     @property
     def turns(self) -> bool:
         """Whether a linkage within the ranges may turn fully."""
-        clear = self.rod.upper > (self.crank.lower + self.offset.lower) * _CLEAR
+        clear = self.rod.upper > (self.crank.lower + self.offset.lower) * CLEAR
         return clear and self.rod.upper * (1.0 - self.share.lower) > self.crank.lower
 
 
@@ -96,28 +56,29 @@ def require_reachable(problem: Problem) -> None:
             f"got {_extremes(box)}; lengthen the rod or reduce the other two"
         )
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
-    if "rod_to_offset" in constraints:
-        box = _with_rod_to_offset(box, constraints["rod_to_offset"], problem)
-    for name in ("rod_to_crank", "stroke", "time_ratio", "transmission_angle"):
-        if name in constraints:
-            _require_within(constraints[name], box, problem)
+    if ROD_TO_OFFSET.name in constraints:
+        box = _with_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
+    for of in (ROD_TO_CRANK, STROKE, TIME_RATIO, TRANSMISSION_ANGLE):
+        if of.name in constraints:
+            _require_within(of, constraints[of.name], box, problem)
     wrong = beyond_both(problem, box.share)
     if wrong:
-        raise JobError(f"constraints.time_ratio: {wrong}")
+        raise JobError(f"constraints.{TIME_RATIO.name}: {wrong}")
 
 
-def greatest_within(problem: Problem, quantity: str) -> float:
-    """Return a bound, SI, that stroke, time ratio, transmission angle or a ratio does not exceed within the ranges."""
-    return Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset)).possible(quantity)[1]
+def greatest_within(problem: Problem, of: Quantity) -> float:
+    """Return a bound, SI, that a quantity with a reach does not exceed within the ranges."""
+    return Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset)).possible(of)[1]
 
 
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
     if box.offset.upper == 0.0:
         raise JobError(
-            "constraints.rod_to_offset: it needs an offset; got offset fixed at 0; give variables.offset a range"
+            f"constraints.{ROD_TO_OFFSET.name}: it needs an offset; got offset fixed at 0; give "
+            "variables.offset a range"
         )
-    _require_within(constraint, box, problem)
+    _require_within(ROD_TO_OFFSET, constraint, box, problem)
     least, greatest = constraint.lower or 0.0, constraint.upper or math.inf
     l0, l1 = box.rod.lower, box.rod.upper
     a0, a1 = box.offset.lower, box.offset.upper
@@ -131,21 +92,22 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
     )
     if not narrowed.turns:
         raise JobError(
-            "constraints.rod_to_offset: full rotation leaves the crank less than rod - |offset|; got "
+            f"constraints.{ROD_TO_OFFSET.name}: full rotation leaves the crank less than rod - |offset|; got "
             f"{_bounds(constraint)} and with it {_extremes(narrowed)}; shorten the crank, or raise the ratio"
         )
     return narrowed
 
 
-def _require_within(constraint: Constraint, box: Box, problem: Problem) -> None:
+def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise JobError unless the constraint and what is possible meet."""
-    name = constraint.quantity
-    least, greatest = box.possible(name)
+    name = of.name
+    least, greatest = box.possible(of)
+    assert of.reach is not None
     got = f"got {_bounds(constraint)}"
     if constraint.lower is not None and constraint.lower > greatest * _SLACK:
-        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {_MORE[name]}, or ask for less")
+        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
     if constraint.upper is not None and constraint.upper * _SLACK < least:
-        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {_LESS[name]}, or ask for more")
+        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {of.reach.less}, or ask for more")
 
 
 def _possible(problem: Problem, constraint: Constraint) -> str:
@@ -154,12 +116,16 @@ def _possible(problem: Problem, constraint: Constraint) -> str:
     With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
     """
     ranges = "within the ranges of crank, rod and offset"
-    narrowing = tuple(c for c in problem.constraints if c.quantity == "rod_to_offset" and c is not constraint)
+    narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
     found, kept = _nearest(problem, constraint, (constraint, *narrowing))
     if found is None:
         return f"{ranges} it is not possible"
     rules = (
-        "" if len(kept) == 1 else _AND_OTHERS if kept != (constraint, *narrowing) else " and constraints.rod_to_offset"
+        ""
+        if len(kept) == 1
+        else _AND_OTHERS
+        if kept != (constraint, *narrowing)
+        else f" and constraints.{ROD_TO_OFFSET.name}"
     )
     return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
 
@@ -187,7 +153,7 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     share: where offset / rod may lie.
     """
     asked = {constraint.quantity: constraint for constraint in problem.constraints}
-    ratio, angle = asked.get("time_ratio"), asked.get("transmission_angle")
+    ratio, angle = asked.get(TIME_RATIO.name), asked.get(TRANSMISSION_ANGLE.name)
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
     if (
@@ -202,7 +168,7 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     held += _AND_OTHERS if len(kept) > 2 else ""
     return (
         f"{held} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, "
-        f"or lower constraints.transmission_angle to {angles.with_unit} at most"
+        f"or lower constraints.{angle.quantity} to {angles.with_unit} at most"
     )
 
 
@@ -220,11 +186,7 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
         q = min(cosine - top * cell / _CELLS, share.upper)
         reach = q / (1.0 - p) if p < 1.0 else 1.0
         best = max(best, math.asin(min(reach, 1.0)) - math.asin(min(q / (1.0 + p), 1.0)))
-    return _ratio(best)
-
-
-def _ratio(excess: float) -> float:
-    return (math.pi + excess) / (math.pi - excess)
+    return ratio_of(best)
 
 
 def _sizes(offset: Range) -> Range:

@@ -10,14 +10,10 @@ import math
 from collections.abc import Iterator
 
 from ...model.errors import JobError
-from ...objectives.motion_deviation import DEVIATIONS
-from ...objectives.registry import QUANTITIES
 from ..problem.problem import Problem
 from ..problem.zero_objectives import require_ranking
 from .box import require_reachable
 from .slow_stroke import require_slow_stroke
-
-_SIGNED = ("mean_torque", "mean_power")
 
 
 def require_consistent(problem: Problem) -> None:
@@ -46,28 +42,11 @@ def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
 
 def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:
     """Refuse a value that a quantity has for no linkage at all."""
-    unit = problem.quantity(name).unit
-    got = f"got {word} {value * unit.factor:.6g} {unit.symbol}".rstrip()
-    if name == "time_ratio" and value < 1.0:
-        raise JobError(
-            f"{key}: the time ratio is the slower stroke over the faster, so 1 or more; {got}; "
-            "give the inverse (constraints.slow_stroke says which stroke is the slow one)"
-        )
-    if name == "transmission_angle" and not 0.0 < value < 0.5 * math.pi:
-        raise JobError(
-            f"{key}: the least transmission angle lies between 0 and 90 deg, ends excluded; {got}; "
-            "30 to 50 deg are usual (a plain number is in rad)"
-        )
-    if name == "self_locking_margin" and not 0.0 < value < 0.5 * math.pi:
-        raise JobError(
-            f"{key}: the self-locking margin lies between 0, where friction locks, and 90 deg, ends excluded; {got}; "
-            "10 deg and more are usual (a plain number is in rad)"
-        )
-    if name in ("rod_to_offset", "rod_to_crank") and word != "min" and value <= 1.0:
-        raise JobError(
-            f"{key}: the rod exceeds crank + |offset| for full rotation, so this is above 1; {got}; raise it"
-        )
-    if name in (*QUANTITIES, *DEVIATIONS) and name not in _SIGNED and value < 0.0:
+    of = problem.quantity(name)
+    got = f"got {word} {value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
+    if of.domain is not None and of.domain.refuses(value, least=word == "min"):
+        raise JobError(f"{key}: {of.domain.rule}; {got}; {of.domain.remedy}")
+    if not of.signed and value < 0.0:
         raise JobError(f"{key}: {name} is never negative; {got}; give its size")
 
 
@@ -79,8 +58,9 @@ def _require_free(problem: Problem, name: str) -> None:
             f"got constraints.{name} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
-    if centred and name in ("time_ratio", "rod_to_offset"):
-        value = "1" if name == "time_ratio" else "infinite"
+    everywhere = problem.quantity(name).in_line
+    if centred and everywhere is not None:
+        value = "infinite" if everywhere == math.inf else f"{everywhere:g}"
         raise JobError(
             f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
             "at 0; give variables.offset a range or leave out the objective"

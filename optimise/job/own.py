@@ -11,12 +11,10 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field
 
 from ...model.errors import InputError, JobError
-from ...objectives.kinds import TIME, Kind
-from ...objectives.motion_deviation import DEVIATIONS
+from ...objectives.kinds import TIME, Kind, kind_in
 from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, installed, own_quantities
-from ...objectives.quantity import Unit
-from ...objectives.registry import QUANTITIES
-from .quantities import SLOW_STROKE
+from ...objectives.registry import FACTS
+from .quantities import SLOW_STROKE, Stated
 from .units import kind_for, per_si, shown
 from .values import Part, Physical
 
@@ -77,7 +75,7 @@ class QuantityPart(Part):
             name=name,
             function=self.function,
             title=self.title or name.replace("_", " "),
-            unit=Unit(self.unit, per_si(self.unit)),
+            kind=kind_in(self.unit, per_si(self.unit), kind_for(self.unit)),
             gradient=self.gradient,
             folders=tuple(folders),
             limit=self.limit,
@@ -87,7 +85,7 @@ class QuantityPart(Part):
 def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
     """Refuse names that are taken, or that a table could not have as a column."""
     for name, part in parts.items():
-        if name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE:
+        if name in FACTS or name == SLOW_STROKE:
             raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
         part.build(name, ())
     return parts
@@ -97,10 +95,10 @@ def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
 class Declared:
     """The quantities that a job has beside those that every job has.
 
-    tables: title and kind by name, for what [objectives] and [constraints] may say. installed: those from packages.
+    tables: facts by name, for what [objectives] and [constraints] may say. installed: those from packages.
     """
 
-    tables: Mapping[str, tuple[str, Kind]]
+    tables: Mapping[str, Stated]
     installed: tuple[OwnQuantity, ...]
 
 
@@ -116,23 +114,27 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             "installed as a package with entry points in slidercrank.quantities"
         )
     parts = parts if isinstance(parts, Mapping) else {}
-    tables: dict[str, tuple[str, Kind]] = {}
+    tables: dict[str, Stated] = {}
     for name, part in itertools.islice(parts.items(), MOST_OWN):  # more are refused
         unit = part.get("unit", "") if isinstance(part, Mapping) else ""
         try:
             kind = kind_for(unit if isinstance(unit, str) else "")
         except InputError:
             kind = kind_for("")
-        taken = name in QUANTITIES or name in DEVIATIONS or name == SLOW_STROKE
+        taken = name in FACTS or name == SLOW_STROKE
         if not taken and name.isidentifier() and not name.startswith("_"):
-            tables[name] = (name.replace("_", " "), kind)
+            tables[name] = _stated(name.replace("_", " "), kind)
     asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _keys(table)]
-    unknown = [name for name in dict.fromkeys(asked) if name not in {*QUANTITIES, *DEVIATIONS, *tables, SLOW_STROKE}]
+    unknown = [name for name in dict.fromkeys(asked) if name not in {*FACTS, *tables, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:
-        tables[quantity.name] = (quantity.title, kind_for(quantity.unit.symbol))
+        tables[quantity.name] = _stated(quantity.title, kind_for(quantity.unit.symbol))
     return Declared(tables, found)
+
+
+def _stated(title: str, kind: Kind) -> Stated:
+    return Stated(title, kind, kind.example if kind.unit else float(kind.example))
 
 
 def _constraints(data: Mapping[str, Any]) -> Iterator[object]:

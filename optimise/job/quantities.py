@@ -6,7 +6,7 @@ Beside the quantities [constraints] has `slow_stroke`, a word.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, TypeAlias, cast
 
 from pydantic import (
     BeforeValidator,
@@ -21,10 +21,9 @@ from pydantic import (
 from ...model.errors import InputError
 from ...model.linkage.linkage import SlowStroke
 from ...objectives.kinds import Kind
-from ...objectives.motion_deviation import DEVIATIONS
-from ...objectives.registry import QUANTITIES
+from ...objectives.registry import FACTS
 from ..problem.problem import SENSES, Constraint, Objective
-from .units import closest, kind_of, shown
+from .units import closest, shown
 from .values import Part, Physical
 
 
@@ -53,18 +52,6 @@ class Target(Part):
     """A value to come near to. The field follows from the unit of the quantity."""
 
 
-# What is usual for a quantity; others show the example of their kind of value.
-_EXAMPLES: dict[str, Any] = {
-    "time_ratio": 1.2,
-    "transmission_angle": "40 deg",
-    "self_locking_margin": "10 deg",
-    "stroke": "280 mm",
-    "position_error": "0.3 mm",
-    "motion_deviation": "0.3 mm",
-    "motion_deviation_rms": "0.2 mm",
-    "position_error_rss": "0.2 mm",
-    "rod_to_crank": 2.5,
-}
 SLOW_STROKE = "slow_stroke"
 """The requirement that is a word."""
 _WANTED = '"minimise", "maximise" or { target = value }'
@@ -87,21 +74,27 @@ def _form(value: object) -> str:
     return "(word)" if isinstance(value, str) else "(target)"
 
 
-def tables(own: Mapping[str, tuple[str, Kind]]) -> tuple[type[Part], type[Part]]:
+class Stated(NamedTuple):
+    """Facts of a quantity that the tables of a job have: title, kind and a usual value."""
+
+    title: str
+    kind: Kind
+    example: str | float
+
+
+def tables(own: Mapping[str, Stated]) -> tuple[type[Part], type[Part]]:
     """Return the tables [constraints] and [objectives]: one optional key for each quantity.
 
-    own: title and kind of the quantities that a job has beside those that every job has.
+    own: quantities that a job has beside those that every job has.
     """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}
     made: dict[Kind, tuple[Any, Any]] = {}
-    known = {name: (quantity.title, kind_of(quantity.unit.symbol)) for name, quantity in QUANTITIES.items()}
-    deviations = {name: (title, kind_of("mm")) for name, (title, _) in DEVIATIONS.items()}
-    for name, (title, kind) in (known | deviations | dict(own)).items():
+    known = {name: Stated(of.title, of.kind, of.usual) for name, of in FACTS.items()}
+    for name, (title, kind, example) in (known | dict(own)).items():
         if kind not in made:
             made[kind] = _forms(kind)
         bounds, wish = made[kind]
-        example = _EXAMPLES.get(name, kind.example if kind.unit else float(kind.example))
         limits[name] = (
             bounds | None,
             Field(None, description=title, examples=[{"min": example}]),
@@ -126,7 +119,7 @@ def tables(own: Mapping[str, tuple[str, Kind]]) -> tuple[type[Part], type[Part]]
 def _forms(kind: Kind) -> tuple[Any, Any]:
     """Return the types of the bounds and of the objective of a quantity of one kind."""
     value = Annotated[float, Physical(kind)]
-    name = kind.name.split(" ", 1)[1].title().replace(" ", "")
+    name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
     limits = {
         "min": (value | None, Field(None, description="least", examples=example)),

@@ -8,8 +8,10 @@ from pydantic import Field, model_validator
 
 from ...model.errors import InputError, JobError
 from ...model.tolerance.spreads import Shape
+from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.robust.points import uncertain
-from ...objectives.robust.quantity import SAMPLES, Kind
+from ...objectives.robust.quantity import SAMPLES, Case
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.robust import Robust, robust
 from .values import Part
@@ -18,7 +20,7 @@ from .values import Part
 class RobustPart(Part):
     """Tolerances within the optimisation; each quantity by itself. Equalities, targets, position errors stay as is."""
 
-    kind: Kind = Field(
+    kind: Case = Field(
         "percentile",
         description="percentile: what a share of all machines keeps; worst case: what all within the limits keep",
         examples=["percentile"],
@@ -42,7 +44,7 @@ class RobustPart(Part):
     quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = Field(
         None,
         description="which objectives and constraints; if left out, all that can be",
-        examples=[["peak_torque", "transmission_angle"]],
+        examples=[[PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]],
     )
 
     @model_validator(mode="after")

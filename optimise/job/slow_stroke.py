@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...model.errors import InputError, JobError
+from ...objectives.time_ratio import TIME_RATIO
 from ..problem.problem import Problem, Range
 from ..search.elimination import require_slow_side
-from ..search.evaluation import LEAST_TIME_RATIO
 from .box import greatest_within, require_reachable
 
 
@@ -24,12 +24,12 @@ def require_slow_stroke(problem: Problem) -> None:
         raise JobError(str(error)) from None
     if any(part.slow_stroke is None for part in parts):
         return
-    ratio = next((c for c in problem.constraints if c.quantity == "time_ratio"), None)
+    ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
     if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
         raise JobError(
             "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
-            f"constraints.time_ratio with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, or "
-            "leave out slow_stroke"
+            f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
+            "or leave out slow_stroke"
         )
     sides = list(_sides(parts))
     narrowed = replace(
@@ -43,13 +43,14 @@ def require_slow_stroke(problem: Problem) -> None:
     except JobError as error:
         where = "above" if narrowed.offset.lower >= 0.0 else "below"
         raise JobError(f"{error}, or leave out constraints.slow_stroke, which keeps the offset {where} 0") from None
-    greatest = greatest_within(narrowed, "time_ratio")
-    if greatest < LEAST_TIME_RATIO and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
+    greatest = greatest_within(narrowed, TIME_RATIO)
+    floor = TIME_RATIO.floor or 1.0
+    if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)
         raise JobError(
-            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {LEAST_TIME_RATIO:g} on, unless "
+            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {floor:g} on, unless "
             f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
-            f"let crank or offset be greater, or set constraints.time_ratio = {{ min = {least:.4g} }}"
+            f"let crank or offset be greater, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"
         )
 
 

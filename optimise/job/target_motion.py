@@ -77,8 +77,8 @@ class TargetMotionPart(Part):
 def require_target(target: TargetMotionPart | None, objectives: Part, constraints: Part) -> None:
     """Raise JobError if a job asks for a deviation without saying from what."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
-        for name in DEVIATIONS:
-            if target is None and getattr(part, name) is not None:
+        for name in DEVIATIONS if target is None else ():
+            if getattr(part, name) is not None:
                 raise JobError(
                     f"{table}.{name}: a motion deviation comes from a target motion; got none; add "
                     "[target_motion] with crank_angles and positions, or with a file"

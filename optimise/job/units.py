@@ -16,18 +16,25 @@ import math
 import re
 import reprlib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from datetime import date, time
 from fractions import Fraction
 from typing import Any, Literal
 
 from ...model.errors import InputError
-from ...objectives.kinds import ANGLE, KINDS, LENGTH, TIME, Kind
+from ...objectives.kinds import KINDS, TIME, Face, Kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 
 _OTHERS = (
     TIME,
-    Kind(name="a frequency, not saying of turns or of radians", unit="s^-1", example="", limit=0.0),
+    Kind(
+        name="a frequency, not saying of turns or of radians",
+        unit="s^-1",
+        example="",
+        limit=0.0,
+        metric=Face("1/s", ""),
+    ),
 )
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
@@ -127,10 +134,8 @@ def kind_of(symbol: str) -> Kind:
     Raises InputError for a symbol that is no unit or of a dimension that is no kind.
     """
     for kind in KINDS:
-        if kind.unit == symbol:  # without pint, which takes 0.2 s to import
+        if symbol in (kind.unit, kind.metric.symbol):  # without pint, which takes 0.2 s to import
             return kind
-    if symbol in ("mm", "deg"):
-        return LENGTH if symbol == "mm" else ANGLE
     _, dimension = _unit(symbol)
     for kind in KINDS:
         if _unit(kind.unit)[1] == dimension:
@@ -147,7 +152,7 @@ def kind_for(symbol: str) -> Kind:
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
     si = " ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers)
     plain = symbol if _unit(symbol)[0] == 1 else si
-    return Kind(name=f"a value in {plain}", unit=plain, example=f"1 {symbol}", limit=1e30)
+    return replace(kind_in(symbol, per_si(symbol)), name=f"a value in {plain}", unit=plain)
 
 
 def per_si(symbol: str) -> float:

@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import SlowStroke
 from ...model.machine.loads import require_word
 from ...model.machine.mechanism import Mechanism
+from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from .causes import undefined_because
@@ -204,10 +205,11 @@ class Problem:
                 raise InputError(f"the constraint on {name} is given twice; merge the two")
         if self.offset.lower <= 0.0 <= self.offset.upper:
             for objective in self.objectives:
-                if objective.quantity == "rod_to_offset" and objective.sense == "maximise":
+                if self.quantity(objective.quantity).in_line == math.inf and objective.sense == "maximise":
                     raise InputError(
-                        "rod_to_offset grows without bound as the offset goes to zero, so it cannot be maximised; "
-                        f"got an offset from {self.offset.lower:g} to {self.offset.upper:g} m; keep the range off zero"
+                        f"{objective.quantity} grows without bound as the offset goes to zero, so it cannot be "
+                        f"maximised; got an offset from {self.offset.lower:g} to {self.offset.upper:g} m; keep the "
+                        "range off zero"
                     )
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
@@ -281,8 +283,8 @@ def _require_name(name: object) -> None:
     """Refuse a name that no quantity can have."""
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(
-            f"a quantity is named by small letters, digits and underscores, such as 'peak_torque'; got {name!r}; "
-            f"choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
+            f"a quantity is named by small letters, digits and underscores, such as {PEAK_TORQUE.name!r}; got "
+            f"{name!r}; choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
         )
 
 

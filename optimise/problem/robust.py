@@ -8,12 +8,9 @@ from dataclasses import dataclass, replace
 from ...model.errors import InputError
 from ...model.tolerance.spreads import Shape
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.robust.quantity import SAMPLES, Kind, RobustQuantity, Side, require_options
+from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_options
 from .gradients import constraints_anywhere
 from .problem import Constraint, Objective, Problem
-
-ERRORS = ("position_error", "position_error_rss")
-"""What tells of the tolerances already: robust only if named."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +20,7 @@ class Robust:
     quantities: which of them; None for all but equalities and targets, which stay nominal, and position errors.
     """
 
-    kind: Kind = "percentile"
+    kind: Case = "percentile"
     order: int = 2
     share: float = 0.99
     samples: int = SAMPLES
@@ -60,7 +57,7 @@ def robust(problem: Problem, plan: Robust) -> Problem:
             made[name, side] = RobustQuantity(
                 inner=problem.quantity(name),
                 side=side,
-                kind=plan.kind,
+                case=plan.kind,
                 order=plan.order,
                 share=plan.share,
                 samples=plan.samples,
@@ -105,7 +102,11 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
     held = {c.quantity for c in constraints_anywhere(problem) if c.equality}
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
-    chosen = [name for name in able if name not in ERRORS] if plan.quantities is None else list(plan.quantities)
+    chosen = (
+        [name for name in able if not problem.quantity(name).about_tolerances]
+        if plan.quantities is None
+        else list(plan.quantities)
+    )
     for name in chosen:
         if name not in able and name in held:
             raise InputError(

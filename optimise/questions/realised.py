@@ -62,7 +62,7 @@ def _realised(of: _Fresh) -> list[dict[str, Any]]:
     problem, design, samples = of.shared.value.part(of.variant), of.design[None], of.samples
     for quantity in robust_quantities(problem):
         promised = float(quantity.evaluate(problem.mechanism, design).values[0])
-        shape: Shape = quantity.shape if quantity.kind == "percentile" else "uniform"
+        shape: Shape = quantity.shape if quantity.case == "percentile" else "uniform"
         random = np.random.default_rng([of.seed, of.row])
         deviations = spread(shape).rvs((samples, 3), random_state=random)
         machines = np.repeat(design, samples, axis=0)
@@ -77,7 +77,7 @@ def _realised(of: _Fresh) -> list[dict[str, Any]]:
                 "design": of.row,
                 "quantity": quantity.name,
                 "promised": promised,
-                "share": quantity.share if quantity.kind == "percentile" else 1.0,
+                "share": quantity.share if quantity.case == "percentile" else 1.0,
                 "realised": kept / samples,
                 "low": float(interval.low),
                 "high": float(interval.high),

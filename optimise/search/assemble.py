@@ -95,7 +95,7 @@ def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, s
     """
     import pandas as pd
 
-    from ...objectives.analysis import analyse
+    from ...objectives.tables.analysis import analyse
 
     parts, done = [], 0
     for variant in np.unique(variants).tolist():

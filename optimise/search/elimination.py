@@ -19,6 +19,9 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
+from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
+from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Constraint, Problem, Range
 
 Array = NDArray[np.float64]
@@ -206,34 +209,34 @@ def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:
 def _rules(wanted: dict[str, float]) -> list[Rule]:
     """Return every rule that the wanted values give."""
     rules: list[Rule] = []
-    if "rod_to_offset" in wanted:
-        k = wanted["rod_to_offset"]
+    if ROD_TO_OFFSET.name in wanted:
+        k = wanted[ROD_TO_OFFSET.name]
         rules += [
-            Rule("rod_to_offset", "rod", ("offset",), lambda a: k * a),
-            Rule("rod_to_offset", "offset", ("rod",), lambda l: l / k),
+            Rule(ROD_TO_OFFSET.name, "rod", ("offset",), lambda a: k * a),
+            Rule(ROD_TO_OFFSET.name, "offset", ("rod",), lambda l: l / k),
         ]
-    if "rod_to_crank" in wanted:
-        q = wanted["rod_to_crank"]
+    if ROD_TO_CRANK.name in wanted:
+        q = wanted[ROD_TO_CRANK.name]
         rules += [
-            Rule("rod_to_crank", "rod", ("crank",), lambda r: q * r),
-            Rule("rod_to_crank", "crank", ("rod",), lambda l: l / q),
+            Rule(ROD_TO_CRANK.name, "rod", ("crank",), lambda r: q * r),
+            Rule(ROD_TO_CRANK.name, "crank", ("rod",), lambda l: l / q),
         ]
-    if "transmission_angle" in wanted:
-        c = math.cos(wanted["transmission_angle"])
+    if TRANSMISSION_ANGLE.name in wanted:
+        c = math.cos(wanted[TRANSMISSION_ANGLE.name])
         rules += [
-            Rule("transmission_angle", "rod", ("crank", "offset"), lambda r, a: (r + a) / c),
-            Rule("transmission_angle", "crank", ("rod", "offset"), lambda l, a: c * l - a),
-            Rule("transmission_angle", "offset", ("crank", "rod"), lambda r, l: c * l - r),
+            Rule(TRANSMISSION_ANGLE.name, "rod", ("crank", "offset"), lambda r, a: (r + a) / c),
+            Rule(TRANSMISSION_ANGLE.name, "crank", ("rod", "offset"), lambda l, a: c * l - a),
+            Rule(TRANSMISSION_ANGLE.name, "offset", ("crank", "rod"), lambda r, l: c * l - r),
         ]
-    if "time_ratio" in wanted:
-        b = math.pi * (wanted["time_ratio"] - 1.0) / (wanted["time_ratio"] + 1.0)
+    if TIME_RATIO.name in wanted:
+        b = math.pi * (wanted[TIME_RATIO.name] - 1.0) / (wanted[TIME_RATIO.name] + 1.0)
         sine, cosine = math.sin(b), math.cos(b)
-        if "stroke" in wanted:
+        if STROKE.name in wanted:
             # Cosine rule in the triangle of crank pivot and dead centres: l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
-            half = 0.5 * wanted["stroke"] ** 2
+            half = 0.5 * wanted[STROKE.name] ** 2
             rules.append(
                 Rule(
-                    "stroke+time_ratio",
+                    f"{STROKE.name}+{TIME_RATIO.name}",
                     "crank",
                     ("rod",),
                     lambda l: np.sqrt((half - l * l * (1.0 - cosine)) / (1.0 + cosine)),
@@ -242,7 +245,7 @@ def _rules(wanted: dict[str, float]) -> list[Rule]:
             if cosine < 1.0:
                 rules.append(
                     Rule(
-                        "stroke+time_ratio",
+                        f"{STROKE.name}+{TIME_RATIO.name}",
                         "rod",
                         ("crank",),
                         lambda r: np.sqrt((half - r * r * (1.0 + cosine)) / (1.0 - cosine)),
@@ -250,18 +253,18 @@ def _rules(wanted: dict[str, float]) -> list[Rule]:
                 )
         rules.append(
             Rule(
-                "time_ratio",
+                TIME_RATIO.name,
                 "offset",
                 ("crank", "rod"),
                 lambda r, l: geometry.offset_from_excess_angle(r, l, sine, cosine),
             )
         )
-    if "stroke" in wanted:
-        s = wanted["stroke"]
+    if STROKE.name in wanted:
+        s = wanted[STROKE.name]
         rules += [
-            Rule("stroke", "crank", ("rod", "offset"), lambda l, a: geometry.crank_from_stroke(s, l, a)),
-            Rule("stroke", "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
-            Rule("stroke", "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
+            Rule(STROKE.name, "crank", ("rod", "offset"), lambda l, a: geometry.crank_from_stroke(s, l, a)),
+            Rule(STROKE.name, "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
+            Rule(STROKE.name, "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
         ]
     return [replace(rule, wanted=tuple(wanted.items())) for rule in rules]
 

@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.quantity import Array, Pieces, Quantity
+from ...objectives.self_locking import SELF_LOCKING_MARGIN
+from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..engine.chunks import Chunked
 from ..engine.engine import Engine
 from ..engine.serial import Serial
@@ -20,19 +23,6 @@ from .judging import exactly, joined, quickly
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
 _HUGE = 1e100
-LEAST_TRANSMISSION_ANGLE = np.radians(10.0)
-"""Least transmission angle where the problem sets none: torque and error grow without bound towards locking."""
-LEAST_SELF_LOCKING_MARGIN = np.radians(5.0)
-"""Least self-locking margin of a machine with friction where the problem sets none: forces grow as 1 / sin(margin)."""
-LEAST_TIME_RATIO = 1.01
-"""Least time ratio where a slow stroke is asked and the problem sets none: a drive's speed varies by about one percent
-itself, and without offset neither stroke is slow."""
-FLOORS = {
-    "transmission_angle": LEAST_TRANSMISSION_ANGLE,
-    "self_locking_margin": LEAST_SELF_LOCKING_MARGIN,
-    "time_ratio": LEAST_TIME_RATIO,
-}
-"""Floors that hold where a problem sets none, SI."""
 
 
 @dataclass(frozen=True)
@@ -61,25 +51,26 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     They are on the transmission angle, where there is friction on the self-locking margin, and where a slow stroke is
     asked on the time ratio.
     """
-    found = _with_floor(problem.constraints, "transmission_angle", FLOORS["transmission_angle"])
+    found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
     if problem.mechanism.fullest.friction.acts:
-        found = _with_floor(found, "self_locking_margin", FLOORS["self_locking_margin"])
+        found = _with_floor(found, SELF_LOCKING_MARGIN)
     if problem.slow_stroke is not None:
-        found = _with_floor(found, "time_ratio", FLOORS["time_ratio"], above=1.0)
+        found = _with_floor(found, TIME_RATIO, above=1.0)
     return found
 
 
 def _with_floor(
-    constraints: tuple[Constraint, ...], name: str, floor: float, above: float | None = None
+    constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
 ) -> tuple[Constraint, ...]:
     """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
-    own = [c for c in constraints if c.quantity == name]
+    assert of.floor is not None
+    own = [c for c in constraints if c.quantity == of.name]
     if any(c.lower is not None and (above is None or c.lower > above) for c in own):
         return constraints
     upper, least = next((c.upper for c in own), None), above or 0.0
-    lower = floor if upper is None else min(floor, least + 0.5 * (upper - least))
-    kept = [c for c in constraints if c.quantity != name]
-    return (*kept, Constraint(quantity=name, lower=float(lower), upper=upper))
+    lower = of.floor if upper is None else min(of.floor, least + 0.5 * (upper - least))
+    kept = [c for c in constraints if c.quantity != of.name]
+    return (*kept, Constraint(quantity=of.name, lower=float(lower), upper=upper))
 
 
 def minimised(objective: Objective, values: Array) -> Array:

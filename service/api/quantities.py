@@ -5,6 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from ...objectives.proportions import STROKE
+
 router = APIRouter(tags=["designs"])
 
 
@@ -15,16 +17,20 @@ class QuantityModel(BaseModel):
     linkage points out for it. section: of docs/theory.md, where it is derived. source: of the equations.
     """
 
-    name: str = Field(examples=["stroke"])
-    column: str = Field(examples=["stroke_mm"])
-    title: str = Field(examples=["stroke"])
+    name: str = Field(examples=[STROKE.name])
+    column: str = Field(examples=[STROKE.field])
+    title: str = Field(examples=[STROKE.name])
     unit: str = Field(examples=["mm"])
-    sentence: str = Field(examples=["The stroke is the way of the slider from one dead centre to the other."])
+    kind: str = Field(description="of value", examples=["length"])
+    group: str = Field(description="that it is shown in", examples=["Motion"])
+    sentence: str = Field(examples=[STROKE.sentence])
     advice: str = Field(description='what is usual; "" if there is nothing to say')
-    formula: str = Field(examples=["S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)"])
+    formula: str = Field(examples=[STROKE.formula])
     section: str = Field(examples=["2. Closed forms"])
     source: str
-    picture: str = Field(examples=["stroke"])
+    picture: str = Field(examples=[STROKE.name])
+    better: str = Field(description='the usual direction, low or high; "" for a dimension', examples=["low"])
+    offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
 
 
 class QuantityList(BaseModel):
@@ -51,7 +57,7 @@ def list_units() -> UnitTable:
     """Give what values of the API are in inches, pounds and what is made of them."""
     from ...objectives.kinds import SHOWN, shown_in
 
-    told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.metric and kind.inch]
+    told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
     return UnitTable(inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told})
 
 
@@ -60,20 +66,4 @@ def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and where it comes from."""
     from ..explained.explained import explained
 
-    return QuantityList(
-        quantities=[
-            QuantityModel(
-                name=item.text.name,
-                column=item.column,
-                title=item.title,
-                unit=item.unit,
-                sentence=item.text.sentence,
-                advice=item.text.advice,
-                formula=item.text.formula,
-                section=item.text.section,
-                source=item.text.source,
-                picture=item.text.picture,
-            )
-            for item in explained()
-        ]
-    )
+    return QuantityList(quantities=[QuantityModel(**vars(item)) for item in explained()])

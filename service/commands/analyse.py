@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 INTERRUPTED = 130
-_NEEDS_MASSES = ("loaded_stroke", "torque", "_force_N", "_power_W", "reflected_inertia", "shaking", "self_locking")
-_NEEDS_SPEED = ("peak_slider_speed", "peak_slider_acceleration")
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
 
@@ -197,17 +195,15 @@ def _plain(value: str) -> float | str:
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
     """Take out what is not defined without a job or a speed; return why, in words."""
-    notes = []
+    from ...objectives.peak_torque import PEAK_TORQUE
+    from ...objectives.registry import QUANTITIES
 
-    def drop(parts: tuple[str, ...]) -> None:
-        for key in row:
-            if any(part in key for part in parts):
-                row[key] = None
-
-    if alone:
-        drop(_NEEDS_MASSES)
-        notes.append("torque, forces and position error need masses, loads and tolerances: give a JOB")
-        if not mechanism.speed:
-            drop(_NEEDS_SPEED)
-            notes.append("slider speed and acceleration need a crank speed: give --speed")
+    if not alone:
+        return []
+    missing = [of for of in QUANTITIES.values() if any(not need.met(mechanism) for need in of.needs)]
+    more = ("loaded_stroke", f"{PEAK_TORQUE.name}_angle_deg")
+    row.update(dict.fromkeys((*more, *(of.field for of in missing))))
+    notes = ["torque, forces and position error need masses, loads and tolerances: give a JOB"]
+    if not mechanism.speed:
+        notes.append("slider speed and acceleration need a crank speed: give --speed")
     return notes

@@ -17,7 +17,7 @@ from ..text.screen import give, say
 from ..topics.sweep.text import show
 
 if TYPE_CHECKING:
-    from ...objectives.sweep import Axis
+    from ...objectives.tables.sweep import Axis
 
 _FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
 _LIST = re.compile(r"\s*(\w+)\s*=\s*([^.:]*(?:\.\d[^.:]*)*)", re.ASCII | re.DOTALL)
@@ -47,7 +47,7 @@ def sweep(
     """
     import numpy as np
 
-    from ...objectives.sweep import sweep as all_rows
+    from ...objectives.tables.sweep import sweep as all_rows
     from ...optimise.job import load_job
 
     problem = load_job(job)
@@ -80,7 +80,7 @@ def parse_axis(text: str) -> Axis:
     import numpy as np
 
     from ...objectives.kinds import ANGULAR_SPEED, LENGTH
-    from ...objectives.sweep import Axis, Parameter
+    from ...objectives.tables.sweep import Axis, Parameter
     from ...optimise.job.units import closest
 
     known, asked = get_args(Parameter), text.partition("=")[0].strip()

@@ -18,7 +18,7 @@ _FACES = sorted(
 _TO_INCH = {
     kind.metric.suffix: (kind.inch.suffix, kind.inch.factor / kind.metric.factor)
     for kind in SHOWN
-    if kind.metric is not None and kind.inch is not None
+    if kind.inch is not None
 }
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 DIMENSIONS = ("crank", "rod", "offset")

@@ -11,7 +11,7 @@ from ...model.errors import RunError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import Varying
-from ...objectives.varying_column import varying_column
+from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem, Range, Variant, choice_field
 from ..runs.exact import Exact
 from ..runs.result import Cell, Result, Row

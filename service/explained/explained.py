@@ -1,38 +1,109 @@
-"""Every quantity with its explanation: those of designs, of wanted motions, and the dimensions themselves."""
+"""Every quantity as it is explained: the dimensions, then those of designs and of wanted motions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from .forces import FORCES
-from .geometry import GEOMETRY
-from .text import Text
-
-TEXTS: dict[str, Text] = {text.name: text for text in (*GEOMETRY, *FORCES)}
-"""By the name of the quantity."""
-
-_DIMENSIONS = (("crank", "crank"), ("rod", "connecting rod"), ("offset", "offset"))
+if TYPE_CHECKING:
+    from ...objectives.quantity import Quantity
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Explained:
-    """A quantity and its text. column: its key in tables and JSON. unit: as shown, "" for a ratio."""
+    """The explanation of a dimension or a quantity; the facts are those of `Quantity`.
 
+    column: its key in tables and JSON. unit: as shown, "" for a ratio. kind: of value, "length". better: usual
+    direction, "" where it is no objective. offered: parts of a form that ask for it.
+    """
+
+    name: str
     column: str
     title: str
     unit: str
-    text: Text
+    kind: str
+    group: str
+    sentence: str
+    advice: str
+    formula: str
+    section: str
+    source: str
+    picture: str
+    better: str = ""
+    offered: tuple[str, ...] = ()
 
 
 def explained() -> Iterator[Explained]:
     """Yield the dimensions, then all quantities in the order of the registry, then those of wanted motions."""
-    from ...objectives.motion_deviation import DEVIATIONS
-    from ...objectives.registry import QUANTITIES
+    from ...objectives.registry import FACTS
 
-    for name, title in _DIMENSIONS:
-        yield Explained(f"{name}_mm", title, "mm", TEXTS[name])
-    for quantity in QUANTITIES.values():
-        yield Explained(quantity.field, quantity.title, quantity.unit.symbol, TEXTS[quantity.name])
-    for name, (title, _) in DEVIATIONS.items():
-        yield Explained(f"{name}_mm", title, "mm", TEXTS[name])
+    yield from _dimensions()
+    yield from map(_of, FACTS.values())
+
+
+def _of(quantity: Quantity) -> Explained:
+    return Explained(
+        name=quantity.name,
+        column=quantity.field,
+        title=quantity.title,
+        unit=quantity.unit.symbol,
+        kind=quantity.kind.plain,
+        group=quantity.group.value,
+        sentence=quantity.sentence,
+        advice=quantity.advice,
+        formula=quantity.formula,
+        section=quantity.section,
+        source=quantity.source,
+        picture=quantity.picture,
+        better=quantity.better,
+        offered=quantity.offered,
+    )
+
+
+def _dimensions() -> Iterator[Explained]:
+    from ...objectives.kinds import LENGTH
+    from ...objectives.quantity import MECHANICS, Group
+
+    closed = "2. Closed forms"
+    for name, title, section, sentence, advice, formula in (
+        (
+            "crank",
+            "crank",
+            closed,
+            "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
+            "It sets the stroke, which is twice the crank without offset and a little more with one.",
+            "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
+        ),
+        (
+            "rod",
+            "connecting rod",
+            closed,
+            "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
+            "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
+            "l; the crank turns fully if l > r + |e|",
+        ),
+        (
+            "offset",
+            "offset",
+            "1. Notation and signs",
+            "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
+            "direction, on the crossed branch to its right; it makes one stroke slower than the other.",
+            "The more offset, the higher the time ratio, and the smaller the transmission angle.",
+            "e; the slider line is y = e",
+        ),
+    ):
+        yield Explained(
+            name=name,
+            column=name + LENGTH.metric.suffix,
+            title=title,
+            unit=LENGTH.metric.symbol,
+            kind=LENGTH.plain,
+            group=Group.DIMENSIONS.value,
+            sentence=sentence,
+            advice=advice,
+            formula=formula,
+            section=section,
+            source=MECHANICS,
+            picture=name,
+        )

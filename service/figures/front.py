@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from .marks import marks, short_title
+from .marks import marks
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
@@ -97,6 +97,6 @@ def _sheet(
         numbers,
         title=f"{front.problem.name}: {label}",
         subtitle=subtitle,
-        bold={of.field: short_title(of) for of in wanted},
+        bold={of.field: of.short_title for of in wanted},
         system=system,
     )

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.kinds import System, shown_in
-from ...objectives.quantity import Quantity
-from ...objectives.varying_column import varying_column
+from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Objective
@@ -69,7 +68,7 @@ def marks(front: ParetoFront) -> list[Mark]:
     """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
-        labels.setdefault(row, []).append((f"best_{name}", f"best {short_title(front.problem.quantity(name))}"))
+        labels.setdefault(row, []).append((f"best_{name}", f"best {front.problem.quantity(name).short_title}"))
     if len(front.objectives) > 1:
         labels.setdefault(front.knee(), []).append(("knee", "knee"))
     found = []
@@ -89,7 +88,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
     better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
     symbol, factor = shown_in(of.unit.symbol, system)
     values = front.designs[of.field].to_numpy(dtype=np.float64) * factor
-    title = with_unit(short_title(of), symbol)
+    title = with_unit(of.short_title, symbol)
     if objective.target is not None:
         unit = f" {unit_text(symbol)}" if symbol else ""
         title += f" (target {objective.target * of.unit.factor * factor:g}{unit})"
@@ -110,8 +109,3 @@ def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
         title = with_unit(item.name.removeprefix("mechanism."), symbol)
         axes.append(Axis(title, symbol, unit.factor * one * front.dimensions[:, index], 0))
     return axes
-
-
-def short_title(of: Quantity) -> str:
-    """Return a quantity's title without what follows a comma where no other quantity shares the rest."""
-    return of.title.removesuffix(", worst case")

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
-from ..designs.columns import split_unit
+from ...objectives.registry import QUANTITIES
+from ..designs.columns import DIMENSIONS, split_unit
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
 from .style import INK, MUTED, SMALL, TEXT, TITLE, new_figure, place, shown, unit_text, write
@@ -24,28 +25,6 @@ _TABLE = 2.05
 
 _ROWS = 9  # of each of two columns
 _LETTERS = 24  # of a title that fits beside its number
-
-# Columns that a designer asks for, with the titles that have room.
-_NUMBERS = {
-    "crank_mm": "crank",
-    "rod_mm": "rod",
-    "offset_mm": "offset",
-    "stroke_mm": "stroke",
-    "rod_to_crank": "rod to crank",
-    "rod_to_offset": "rod to offset",
-    "time_ratio": "time ratio",
-    "least_transmission_angle_deg": "least transmission angle",
-    "footprint_m2": "footprint",
-    "peak_torque_Nm": "peak torque",
-    "rms_torque_Nm": "RMS torque",
-    "position_error_mm": "position error",
-    "peak_pivot_force_N": "peak pivot force",
-    "peak_crank_pin_force_N": "peak crank pin force",
-    "peak_slider_pin_force_N": "peak slider pin force",
-    "peak_guide_force_N": "peak guide force",
-    "peak_slider_speed_m_s": "peak slider speed",
-    "peak_slider_acceleration_m_s2": "peak slider acceleration",
-}
 
 
 def design_sheet(
@@ -96,11 +75,13 @@ def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tup
         value = numbers.get(key)
         return value is not None and not math.isnan(float(value))
 
-    extra = {key: title for key, title in objectives.items() if key not in _NUMBERS}
-    usual = [key for key in _NUMBERS if there(key)]
+    usual = {f"{name}_mm": name for name in DIMENSIONS}
+    usual |= {of.field: of.short_title for of in QUANTITIES.values() if of.on_sheet}
+    extra = {key: title for key, title in objectives.items() if key not in usual}
+    known = [key for key in usual if there(key)]
     room = 2 * _ROWS - len([key for key in extra if there(key)])
-    spare = [key for key in reversed(usual) if key not in objectives][: max(0, len(usual) - room)]
-    kept = {key: title for key, title in _NUMBERS.items() if key in usual and key not in spare}
+    spare = [key for key in reversed(known) if key not in objectives][: max(0, len(known) - room)]
+    kept = {key: title for key, title in usual.items() if key in known and key not in spare}
     return list((kept | {key: title for key, title in extra.items() if there(key)}).items())
 
 

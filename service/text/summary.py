@@ -92,7 +92,7 @@ def _given(mechanism: Mechanism) -> list[str]:
 
 def _own(problem: Problem) -> list[str]:
     lines = [f"{own.name}: {own.title}, by {own.function}" for own in problem.own if isinstance(own, OwnQuantity)]
-    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation)}
+    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation) and own.target is not None}
     return [
         *(f"target motion: {len(t.positions)} points, phase {t.phase}, shift {t.shift}" for t in targets),
         *lines,
@@ -184,7 +184,7 @@ def _lengths(problem: Problem, name: str) -> str:
 
 
 def _varying(item: Varying) -> str:
-    from ...objectives.varying_column import varying_column
+    from ...objectives.tables.varying_column import varying_column
 
     unit = varying_column(item)[1]
     ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()

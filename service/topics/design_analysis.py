@@ -35,7 +35,7 @@ def numbers_of(mechanism: Mechanism, values: Sequence[float], own: Sequence[Quan
     """Return every quantity of one design. values: crank, rod, offset, m. own: quantities of its job."""
     import numpy as np
 
-    from ...objectives.analysis import analyse
+    from ...objectives.tables.analysis import analyse
 
     return rows_of(analyse(mechanism, np.array([values]), own=own).to_dict("list"))[0]
 

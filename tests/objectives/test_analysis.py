@@ -10,8 +10,8 @@ import pytest
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances
 from slidercrank.model.machine.varying import Varying
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
 from tests.model.cases import MACHINES, SMOOTH, random_designs
 from tests.model.virtual_work import drive_torque
 

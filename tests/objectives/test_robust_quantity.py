@@ -29,7 +29,7 @@ FORMS = (("worst case", 1), ("worst case", 2), ("percentile", 2))
 
 
 def of(name: str, side: Side, kind: str = "percentile", order: int = 2, **options: object) -> RobustQuantity:
-    return RobustQuantity(inner=QUANTITIES[name], side=side, kind=kind, order=order, **options)  # type: ignore[arg-type]
+    return RobustQuantity(inner=QUANTITIES[name], side=side, case=kind, order=order, **options)  # type: ignore[arg-type]
 
 
 def machines(share: NDArray[np.float64], design: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.cycle_peak import CyclePeak, screen_peaks
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
 from tests.model.varying_machines import BARS, BODIES, RUBBED, VARIED, unit_steps, varied_designs
 from tests.objectives.richardson import derivatives
 from tests.objectives.test_gradients import greatest_piece, same_piece

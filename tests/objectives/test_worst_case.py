@@ -49,7 +49,7 @@ def test_time_ratio_and_stroke_of_an_in_line_linkage_are_least_without_offset(or
     machine = Mechanism(speed=30.0, tolerances=Tolerances(offset=Tolerance(absolute=3e-3)))
     design = np.array([[0.04, 0.16, 0.0], [0.04, 0.16, 0.002]])
     for name, least in (("time_ratio", 1.0), ("stroke", 0.08), ("transmission_angle", None)):
-        quantity = RobustQuantity(inner=QUANTITIES[name], side="low", kind="worst case", order=order)
+        quantity = RobustQuantity(inner=QUANTITIES[name], side="low", case="worst case", order=order)
         found = quantity.evaluate(machine, design, gradients=True)
         assert found.gradients is not None
         if least is not None:
@@ -72,7 +72,7 @@ def test_no_machine_within_the_tolerances_is_worse_than_promised(machine: Mechan
         "peak_guide_force",
     ):
         promised = (
-            RobustQuantity(inner=QUANTITIES[name], side=side, kind="worst case").evaluate(machine, DESIGNS).values
+            RobustQuantity(inner=QUANTITIES[name], side=side, case="worst case").evaluate(machine, DESIGNS).values
         )
         closed = name in ("time_ratio", "stroke", "transmission_angle", "footprint")
         for design, value in zip(DESIGNS, promised, strict=True):

@@ -15,9 +15,9 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.causes import undefined_because
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Variant

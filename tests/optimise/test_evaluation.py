@@ -11,11 +11,11 @@ import pytest
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads import AngleTable, StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import (
     FEASIBLE,
-    LEAST_TRANSMISSION_ANGLE,
     Evaluator,
     Rows,
     constraints_of,
@@ -184,10 +184,10 @@ def test_the_transmission_angle_has_a_floor_where_none_is_set() -> None:
         found = constraints_of(problem({"peak_torque": "minimise"}, held))
         return next(constraint for constraint in found if constraint.quantity == "transmission_angle")
 
-    assert floor(None).lower == pytest.approx(LEAST_TRANSMISSION_ANGLE)
+    assert floor(None).lower == pytest.approx(TRANSMISSION_ANGLE.floor)
     assert floor(None).upper is None
     assert floor((degrees(5.0), None)).lower == degrees(5.0)
-    assert floor((None, degrees(60.0))).lower == pytest.approx(LEAST_TRANSMISSION_ANGLE)
+    assert floor((None, degrees(60.0))).lower == pytest.approx(TRANSMISSION_ANGLE.floor)
     assert floor((None, degrees(60.0))).upper == degrees(60.0)
     assert floor((None, degrees(8.0))).lower == pytest.approx(degrees(4.0))
     assert floor(degrees(3.0)).equality

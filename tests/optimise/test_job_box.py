@@ -10,6 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from slidercrank.model.kinematics import geometry
+from slidercrank.objectives.registry import quantity
 from slidercrank.optimise.job.box import Box, greatest_time_ratio
 from slidercrank.optimise.problem.problem import Range
 
@@ -44,7 +45,7 @@ def test_no_design_within_the_ranges_lies_outside_the_bounds(ends: list[float], 
     assume(turning.any())
     for name, formula in QUANTITIES.items():
         values = formula(r[turning], l[turning], a[turning])
-        least, greatest = box.possible(name)
+        least, greatest = box.possible(quantity(name))
         assert least * (1.0 - 1e-9) <= values.min()
         assert values.max() <= greatest * (1.0 + 1e-9)
 
@@ -69,7 +70,7 @@ def test_the_bounds_are_approached_by_designs_within_the_ranges(ends: tuple[floa
     turning = l > (r + a) * (1.0 + 5e-8)
     for name in ("stroke", "time_ratio", "transmission_angle"):
         values = QUANTITIES[name](r[turning], l[turning], a[turning])
-        least, greatest = box.possible(name)
+        least, greatest = box.possible(quantity(name))
         assert values.min() == pytest.approx(least, rel=5e-3, abs=2e-3)
         assert values.max() == pytest.approx(greatest, rel=2e-2)
 

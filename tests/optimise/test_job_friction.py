@@ -14,11 +14,12 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import LEAST_SELF_LOCKING_MARGIN, Evaluator, constraints_of
+from slidercrank.optimise.search.evaluation import Evaluator, constraints_of
 from slidercrank.service.text.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
@@ -86,7 +87,7 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
         return [c for c in constraints_of(problem) if c.quantity == "self_locking_margin"]
 
     assert floors(job(None)) == []
-    assert floors(job()) == [Constraint(quantity="self_locking_margin", lower=float(LEAST_SELF_LOCKING_MARGIN))]
+    assert floors(job()) == [Constraint(quantity="self_locking_margin", lower=SELF_LOCKING_MARGIN.floor)]
     own = job(constraints={"self_locking_margin": {"min": "12 deg"}})
     assert floors(own) == [Constraint(quantity="self_locking_margin", lower=math.radians(12.0))]
     low = job(constraints={"self_locking_margin": {"max": "4 deg"}})

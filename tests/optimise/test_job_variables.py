@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.varying import Varying
-from slidercrank.objectives.varying_column import varying_column
+from slidercrank.objectives.tables.varying_column import varying_column
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Constraint, Problem, Range
 

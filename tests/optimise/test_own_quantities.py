@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
+from slidercrank.objectives.kinds import Face, kind_in
 from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
-from slidercrank.objectives.quantity import Unit
 from slidercrank.optimise.job import files_beside, load_job, parse_job
 from slidercrank.optimise.problem.problem import Constraint, Objective
 from slidercrank.optimise.questions.like import like_design
@@ -89,7 +89,7 @@ def test_function_in_python_needs_no_job() -> None:
         name="mine",
         function=lambda d: d.peaks(lambda angle: magnitude(d.acceleration(angle))),
         title="mine",
-        unit=Unit("m/s^2", 1.0),
+        kind=kind_in("m/s^2", 1.0),
     )
     base = parse_job(job(objectives={"peak_slider_acceleration": "minimise"}))
     wanted = (Objective(quantity="mine", sense="minimise"),)
@@ -150,7 +150,7 @@ def test_bounds_are_read_in_the_unit_that_is_declared() -> None:
     declared = {"function": "a:b", "unit": "MPa"}
     problem = parse_job(job(declared, constraints={"mine": {"max": "10 N/m^2"}}))
     assert problem.constraints[0].upper == 10.0
-    assert problem.own[0].unit == Unit("MPa", 1e-6)
+    assert problem.own[0].unit == Face("MPa", "_MPa", 1e-6)
     with pytest.raises(JobError, match=r"constraints.mine.max: must be a pressure; got \"10 mm\", which is a length"):
         parse_job(job(declared, constraints={"mine": {"max": "10 mm"}}))
     jerk = parse_job(job({"function": "a:b", "unit": "mm/s^3"}, constraints={"mine": {"min": "5 mm/s^3"}}))
@@ -180,7 +180,7 @@ def test_reading_a_job_runs_nothing(tmp_path: Path) -> None:
 
 
 def test_installed_packages_offer_quantities_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    offered = OwnQuantity(name="mine", function=lambda d: d.crank, title="the crank", unit=Unit("mm", 1e3))
+    offered = OwnQuantity(name="mine", function=lambda d: d.crank, title="the crank", kind=kind_in("mm", 1e3))
     entry = importlib.metadata.EntryPoint("mine", "ourcompany:MINE", own_module.GROUP)
     monkeypatch.setattr(importlib.metadata, "entry_points", lambda group: [entry] if group == own_module.GROUP else [])
     monkeypatch.setattr(importlib.metadata.EntryPoint, "load", lambda _: offered)
@@ -199,7 +199,7 @@ def test_a_method_that_needs_gradients_refuses_a_quantity_without() -> None:
 
 
 ROUNDED = OwnQuantity(
-    name="mine", function=lambda d: np.round(1e3 * d.rod.real), title="mine", unit=Unit("mm", 1.0), gradient="none"
+    name="mine", function=lambda d: np.round(1e3 * d.rod.real), title="mine", kind=kind_in("mm", 1.0), gradient="none"
 )
 
 

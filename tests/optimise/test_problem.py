@@ -11,8 +11,8 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.average_torque import RMS_TORQUE
+from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
-from slidercrank.objectives.quantity import MILLIMETRE
 from slidercrank.optimise.front.picking import closeness
 from slidercrank.optimise.problem.problem import Constraint, Objective, Range, Settings, Variant
 from slidercrank.optimise.solve import solve
@@ -108,7 +108,7 @@ def test_words_of_other_parts_are_checked_too() -> None:
         closeness(front, [1.0, 1.0], normalisation="Range")  # type: ignore[arg-type]
     target = TargetMotion(crank_angles=(0.0, 1.0, 2.0), positions=(0.1, 0.2, 0.3))
     with pytest.raises(InputError, match="measure must be 'greatest' or 'rms'; got 'RMS'"):
-        MotionDeviation("x", "x_mm", "x", MILLIMETRE, target, "RMS")  # type: ignore[arg-type]
+        MotionDeviation(name="x", title="x", kind=LENGTH, target=target, measure="RMS")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="which must be 'mean' or 'rms'; got 'peak'"):
         replace(RMS_TORQUE, which="peak")  # type: ignore[arg-type]
 

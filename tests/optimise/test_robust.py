@@ -137,7 +137,7 @@ def test_a_job_with_the_table_robust_is_a_robust_problem() -> None:
     assert [o.quantity for o in made.objectives] == ["time_ratio_robust", "peak_torque_robust"]
     found = made.quantity("peak_torque_robust")
     assert isinstance(found, RobustQuantity)
-    assert (found.kind, found.order, found.side, found.seed) == ("worst case", 1, "high", 5)
+    assert (found.case, found.order, found.side, found.seed) == ("worst case", 1, "high", 5)
     low = made.quantity("time_ratio_robust")
     assert isinstance(low, RobustQuantity)
     assert low.side == "low"

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
+from slidercrank.objectives.time_ratio import TIME_RATIO
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Variant
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import LEAST_TIME_RATIO, constraints_of
+from slidercrank.optimise.search.evaluation import constraints_of
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 
@@ -80,7 +81,7 @@ def test_a_front_has_no_design_with_the_other_stroke_slow_or_with_none(wanted: s
     assert len(front) == 8
     assert set(slow_by_positions(front.dimensions, "open", 1.0)) == {wanted}
     assert set(front.designs["slow_stroke"]) == {wanted}
-    assert front.designs["time_ratio"].min() == pytest.approx(LEAST_TIME_RATIO, rel=1e-8)
+    assert front.designs["time_ratio"].min() == pytest.approx(TIME_RATIO.floor, rel=1e-8)
 
 
 def test_speeds_of_either_sign_are_chosen_with_the_offset_that_each_needs() -> None:

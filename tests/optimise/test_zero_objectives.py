@@ -15,8 +15,9 @@ from slidercrank.model.kinematics.in_line import without_rounding
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Objective, Problem, Variant
 from slidercrank.optimise.problem.zero_objectives import require_ranking
@@ -50,7 +51,8 @@ def test_its_robust_form_and_a_problem_made_in_python_are_refused_too() -> None:
     problem = parse_job(data)
     for name in ("mean_torque", "mean_power"):
         robust = next(own for own in problem.own if own.name == "peak_torque_robust")
-        own = (replace(robust, inner=QUANTITIES[name]),)  # type: ignore[type-var]
+        assert isinstance(robust, RobustQuantity)
+        own = (replace(robust, inner=QUANTITIES[name]),)
         for quantity in (name, own[0].name):
             wrong = replace(problem, own=own, objectives=(Objective(quantity=quantity, sense="minimise"),))
             with pytest.raises(InputError, match="use peak_"):

@@ -12,8 +12,8 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Sense

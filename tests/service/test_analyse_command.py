@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.topics.discovery import TOLD_THERE
 from tests.service import fronts

@@ -17,13 +17,13 @@ from matplotlib.text import Text
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
-from slidercrank.objectives.analysis import analyse
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Objective
 from slidercrank.service.figures import draw_front
 from slidercrank.service.figures.curves import Curves, cycle_curves
-from slidercrank.service.figures.marks import marks, short_title
+from slidercrank.service.figures.marks import marks
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
 from slidercrank.service.figures.sheet import design_sheet
@@ -213,7 +213,7 @@ def test_the_table_of_a_sheet_has_every_objective_of_the_job() -> None:
     row = analyse(machine(linkage), np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
     numbers = {str(key): value for key, value in row.items()} | {"wear_of_the_bush": -1.2345e-7}
     few = {"time_ratio": "time ratio", "peak_power_W": "peak power", "wear_of_the_bush": "wear of the bush"}
-    every = {of.field: short_title(of) for of in list(QUANTITIES.values())[-20:]}
+    every = {of.field: of.short_title for of in list(QUANTITIES.values())[-20:]}
     for bold in (few, every):
         figure = design_sheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
         printed = [text.get_text() for text in figure.texts if text.get_fontweight() == "bold"]

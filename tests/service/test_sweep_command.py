@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.sweep import Axis, sweep
+from slidercrank.objectives.tables.sweep import Axis, sweep
 from slidercrank.service.commands.sweep import parse_axis
 from slidercrank.service.topics.sweep.figure import sweep_figure, sweep_grid
 from tests.model.cases import SMOOTH

@@ -24,7 +24,7 @@ from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
-from slidercrank.objectives.sensitivity import DIMENSIONS, sensitivity
+from slidercrank.objectives.tables.sensitivity import DIMENSIONS, sensitivity
 from slidercrank.service.figures.variation import draw_variation, variation_figure, variation_panels
 from slidercrank.service.topics.sensitivity import numbers as sensitivity_analysis
 from slidercrank.service.topics.sensitivity import text as sensitivity_text

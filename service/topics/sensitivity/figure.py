@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.sensitivity import DIMENSIONS, sensitivity
+from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
 from ...figures.style import (
     BLUE,
     FRAME,

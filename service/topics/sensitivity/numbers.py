@@ -12,7 +12,7 @@ DIMENSIONS = ("crank", "rod", "offset")
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
-    """Return the table of `objectives.sensitivity` for one linkage, ready for JSON: None for what is not defined.
+    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None for what is not defined.
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
@@ -20,7 +20,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """
     import numpy as np
 
-    from ....objectives.sensitivity import sensitivity
+    from ....objectives.tables.sensitivity import sensitivity
     from ...runs.result import finite, rows_of
 
     table = sensitivity(mechanism, np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)]))

@@ -12,17 +12,15 @@ if TYPE_CHECKING:
 
 
 _SAME = 1e-9  # relative: derivatives that differ by less are equal
-# Not in the text: variants of others there, and what follows from the dimensions at a glance.
-_LEFT_OUT = (
-    *("peak_torque_outward", "peak_torque_inward", "mean_torque", "rod_to_offset", "rod_to_crank"),
-    *("inner_dead_centre_position", "outer_dead_centre_position"),
-)
+_LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
+"""Rows that the text leaves out, besides plain quantities: they follow from the dimensions at a glance."""
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people: change of each quantity for one millimetre more, and in percent per percent."""
     from rich.table import Table
 
+    from ....objectives.registry import QUANTITIES
     from ...text.tables import print_table
 
     console.print("Change of each quantity for 1 mm more of a dimension (and in % for 1 % more)", style="bold")
@@ -33,10 +31,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     for name in DIMENSIONS:
         table.add_column(name, justify="right", no_wrap=True)
         table.add_column("", justify="right", no_wrap=True)
-    kinks = False
+    kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
     for row in numbers["quantities"]:
         slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
-        if row["quantity"] in _LEFT_OUT or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
+        if row["quantity"] in plain or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
         cells = []
         for name in DIMENSIONS:

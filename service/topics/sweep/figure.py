@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ....objectives.kinds import System, shown_in
 from ....objectives.quantity import Quantity
-from ....objectives.sweep import Axis
+from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
 from ...figures.style import (
     BLUE,

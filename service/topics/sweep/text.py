@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ....objectives.quantity import Quantity
-    from ....objectives.sweep import Axis
+    from ....objectives.tables.sweep import Axis
 
 
 def show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:

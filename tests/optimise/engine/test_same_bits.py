@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.tolerance.spreads import Shape
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.robust.quantity import Kind, RobustQuantity, Side
+from slidercrank.objectives.robust.quantity import Case, RobustQuantity, Side
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.front.front import ParetoFront
@@ -76,7 +76,7 @@ def test_a_function_of_your_own_gives_the_same_bits_in_processes(processes: Proc
 
 def all_quantities() -> Problem:
     """A problem with every quantity there is, and robust ones of every kind."""
-    kinds: tuple[tuple[Kind, int, Shape], ...] = (
+    kinds: tuple[tuple[Case, int, Shape], ...] = (
         ("percentile", 2, "normal"),
         ("percentile", 2, "uniform"),
         ("worst case", 1, "normal"),
@@ -86,7 +86,7 @@ def all_quantities() -> Problem:
         RobustQuantity(
             inner=QUANTITIES[name],
             side=side,
-            kind=kind,
+            case=kind,
             order=order,
             shape=shape,
             samples=1024,

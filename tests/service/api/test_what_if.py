@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from slidercrank.objectives.analysis import analyse
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.designs.picking_options import minimised_values
 from slidercrank.service.designs.stored_designs import design_of

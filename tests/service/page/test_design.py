@@ -16,7 +16,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from slidercrank.objectives.analysis import analyse
+from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.conftest import Open, watch

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..model.kernel.arithmetic import STEP
-from ..model.kinematics import geometry
-from ..model.linkage.linkage import Linkage
-from ..model.machine.mechanism import Mechanism
-from ..model.tolerance.sources import limits
-from .position_error import POSITION_ERRORS
-from .quantity import DEGREE, MILLIMETRE, Array, Quantity, Unit
-from .registry import QUANTITIES
+from ...model.kernel.arithmetic import STEP
+from ...model.kinematics import geometry
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.tolerance.sources import limits
+from ..kinds import ANGLE, LENGTH, Face, Kind
+from ..quantity import Array, Quantity
+from ..registry import QUANTITIES
 
 DIMENSIONS = ("crank", "rod", "offset")
 _TIE = 1e-9  # of a quantity: pieces that differ by less are equal
@@ -32,7 +32,7 @@ class _DeadCentre:
 
     name: str
     title: str
-    unit: Unit
+    kind: Kind
     formula: Callable[[Any, Any, Any], Any]
 
     def on(self, linkage: Linkage) -> tuple[float, list[float]]:
@@ -42,17 +42,17 @@ class _DeadCentre:
         for n in range(3):
             step = [complex(x, STEP if i == n else 0.0) for i, x in enumerate(at)]
             slopes.append(float(self.formula(*step).imag / STEP))
-        angle = self.unit is DEGREE
+        angle = self.kind is ANGLE
         if linkage.branch == "crossed":
             value, slopes = (math.pi - value if angle else -value), [-slope for slope in slopes]
         return value % (2.0 * math.pi) if angle else value, slopes
 
 
 _DEAD_CENTRES = (
-    _DeadCentre("inner_dead_centre_position", "inner dead centre, position", MILLIMETRE, geometry.inner_dead_centre),
-    _DeadCentre("outer_dead_centre_position", "outer dead centre, position", MILLIMETRE, geometry.outer_dead_centre),
-    _DeadCentre("inner_dead_centre", "inner dead centre, crank angle", DEGREE, geometry.inner_crank_angle),
-    _DeadCentre("outer_dead_centre", "outer dead centre, crank angle", DEGREE, geometry.outer_crank_angle),
+    _DeadCentre("inner_dead_centre_position", "inner dead centre, position", LENGTH, geometry.inner_dead_centre),
+    _DeadCentre("outer_dead_centre_position", "outer dead centre, position", LENGTH, geometry.outer_dead_centre),
+    _DeadCentre("inner_dead_centre", "inner dead centre, crank angle", ANGLE, geometry.inner_crank_angle),
+    _DeadCentre("outer_dead_centre", "outer dead centre, crank angle", ANGLE, geometry.outer_crank_angle),
 )
 
 
@@ -78,14 +78,14 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     rows = []
     for quantity in QUANTITIES.values():
         value, below, above = _one_sided(quantity, mechanism, design)
-        if quantity in POSITION_ERRORS and not mechanism.tolerances.given:
+        if quantity.lacks(mechanism, "undefined"):
             value = math.nan
         rows.append(_row(quantity.name, quantity.title, quantity.unit, value, (below, above), design, tolerances, True))
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)
         both = np.array(slopes), np.array(slopes)
-        relative = centre.unit is not DEGREE
-        rows.append(_row(centre.name, centre.title, centre.unit, value, both, design, tolerances, relative))
+        relative = centre.kind is not ANGLE
+        rows.append(_row(centre.name, centre.title, centre.kind.metric, value, both, design, tolerances, relative))
     return pd.DataFrame(rows)
 
 
@@ -139,7 +139,7 @@ def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: f
 def _row(
     name: str,
     title: str,
-    unit: Unit,
+    unit: Face,
     value: float,
     sides: tuple[Array, Array],
     design: Array,

@@ -11,11 +11,11 @@ from typing import Literal, get_args
 import numpy as np
 import pandas as pd
 
-from ..model.errors import InputError
-from ..model.linkage.linkage import Linkage
-from ..model.machine.mechanism import Mechanism
-from .quantity import Array, Quantity
-from .registry import quantity
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ..quantity import Array, Quantity
+from ..registry import quantity
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
 MOST = 1_000_000

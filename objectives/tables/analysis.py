@@ -7,17 +7,21 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from ..model.kinematics.in_line import without_rounding
-from ..model.linkage.linkage import Linkage
-from ..model.linkage.loaded_stroke import loaded_stroke
-from ..model.machine.mechanism import Mechanism
-from ..model.signals.averages import average_torque
-from ..model.signals.peaks import find_peaks
-from ..model.signals.signals import Signal
-from .motion_deviation import MotionDeviation
-from .position_error import POSITION_ERRORS
-from .quantity import Array, Quantity
-from .registry import QUANTITIES
+from ...model.kinematics.in_line import without_rounding
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.loaded_stroke import loaded_stroke
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.averages import average_torque
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
+from ..average_torque import MEAN_TORQUE, RMS_TORQUE
+from ..motion_deviation import MotionDeviation
+from ..peak_torque import PEAK_TORQUE
+from ..proportions import STROKE
+from ..quantity import Array, Quantity
+from ..registry import QUANTITIES
+from ..time_ratio import TIME_RATIO
+from ..transmission_angle import TRANSMISSION_ANGLE
 from .varying_column import varying_column
 
 
@@ -43,23 +47,23 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         "rod_mm": 1e3 * dimensions[:, 1],
         "offset_mm": 1e3 * dimensions[:, 2],
         **_varying(mechanism, dimensions),
-        "stroke_mm": 1e3 * linkage.stroke,
-        "time_ratio": linkage.time_ratio,
+        STROKE.field: 1e3 * linkage.stroke,
+        TIME_RATIO.field: linkage.time_ratio,
         "slow_stroke": linkage.slow_stroke(direction=mechanism.direction),
         "loaded_stroke": loaded_stroke(mechanism, dimensions),
         "outer_dead_centre_deg": np.degrees(outer),
         "inner_dead_centre_deg": np.degrees(inner),
-        "least_transmission_angle_deg": np.degrees(linkage.least_transmission_angle),
-        "peak_torque_Nm": torque.values[:, 0],
+        TRANSMISSION_ANGLE.field: np.degrees(linkage.least_transmission_angle),
+        PEAK_TORQUE.field: torque.values[:, 0],
         "peak_torque_angle_deg": np.degrees(torque.angles[:, 0]),
-        "rms_torque_Nm": averages.rms,
-        "mean_torque_Nm": averages.mean,
+        RMS_TORQUE.field: averages.rms,
+        MEAN_TORQUE.field: averages.mean,
     }
     for quantity in (*QUANTITIES.values(), *own):
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
-    if not mechanism.fullest.tolerances.given:
-        columns |= dict.fromkeys((error.field for error in POSITION_ERRORS), np.nan)
+        if quantity.lacks(mechanism, "undefined"):
+            columns[quantity.field] = np.nan
     for quantity in own:
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)

@@ -1,0 +1,98 @@
+"""Needs of quantities: what a machine must have so that a quantity is defined, or anything but zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from ..model.machine.dissipation import crank_weighs, linkage_loaded, moves, pivot_loaded, works_over_a_turn
+from ..model.machine.mechanism import Mechanism
+
+Without = Literal["undefined", "equal", "zero"]
+
+
+@dataclass(frozen=True)
+class Need:
+    """What a machine must have.
+
+    met: whether a machine has it; one with varying numbers, whether it may have it. missing: rule, value and remedy;
+    "{instead}" stands for the quantities that serve without. without: what becomes of the quantity: it is undefined,
+    equals another one, or is zero for every design.
+    """
+
+    met: Callable[[Mechanism], bool]
+    missing: str
+    without: Without = "zero"
+
+
+def _tolerances(machine: Mechanism) -> bool:
+    return machine.fullest.tolerances.given
+
+
+def _friction(machine: Mechanism) -> bool:
+    return machine.fullest.friction.acts
+
+
+def _speed(machine: Mechanism) -> bool:
+    return machine.fullest.speed != 0.0
+
+
+def _motion(machine: Mechanism) -> bool:
+    return machine.fullest.speed != 0.0 or machine.fullest.acceleration != 0.0
+
+
+def _masses(machine: Mechanism) -> bool:
+    return crank_weighs(machine.fullest) or moves(machine.fullest)
+
+
+def _swinging(machine: Mechanism) -> bool:
+    return moves(machine.fullest) or machine.fullest.acceleration != 0.0
+
+
+def _driven(machine: Mechanism) -> bool:
+    # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
+    m = machine.fullest
+    return linkage_loaded(m) or (crank_weighs(m) and (any(m.gravity) or m.acceleration != 0.0))
+
+
+def _loaded(machine: Mechanism) -> bool:
+    return linkage_loaded(machine.fullest)
+
+
+def _pivot_loaded(machine: Mechanism) -> bool:
+    return pivot_loaded(machine.fullest)
+
+
+_MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
+_LOADS = (
+    "it comes from masses and loads; got none that matter; add for example "
+    '[mechanism] slider = { mass = "0.8 kg" }, or a [[load]]'
+)
+_SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
+
+TOLERANCES = Need(
+    _tolerances,
+    'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
+    without="undefined",
+)
+FRICTION = Need(
+    _friction,
+    "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use {instead}",
+    without="equal",
+)
+SPEED = Need(_speed, _SPEED)
+MOTION = Need(_motion, _SPEED)
+"""A crank that turns or is about to."""
+MASSES = Need(_masses, _MASSES)
+SWINGING_MASSES = Need(_swinging, _MASSES)
+"""Masses whose angular momentum changes: a crank at constant speed shakes by a force through its pivot."""
+DRIVEN = Need(_driven, _LOADS)
+LOADED = Need(_loaded, _LOADS)
+"""Masses or loads beyond the crank."""
+PIVOT_LOADED = Need(_pivot_loaded, _LOADS)
+WORK = Need(
+    works_over_a_turn,
+    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no viscous load and "
+    "no load that differs between the strokes; use {instead}, or add what the machine works against",
+)

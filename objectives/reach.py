@@ -1,0 +1,49 @@
+"""Reach of a quantity: bounds that hold for every design within ranges of crank, rod and |offset| that turns fully.
+
+With a = |offset|, stroke and time ratio rise with r and a and fall with l; the transmission angle does the reverse:
+
+    dS/dr = (l+r)/x_out + (l-r)/x_in > 0      dS/da = a/x_in - a/x_out > 0      dS/dl = (l+r)/x_out - (l-r)/x_in < 0
+    b = asin(a/(l-r)) - asin(a/(l+r)), the excess angle, likewise term by term; cos(mu) = (r + a)/l.
+
+So one extreme is at least crank, greatest rod, least offset. The other is at the opposite corner if that turns fully,
+else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r + a) and mu = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+CLEAR = 1.0 + 1e-12
+"""Closer to locking than this, rounding decides."""
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Least and greatest crank r, rod l and |offset| a, m, with some design among them that turns fully."""
+
+    r0: float
+    r1: float
+    l0: float
+    l1: float
+    a0: float
+    a1: float
+
+    @property
+    def turns(self) -> bool:
+        """Whether the corner nearest to locking turns fully."""
+        return (self.r1 + self.a1) * CLEAR < self.l0
+
+    @property
+    def crank(self) -> float:
+        """The longest crank that turns, m."""
+        return min(self.r1, self.l1 - self.a0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reach:
+    """Bounds of a quantity within ranges, SI, and in words how the ranges must change for more or less of it."""
+
+    bounds: Callable[[Ranges], tuple[float, float]]
+    more: str
+    less: str
