@@ -12,7 +12,7 @@ DIMENSIONS = ("crank", "rod", "offset")
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
-    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None for what is not defined.
+    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None where not defined.
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
