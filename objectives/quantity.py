@@ -152,7 +152,7 @@ class Quantity(ABC):
         """
         for need in self.needs:
             if need.without == without and not need.met(mechanism):
-                return need.missing.format(instead=self.instead)
+                return need.missing.replace("{instead}", self.instead)
         return None
 
     @abstractmethod

@@ -314,7 +314,7 @@ def _each(sums: str, *factors: Array) -> Array:
 
 def require_options(case: str, order: int, share: float, samples: int, shape: str) -> None:
     """Raise `InputError` for options of a robust quantity that are out of range."""
-    require_word("kind", case, Case)
+    require_word("case", case, Case)
     require_word("shape", shape, Shape)
     if order not in (1, 2):
         raise InputError(f"the order of a worst case must be 1 or 2; got {order}")

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
-from ...model.kinematics.closed_forms import ClosedForm, closed_form
+from ...model.kinematics.closed_forms import closed_form
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Constraint, Objective, Problem, Range
 from ..search.elimination import UNKNOWNS
 from ..search.evaluation import Evaluator, constraints_of
@@ -23,14 +24,6 @@ from .limits import Limits
 
 Mask = NDArray[np.bool_]
 _ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
-# Whether a closed form rises with crank, rod and |offset|; the derivatives have one sign for all that turns fully.
-_RISES = {
-    ClosedForm.TIME_RATIO: (True, False, True),
-    ClosedForm.TRANSMISSION_ANGLE: (False, True, False),
-    ClosedForm.STROKE: (True, False, True),
-    ClosedForm.ROD_TO_OFFSET: (True, True, False),
-    ClosedForm.ROD_TO_CRANK: (False, True, True),
-}
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
 
 
@@ -101,7 +94,7 @@ class Boxes:
             reason = covered(problem, objective)
             if reason:
                 raise InputError(f"no certificate for this job: {reason}; leave this objective out")
-        least = next(c.lower for c in constraints_of(problem) if c.quantity == "transmission_angle")
+        least = next(c.lower for c in constraints_of(problem) if c.quantity == TRANSMISSION_ANGLE.name)
         self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
         used = [c for c in constraints_of(problem) if usable(problem, c)]
         self.cheap = [c for c in used if isinstance(problem.quantity(c.quantity), ClosedFormQuantity)]
@@ -184,14 +177,11 @@ class Boxes:
         assert isinstance(quantity, ClosedFormQuantity)
         value = reduce(beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
         most = value.ends()[1].max(axis=1)
-        if quantity.forms[0] not in _RISES:
+        if quantity.rises is None:
             return value, None, most
         ends = [x.ends() for x in (r, l, magnitude(e))]
         least_at, most_at = [
-            [
-                np.maximum(pair[rises != upper], 0.0)[:, 0]
-                for pair, rises in zip(ends, _RISES[quantity.forms[0]], strict=True)
-            ]
+            [np.maximum(pair[rises != upper], 0.0)[:, 0] for pair, rises in zip(ends, quantity.rises, strict=True)]
             for upper in (True, False)
         ]
         least, other = [_turning(int(quantity.forms[0]), *at) for at in (least_at, most_at)]

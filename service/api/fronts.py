@@ -49,6 +49,8 @@ class ColumnModel(BaseModel):
     key: str = Field(examples=["peak_torque_Nm"])
     title: str = Field(examples=["peak drive torque"])
     unit: str = Field(examples=["N m"])
+    group: str = Field("", description="that it is shown in; none for a curve", examples=["Drive"])
+    group_place: int = Field(0, description="of the group among the others", examples=[3])
 
 
 class FrontModel(BaseModel):
@@ -130,4 +132,10 @@ def pick_design(
 
 def column_model(column: Column) -> ColumnModel:
     """Return a column as JSON has it."""
-    return ColumnModel(key=column.key, title=column.title, unit=column.unit)
+    return ColumnModel(
+        key=column.key,
+        title=column.title,
+        unit=column.unit,
+        group=column.group.value,
+        group_place=list(type(column.group)).index(column.group),
+    )

@@ -46,19 +46,50 @@ class ShownUnit(BaseModel):
     factor: float = Field(examples=[1 / 25.4])
 
 
-class UnitTable(BaseModel):
-    """By the unit that the API speaks, the unit of US customary units; the others are the same there."""
+class TypedUnit(BaseModel):
+    """A unit that values may be typed in. factor: what one of it is in SI."""
 
+    unit: str = Field(examples=["mm"])
+    factor: float = Field(examples=[1e-3])
+
+
+class KindModel(BaseModel):
+    """A kind of value. units: that a form offers, the SI unit first. si, inch: the unit that a form begins with."""
+
+    name: str = Field(examples=["length"])
+    units: list[TypedUnit]
+    si: str = Field(examples=["mm"])
+    inch: str = Field(examples=["in"])
+
+
+class UnitTable(BaseModel):
+    """Units of values, as they are shown and as they are typed.
+
+    inch: by the unit that the API speaks, the unit of US customary units; the others are the same there.
+    """
+
+    kinds: list[KindModel]
     inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
 
 
 @router.get("/units")
 def list_units() -> UnitTable:
-    """Give what values of the API are in inches, pounds and what is made of them."""
-    from ...objectives.kinds import SHOWN, shown_in
+    """Give what values of the API are in inches, pounds and what is made of them, and the units of every kind."""
+    from ...objectives.kinds import KINDS, SHOWN, TIME, shown_in
+    from ...optimise.job.units import per_si
 
     told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
-    return UnitTable(inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told})
+    kinds = [
+        KindModel(
+            name=kind.plain,
+            units=[TypedUnit(unit=unit, factor=1.0 / per_si(unit)) for unit in kind.typed],
+            si=kind.usual or kind.metric.symbol,
+            inch=(kind.inch or kind.metric).symbol,
+        )
+        for kind in (*KINDS, TIME)
+        if kind.typed
+    ]
+    return UnitTable(kinds=kinds, inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told})
 
 
 @router.get("/quantities")

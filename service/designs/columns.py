@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from ...model.errors import InputError
 from ...objectives.kinds import SHOWN, Face, System
+from ...objectives.quantity import Group
 
 # How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
 _FACES = sorted(
@@ -29,7 +30,8 @@ class Column:
     """A column. key: as in JSON and CSV. title: for people. factor: what one SI unit is in its unit.
 
     own_unit: whether it was called by a key that carries a unit, so that a plain number is in that unit.
-    plain: what such a number is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`.
+    plain: what such a number is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`. group: that
+    it is shown in.
     """
 
     key: str
@@ -38,6 +40,7 @@ class Column:
     factor: float
     own_unit: bool
     plain: float = 1.0
+    group: Group = Group.FURTHER
 
 
 def find_column(name: str, keys: Collection[str]) -> Column:
@@ -62,7 +65,24 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         factor,
         same is not None,
         1.0 if same is None else factor / split_unit(name)[2],
+        _group(metric_key(key)),
     )
+
+
+@functools.cache
+def _group(key: str) -> Group:
+    """Return the group that a metric column is shown in."""
+    from ...objectives.peak_torque import PEAK_TORQUE
+    from ...objectives.registry import FACTS
+
+    others = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}
+    others |= {f"{PEAK_TORQUE.name}_angle_deg": PEAK_TORQUE.group, "slow_stroke": Group.MOTION}
+    others |= {"loaded_stroke": Group.MOTION}
+    if key.startswith("choice_"):
+        return Group.DIMENSIONS
+    if "_dead_centre" in key:
+        return Group.MOTION
+    return ({of.field: of.group for of in FACTS.values()} | others).get(key, Group.FURTHER)
 
 
 @functools.cache

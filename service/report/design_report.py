@@ -43,7 +43,9 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, "stroke")]
+    from ...objectives.proportions import STROKE
+
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
     lengths = [f"{column.title} {with_unit(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(

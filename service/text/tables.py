@@ -85,7 +85,10 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     from ...optimise.front.constant import is_constant
 
     names = list(result.designs[0])
-    keys = [find_column(name, names).key for name in DIMENSIONS] + _chosen(names) + [find_column("stroke", names).key]
+    from ...objectives.proportions import STROKE
+
+    dimensions = [find_column(name, names).key for name in DIMENSIONS]
+    keys = [*dimensions, *_chosen(names), find_column(STROKE.name, names).key]
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     columns, constant = [], []

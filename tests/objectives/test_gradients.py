@@ -57,7 +57,8 @@ def same_piece(quantity: Quantity, machine: Mechanism, designs: Array, which: An
 
 
 def greatest_piece(quantity: Quantity, machine: Mechanism, designs: Array) -> NDArray[np.int64]:
-    found: NDArray[np.int64] = np.argmax(quantity.pieces(machine, designs).values, axis=1)
+    pieces = quantity.pieces(machine, designs)
+    found: NDArray[np.int64] = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
     return found
 
 

@@ -167,7 +167,7 @@ def test_names_and_fields_say_robust_before_the_unit() -> None:
         ({"samples": 10}, "64 to 65536"),
         ({"share": 0.9999}, "raise samples"),
         ({"order": 3}, "1 or 2"),
-        ({"kind": "best"}, "kind"),
+        ({"case": "best"}, "case"),
     ],
 )
 def test_options_out_of_range_are_refused(options: dict[str, object], words: str) -> None:

@@ -6,7 +6,6 @@ import { explanation, field } from "./field.js";
 import { idOf } from "./path.js";
 import { convert, join, kindOf, split } from "./units.js";
 
-const BEST = new Set(["time_ratio", "transmission_angle", "self_locking_margin", "rod_to_crank"]);
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
 
 /** Return the field of the objective of a quantity {name, title, unit, sentence}. */
@@ -16,7 +15,7 @@ export function objective(form, quantity) {
   const kind = kindOf(quantity.unit);
   const box = h("input", { type: "checkbox", id: idOf(path, "c"), checked: given !== undefined });
   box.addEventListener("change", () => {
-    form.put(path, box.checked ? (BEST.has(quantity.name) ? "maximise" : "minimise") : undefined);
+    form.put(path, box.checked ? (quantity.better === "high" ? "maximise" : "minimise") : undefined);
     form.redraw();
   });
   const ask = explanation(idOf(path, "why"), quantity.title, { sentence: quantity.sentence, name: quantity.name });

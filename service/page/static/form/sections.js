@@ -10,10 +10,6 @@ import { requirement } from "./requirement.js";
 import { solving } from "./solving.js";
 import { speed } from "./speed.js";
 
-const MOTION = ["stroke", "time_ratio"];
-const RULES = ["rod_to_offset", "rod_to_crank"];
-const USUAL = ["transmission_angle", "peak_torque"];
-const WANTED = ["time_ratio", "peak_torque", "transmission_angle", "position_error", "footprint"];
 const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance"]);
 
 /** Return the sections for a job, ready to be put into the form. */
@@ -21,15 +17,15 @@ export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(speed(form), requirements(form, MOTION), byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })), more("Acceleration of the crank, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "branch"]))),
+    section("Motion", fields(speed(form), requirements(form, offered(form, "motion")), byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })), more("Acceleration of the crank, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "branch"]))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
       h("h3", {}, "Rules of proportion"),
-      fields(requirements(form, RULES)),
+      fields(requirements(form, offered(form, "proportions"))),
     ),
     section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
-    section("Requirements", fields(requirements(form, USUAL), requirements(form, others(form))), adding(form)),
+    section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form)),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
     section("Search", solving(form), more("Robust designs", robust(form)), more("Loose joint, for the simulation of its impacts", byschema(form, ["clearance"], { label: "clearance" }))),
@@ -50,18 +46,27 @@ function more(title, ...content) {
   return h("details", { class: "more" }, h("summary", {}, title), h("div", { class: "fields" }, content));
 }
 
+/** Return the names of the quantities that a part of the form asks for without being told to. */
+function offered(form, part) {
+  return [...form.quantities.values()].filter((one) => one.offered.includes(part)).map(({ name }) => name);
+}
+
+function asked(form) {
+  return ["motion", "proportions", "requirement"].flatMap((part) => offered(form, part));
+}
+
 function requirements(form, names) {
   return names.map((name) => requirement(form, form.quantity(name)));
 }
 
 /** Return the quantities beside the usual ones that the job has requirements on. */
 function others(form) {
-  const usual = new Set([...MOTION, ...RULES, ...USUAL]);
+  const usual = new Set(asked(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));
 }
 
 function adding(form) {
-  const taken = new Set([...MOTION, ...RULES, ...USUAL, ...Object.keys(form.at(["constraints"]) ?? {})]);
+  const taken = new Set([...asked(form), ...Object.keys(form.at(["constraints"]) ?? {})]);
   const left = form.judging().filter(({ name }) => !taken.has(name));
   const select = h("select", { id: "add-requirement" }, h("option", { value: "" }, "choose a quantity …"), left.map(({ name, title }) => h("option", { value: name }, title)));
   select.addEventListener("change", () => {
@@ -90,7 +95,7 @@ function pins(form) {
 
 function wishes(form) {
   const given = Object.keys(form.at(["objectives"]) ?? {});
-  const main = new Set([...WANTED, ...given]);
+  const main = new Set([...offered(form, "objective"), ...given]);
   const all = form.judging();
   return [
     h("div", { class: "fields" }, all.filter(({ name }) => main.has(name)).map((one) => objective(form, one))),

@@ -1,35 +1,18 @@
 /** The units that a field offers, and values with units as job files have them: "40 mm". */
 
+import { get } from "../lib/api.js";
 import { system } from "../lib/numbers.js";
 
-// What one of the unit is in the first unit of its line, which is the SI unit: a plain number of a job is in it.
-const KINDS = {
-  length: { m: 1, mm: 1e-3, cm: 1e-2, "µm": 1e-6, in: 0.0254, foot: 0.3048 },
-  area: { "m^2": 1, "cm^2": 1e-4, "mm^2": 1e-6, "in^2": 0.0254 ** 2 },
-  angle: { rad: 1, deg: Math.PI / 180 },
-  "angular speed": { "rad/s": 1, rpm: Math.PI / 30, "rev/s": 2 * Math.PI },
-  "angular acceleration": { "rad/s^2": 1, "deg/s^2": Math.PI / 180 },
-  mass: { kg: 1, g: 1e-3, t: 1000, lb: 0.45359237 },
-  inertia: { "kg m^2": 1, "kg mm^2": 1e-6, "lb in^2": 0.45359237 * 0.0254 ** 2 },
-  density: { "kg/m^3": 1, "g/cm^3": 1000, "lb/in^3": 0.45359237 / 0.0254 ** 3 },
-  speed: { "m/s": 1, "mm/s": 1e-3, "in/s": 0.0254 },
-  acceleration: { "m/s^2": 1, "mm/s^2": 1e-3, "in/s^2": 0.0254 },
-  force: { N: 1, kN: 1000, lbf: 4.4482216152605 },
-  torque: { "N m": 1, "kN m": 1000, "N mm": 1e-3, "lbf in": 4.4482216152605 * 0.0254, "lbf ft": 4.4482216152605 * 0.3048 },
-  power: { W: 1, kW: 1000, hp: 550 * 0.3048 * 4.4482216152605 },
-  stiffness: { "N/m": 1, "N/mm": 1000, "lbf/in": 4.4482216152605 / 0.0254 },
-  damping: { "N s/m": 1, "N s/mm": 1000, "lbf s/in": 4.4482216152605 / 0.0254 },
-  pressure: { Pa: 1, MPa: 1e6, GPa: 1e9, psi: 4.4482216152605 / 0.0254 ** 2 },
-  time: { s: 1, min: 60 },
-};
-const USUAL = {
-  si: { length: "mm", angle: "deg", "angular speed": "rpm", stiffness: "N/mm", pressure: "MPa" },
-  inch: {
-    length: "in", area: "in^2", angle: "deg", "angular speed": "rpm", mass: "lb", inertia: "lb in^2", density: "lb/in^3", speed: "in/s",
-    acceleration: "in/s^2", force: "lbf", torque: "lbf in", stiffness: "lbf/in", damping: "lbf s/in", power: "hp", pressure: "psi",
-  },
-};
+let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
+let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
+
+/** Make ready to offer units: the service has the table of kinds. */
+export async function readyKinds(signal) {
+  const { kinds: known } = await get("units", {}, signal);
+  KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
+  USUAL = Object.fromEntries(["si", "inch"].map((one) => [one, Object.fromEntries(known.map((kind) => [kind.name, kind[one]]))]));
+}
 
 /** Return the names of all kinds. */
 export function kinds() {

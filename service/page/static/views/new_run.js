@@ -8,6 +8,7 @@ import { jobFile, presets } from "../form/job_file.js";
 import { at, put } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
+import { readyKinds } from "../form/units.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob } from "../form/start.js";
 import { go, keep } from "../lib/address.js";
@@ -23,7 +24,7 @@ export const title = "New run";
  * @param {Page.Visit} given
  */
 export async function show(place, { query, signal }) {
-  const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal)]);
+  const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds(signal)]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
   const before = kept();
