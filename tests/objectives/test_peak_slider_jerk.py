@@ -20,8 +20,8 @@ def test_it_is_the_greatest_slope_of_the_acceleration_over_time() -> None:
             e = random.uniform(-0.05, 0.05)
             l = (r + abs(e)) * random.uniform(1.3, 4.0)
             w, alpha = random.uniform(-40.0, 40.0), random.uniform(-50.0, 50.0)
-            machine = Mechanism(speed=w, acceleration=alpha, branch=branch)  # type: ignore[arg-type]
-            x = Linkage(r, l, e, branch).at(theta)  # type: ignore[arg-type]
+            machine = Mechanism(speed=w, acceleration=alpha, branch=branch)
+            x = Linkage(r, l, e, branch).at(theta, speed=1.0)
             # d/dt (x'' w^2 + x' alpha) at constant alpha, x''' by central differences of x''
             third = np.gradient(x.slider_acceleration, theta, edge_order=2)
             swept = np.abs(third * w**3 + 3.0 * x.slider_acceleration * w * alpha).max()
