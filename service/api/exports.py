@@ -7,6 +7,7 @@ from importlib.util import find_spec
 
 from fastapi import APIRouter, HTTPException, Response
 
+from ..designs.selection import numbered
 from ..designs.shown_units import result_in, rows_in
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
@@ -33,11 +34,11 @@ def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes
     responses={200: {"content": {"text/csv": {}}}},
 )
 def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
-    """Give every design with all its quantities at full precision.
+    """Give every design with its number and all its quantities at full precision.
 
     A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
     """
-    content = csv_text(rows_in(found.result.designs, units), spreadsheet=True)
+    content = csv_text(numbered(rows_in(found.result.designs, units)), spreadsheet=True)
     return _file(found, "csv", "text/csv; charset=utf-8", content)
 
 

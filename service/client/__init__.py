@@ -183,9 +183,9 @@ class Client:
         return found.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is no number
 
     def design(self, number: int, design: int) -> Row:
-        """Return a design by its number in the front, counted from 1."""
+        """Return a design by its number in the front, counted from 1; the number comes first."""
         row: Row = self._get(f"jobs/{number}/designs/{design}")["design"]
-        return row
+        return {"number": design, **row}
 
     def pick(
         self,

@@ -13,7 +13,7 @@ from ...objectives.kinds import System
 from ..designs.judged_rules import judged, rule_in
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
-from ..runs.run_folder import disk
+from ..runs.run_folder import disk, write_file
 from ..text.options import Units, length_option, speed_option, value_option
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
@@ -21,11 +21,13 @@ from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .interruption import Interruption
+from .optimise import Runs
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...optimise.problem.problem import Problem
+    from ..designs.stored_designs import StoredDesign
 
 INTERRUPTED = 130
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
@@ -34,7 +36,9 @@ _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 def analyse(
     job: Annotated[
         Path | None,
-        typer.Argument(metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from."),
+        typer.Argument(
+            metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from. A run with --design."
+        ),
     ] = None,
     crank: Annotated[str | None, typer.Option(metavar="LENGTH", help='Crank, such as "40 mm".')] = None,
     rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod.")] = None,
@@ -53,6 +57,9 @@ def analyse(
             help='A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
         ),
     ] = None,
+    design: Annotated[
+        int | None, typer.Option(metavar="NO", help="A design of a run: its number in `slidercrank front RUN`.")
+    ] = None,
     show: Annotated[list[str] | None, typer.Option(metavar="TOPIC", help=_TOPIC_HELP)] = None,
     at: Annotated[
         str | None, typer.Option(metavar="ANGLE", help='Crank angle of the polygons.  [default: "30 deg"]')
@@ -67,6 +74,10 @@ def analyse(
     figures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there, and each topic.")
     ] = None,
+    cycle: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write motion, forces and torque over the cycle as CSV.")
+    ] = None,
+    runs: Runs = None,
     units: Units = "metric",
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
@@ -74,24 +85,30 @@ def analyse(
 
     Without JOB it has no masses, loads and tolerances: motion and proportions only. Without --speed, nothing that
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
-    repeated.
+    repeated. With --design, a run stands in place of JOB, and the design has its dimensions.
     """
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
 
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
-    problem = _load(job, put or [])
-    mechanism = Mechanism() if problem is None else problem.mechanism.nominal
+    given = {"crank": crank, "rod": rod, "offset": offset}
+    problem: Problem | None
+    if design is None:
+        problem = _load(job, put or [])
+        mechanism = Mechanism() if problem is None else problem.mechanism.nominal
+        lengths = [length_option(name, text, problem) for name, text in given.items()]
+    else:
+        stored = _stored(job, design, runs, {**given, "set": put or None})
+        problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
-    lengths = [
-        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
-    ]
     own = () if problem is None else problem.own
     row = numbers_of(mechanism, lengths, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
+    if cycle is not None:
+        _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     with Interruption() as interruption:
         found = analysis_of(
             row,
@@ -167,6 +184,38 @@ def _draw(
         files += [topic.draw(folder) for topic in topics]
     for file in files:
         say(f"figure: {file}")
+
+
+def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, object]) -> StoredDesign:
+    """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides."""
+    from ..designs.numbering import require_alone
+    from ..designs.stored_designs import stored_design
+    from ..jobs.find_run import find_run
+    from ..runs.run_folder import runs_place
+    from ..runs.stored_runs import problem_of, read_run
+
+    if job is None:
+        raise InputError("--design is of a run; got none; name it: slidercrank analyse RUN --design NO")
+    besides = [f"--{name}" for name, value in given.items() if value is not None]
+    if besides:
+        raise InputError(
+            f"a design of a run has its dimensions; got --design and {besides[0]}; leave out one of the two"
+        )
+    folder = find_run(str(job), runs_place(place))
+    result = read_run(folder)
+    if not result.designs:
+        raise InputError(f"--design is of a run with designs; {folder.name} has none: {result.message}")
+    require_alone(design, result, str(job), others=False)
+    return stored_design(problem_of(folder, result), result, design)
+
+
+def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
+    from ..designs.cycle_file import cycle_csv
+
+    if str(file) == "-":
+        raise InputError("--cycle writes a file; got -; name one")
+    write_file(file, cycle_csv(mechanism, linkage, units, machine=machine))
+    say(f"{file}: the cycle at 360 crank angles")
 
 
 def _load(job: Path | None, put: list[str]) -> Problem | None:

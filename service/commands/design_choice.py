@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
+from ..designs.numbering import require_alone
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
 from ..runs.result import Result
@@ -51,11 +52,7 @@ def chosen_design(
     if design is None and not picking:
         raise InputError("a design is named by --design NO, --knee, --topsis or --lexicographic; got none; give one")
     if design is not None:
-        if picking or where:
-            raise InputError("a design is chosen in one way; got --design and another; keep one of them")
-        if not 1 <= design <= len(result.designs):
-            count = len(result.designs)
-            raise InputError(f"the run has designs 1 to {count}; got {design}; see slidercrank front {run}")
+        require_alone(design, result, run, others=bool(picking or where))
         return design
     rows = chosen_rows(result, where or [])
     row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)

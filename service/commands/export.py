@@ -9,20 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import System
+from ..designs.selection import chosen_rows, none_meets, numbered, part_of
 from ..jobs.find_run import find_run
 from ..runs.result import Result, csv_text, json_text
 from ..runs.run_folder import runs_place, write_bytes, write_file
 from ..runs.stored_runs import problem_of, read_run
 from ..text.options import Units, value_option
 from ..text.screen import give, say, waiting
-from .design_choice import Design, Knee, Lexicographic, Topsis, chosen_design
-from .optimise import Runs
+from .design_choice import Design, Knee, Lexicographic, Topsis, Where, chosen_design
+from .optimise import NOTHING_FEASIBLE, Runs
 from .runs import Run, shown_result
 
 if TYPE_CHECKING:
     from ..designs.stored_designs import StoredDesign
 
-_FILES = ("--dxf", "--svg", "--motion", "--gif")
+_FILES = ("--dxf", "--svg", "--motion", "--gif", "--cycle")
 
 
 def export(
@@ -45,6 +47,14 @@ def export(
         Path | None, typer.Option(metavar="FILE", help="Write its motion as an HTML file that needs nothing else.")
     ] = None,
     gif: Annotated[Path | None, typer.Option(metavar="FILE", help="Write its motion as an animated GIF.")] = None,
+    cycle: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write its motion, forces and torque over the cycle as CSV.")
+    ] = None,
+    where: Where = None,
+    sort: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Sort the designs of --csv and --json, as in `front`.")
+    ] = None,
+    reverse: Annotated[bool, typer.Option("--reverse", help="Turn the order round.")] = False,
     at: Annotated[
         str | None, typer.Option(metavar="ANGLE", help='Crank angle of the drawing.  [default: "60 deg"]')
     ] = None,
@@ -53,9 +63,10 @@ def export(
 ) -> None:
     """Write the designs of a run to a file, or one design as a drawing for CAD, or in motion.
 
-    One design is named by its number, or chosen by --knee, --topsis or --lexicographic.
+    One design is named by its number, or chosen by --knee, --topsis or --lexicographic. --where takes part of the
+    designs, for the table and for the choice.
     """
-    files = dict(zip(_FILES, (dxf, svg, motion, gif), strict=True))
+    files = dict(zip(_FILES, (dxf, svg, motion, gif, cycle), strict=True))
     of_one = any(file is not None for file in files.values())
     picked = design is not None or knee or topsis is not None or lexicographic is not None
     if picked and not of_one:
@@ -63,6 +74,10 @@ def export(
     _require_something(csv, json, of_one=of_one)
     if at is not None and dxf is None and svg is None:
         raise InputError("--at is for --dxf and --svg, which are not asked for; add one or leave --at out")
+    if (sort is not None or reverse) and csv is None and json is None:
+        raise InputError(
+            "--sort and --reverse are for --csv and --json, which are not asked for; add one or leave them out"
+        )
     angle = _angle(at)
     for option, file in files.items():
         if file is not None and str(file) == "-":
@@ -71,16 +86,33 @@ def export(
     result = read_run(folder)
     made: dict[Path, bytes] = {}
     if of_one:
-        number = chosen_design(result, run, design=design, knee=knee, topsis=topsis, lexicographic=lexicographic)
+        of_table = csv is not None or json is not None
+        number = chosen_design(
+            result,
+            run,
+            design=design,
+            knee=knee,
+            topsis=topsis,
+            lexicographic=lexicographic,
+            where=None if design is not None and of_table else where,
+        )
         with waiting("drawing"):
-            made = _made(result, folder, number, files, angle)
+            made = _made(result, folder, number, files, angle, units)
+    chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse) if result.designs else []
+    if where and not chosen:
+        say(f"slidercrank: {none_meets(result, where)}")
+        raise typer.Exit(NOTHING_FEASIBLE)
     shown = shown_result(result, units, None if json is None else folder)
-    for target, text in ((csv, csv_text(shown.designs)), (json, json_text(shown.record()))):
+    whole = chosen == list(range(len(result.designs)))
+    record = (shown if whole else part_of(shown, chosen)).record()
+    if not whole:
+        record["numbers"] = [row + 1 for row in chosen]
+    for target, text in ((csv, csv_text(numbered(shown.designs, chosen))), (json, json_text(record))):
         if target == "-":
             give(text)
         elif target is not None:
             write_file(Path(target), text)
-            say(f"{target}: {len(result.designs)} designs")
+            say(f"{target}: {len(chosen)} designs")
     for file, content in made.items():
         write_bytes(file, content)
         say(f"{file}: design {number}")
@@ -105,8 +137,11 @@ def _angle(at: str | None) -> float:
     return value_option("--at", at, ANGLE)
 
 
-def _made(result: Result, folder: Path, number: int, files: dict[str, Path | None], angle: float) -> dict[Path, bytes]:
+def _made(
+    result: Result, folder: Path, number: int, files: dict[str, Path | None], angle: float, units: System
+) -> dict[Path, bytes]:
     """Return the contents of the files that are asked for of one design."""
+    from ..designs.cycle_file import cycle_csv
     from ..designs.stored_designs import stored_design
 
     found = stored_design(problem_of(folder, result), result, number)
@@ -115,6 +150,7 @@ def _made(result: Result, folder: Path, number: int, files: dict[str, Path | Non
         "--svg": lambda: _svg(found, result.name, number, angle),
         "--motion": lambda: _motion(found, result.name, number),
         "--gif": lambda: _gif(found, result.name, number),
+        "--cycle": lambda: cycle_csv(found.mechanism, found.linkage, units).encode(),
     }
     return {file: makers[option]() for option, file in files.items() if file is not None}
 

@@ -10,6 +10,7 @@ import typer
 
 from ...model.errors import SlidercrankError
 from ...objectives.kinds import System
+from ..designs.numbering import require_alone
 from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text
 from ..runs.run_folder import runs_place
@@ -51,6 +52,9 @@ def front(
         typer.Option(metavar="NAMES", help="Quantities or columns to show, separated by commas."),
     ] = None,
     rows: Annotated[int, typer.Option(min=0, help="Show at most so many designs; 0 shows all.")] = ROWS,
+    design: Annotated[
+        int | None, typer.Option(metavar="NO", help="Show one design by its number in the front.")
+    ] = None,
     knee: Annotated[
         bool, typer.Option("--knee", help="Choose one design: the nearest to the ideal, objectives by their range.")
     ] = False,
@@ -75,7 +79,7 @@ def front(
 ) -> None:
     """Show the front of a run again, a part of it, or one design chosen from it.
 
-    --knee, --topsis and --lexicographic choose among the designs that meet --where.
+    --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
     """
     from ..designs.columns import find_columns, key_in
     from ..designs.picking_options import picked_row
@@ -91,7 +95,11 @@ def front(
     keys = list(result.designs[0])
     wanted = find_columns(columns, keys) if columns else None
     chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
-    one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
+    if design is None:
+        one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
+    else:
+        require_alone(design, result, run, others=bool(knee or topsis or lexicographic or where))
+        one = design - 1
     if one is not None:
         chosen = [one]
     told = not where and (json or not (sort or reverse or columns or one is not None or rows != ROWS))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from ..runs.result import Result
+from ..runs.result import Result, Row
 from .columns import find_column
 from .conditions import order_key, select
 
@@ -25,6 +25,11 @@ def chosen_rows(result: Result, where: Collection[str], *, sort: str | None = No
         else:
             chosen.sort(key=lambda row: order_key(result.designs[row][key]))
     return chosen[::-1] if reverse else chosen
+
+
+def numbered(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> list[Row]:
+    """Return the rows, each with the number of its design first, counted from 1; of all, or of those chosen."""
+    return [{"number": row + 1, **rows[row]} for row in (range(len(rows)) if chosen is None else chosen)]
 
 
 def part_of(result: Result, rows: Sequence[int]) -> Result:

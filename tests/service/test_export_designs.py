@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from ezdxf.filemanagement import readfile
 
+from slidercrank.service.runs.result import rows_from_csv
 from tests.service.conftest import Command
 
 
@@ -25,7 +26,7 @@ def test_a_design_is_written_in_all_ways_at_once(kept: Path, tmp_path: Path, com
     assert "Short test [job], design 3" in names["svg"].read_text(encoding="utf-8")
     assert "Short test [job], design 3" in names["motion"].read_text(encoding="utf-8")
     assert names["gif"].read_bytes()[:6] == b"GIF89a"
-    assert (tmp_path / "a.csv").read_text().startswith("crank_mm")
+    assert (tmp_path / "a.csv").read_text().startswith("number,crank_mm")
 
 
 def test_the_knee_and_a_crank_angle_may_be_asked_for(kept: Path, tmp_path: Path, command: Command) -> None:
@@ -47,11 +48,16 @@ def test_the_knee_and_a_crank_angle_may_be_asked_for(kept: Path, tmp_path: Path,
         (("--dxf", "a.dxf", "--design", 0), "the run has designs 1 to 8; got 0"),
         (("--dxf", "a.dxf", "--design", 1, "--knee"), "a design is chosen in one way"),
         (("--dxf", "a.dxf", "--knee", "--topsis", "time_ratio=1"), "a design is chosen in one way"),
-        (("--design", 1), "a design is written with --dxf, --svg, --motion, --gif"),
-        (("--design", 1, "--csv", "a.csv"), "a design is written with --dxf, --svg, --motion, --gif"),
+        (("--design", 1), "a design is written with --dxf, --svg, --motion, --gif, --cycle"),
+        (("--design", 1, "--csv", "a.csv"), "a design is written with --dxf, --svg, --motion, --gif, --cycle"),
         (("--csv", "a.csv", "--at", "5 deg"), "--at is for --dxf and --svg"),
         (("--design", 1, "--svg", "a.svg", "--at", "5"), "--at must be an angle with its unit"),
         (("--design", 1, "--gif", "-"), "--gif writes a file"),
+        (("--design", 1, "--cycle", "-"), "--cycle writes a file"),
+        (("--cycle", "a.csv"), "a design is named by --design NO, --knee"),
+        (("--design", 1, "--cycle", "a.csv", "--sort", "crank"), "--sort and --reverse are for --csv and --json"),
+        (("--design", 1, "--cycle", "a.csv", "--where", "stroke > 1 mm"), "a design is chosen in one way"),
+        (("--csv", "a.csv", "--sort", "torqe"), "did you mean"),
         (("--design", 1, "--svg", "none/there/a.svg"), "must be a folder that can be written"),
     ],
 )
@@ -65,6 +71,67 @@ def test_a_wrong_request_is_exit_code_2_and_writes_nothing(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     done = command("export", "latest", "--runs", kept, *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_cycle_of_a_design_is_written_by_export_and_by_analyse(
+    kept: Path, tmp_path: Path, command: Command
+) -> None:
+    of_export, of_analyse = tmp_path / "export.csv", tmp_path / "analyse.csv"
+    done = command("export", "latest", "--runs", kept, "--design", 3, "--cycle", of_export)
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    done = command("analyse", "latest", "--runs", kept, "--design", 3, "--cycle", of_analyse, "--json")
+    assert done.exit_code == 0, done.stderr
+    assert of_export.read_bytes() == of_analyse.read_bytes()
+    rows = rows_from_csv(of_export.read_text())
+    front = json.loads(command("front", "latest", "--runs", kept, "--design", 3, "--json").stdout)
+    (design,) = front["designs"]
+    assert json.loads(done.stdout)["peak_torque_Nm"] == pytest.approx(design["peak_torque_Nm"], rel=1e-12)
+    assert [row["crank_angle_deg"] for row in rows] == pytest.approx(range(360))
+    stroke = max(row["slider_position_mm"] for row in rows) - min(row["slider_position_mm"] for row in rows)  # type: ignore[operator, type-var]
+    assert stroke == pytest.approx(design["stroke_mm"], rel=1e-3)
+    torque = max(abs(row["torque_Nm"]) for row in rows)  # type: ignore[arg-type]
+    assert 0.98 * design["peak_torque_Nm"] <= torque <= design["peak_torque_Nm"] * (1.0 + 1e-9)
+
+
+def test_a_cycle_without_a_machine_is_motion_alone(tmp_path: Path, command: Command) -> None:
+    file = tmp_path / "cycle.csv"
+    done = command("analyse", "--crank", "40 mm", "--rod", "64 mm", "--offset", "20 mm", "--cycle", file)
+    assert done.exit_code == 0, done.stderr
+    header = file.read_text().splitlines()[0].split(",")
+    assert {"crank_angle_deg", "slider_position_mm", "transmission_angle_deg"} <= set(header)
+    assert not [key for key in header if "torque" in key or key.endswith("_N")]
+    inch = tmp_path / "inch.csv"
+    lengths = ("--crank", "40 mm", "--rod", "64 mm", "--offset", "20 mm")
+    assert command("analyse", *lengths, "--cycle", inch, "--units", "inch").exit_code == 0
+    for one, other in zip(rows_from_csv(file.read_text()), rows_from_csv(inch.read_text()), strict=True):
+        assert one["slider_position_mm"] == pytest.approx(25.4 * other["slider_position_in"], rel=1e-12)  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("latest", "--design", 99), "the run has designs 1 to 8; got 99"),
+        (("--design", 1), "--design is of a run; got none"),
+        (("latest", "--design", 1, "--crank", "40 mm"), "got --design and --crank; leave out one"),
+        (("latest", "--design", 1, "--set", "mechanism.speed=1 rpm"), "got --design and --set"),
+        (("nothing", "--design", 1), "there is no run 'nothing'"),
+        (("latest", "--design", 1, "--cycle", "-"), "--cycle writes a file"),
+        (("latest", "--design", 1, "--cycle", "none/there/a.csv"), "must be a folder that can be written"),
+    ],
+)
+def test_a_wrong_analysis_of_a_run_is_refused(
+    arguments: tuple[object, ...],
+    words: str,
+    kept: Path,
+    tmp_path: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = command("analyse", "--runs", kept, *arguments)
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
     assert list(tmp_path.iterdir()) == []

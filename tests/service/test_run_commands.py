@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from slidercrank.optimise.front.picking import Priority
-from slidercrank.service.runs.result import Result, result_of, rows_from_csv
+from slidercrank.service.designs.selection import numbered
+from slidercrank.service.runs.result import Result, finite, result_of, rows_from_csv
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -137,12 +138,12 @@ def test_a_damaged_run_is_exit_code_2(stored: Result, command: Command) -> None:
 def test_export_writes_the_files_of_the_run(stored: Result, tmp_path: Path, command: Command) -> None:
     done = command("export", "latest", "--csv", tmp_path / "a.csv", "--json", tmp_path / "a.json")
     assert (done.exit_code, done.stdout) == (0, "")
-    assert (tmp_path / "a.csv").read_bytes() == (Path(stored.run) / "front.csv").read_bytes()
+    assert rows_from_csv((tmp_path / "a.csv").read_text()) == numbered(stored.designs)
     assert (tmp_path / "a.json").read_bytes() == (Path(stored.run) / "front.json").read_bytes()
 
 
 def test_export_writes_to_standard_output(stored: Result, command: Command) -> None:
-    assert rows_from_csv(command("export", "latest", "--csv", "-").stdout) == stored.designs
+    assert rows_from_csv(command("export", "latest", "--csv", "-").stdout) == numbered(stored.designs)
     assert json.loads(command("export", "latest", "--json", "-").stdout) == stored.record()
 
 
@@ -220,3 +221,50 @@ def test_a_wrong_choice_is_exit_code_2(
     done = command("front", "latest", *arguments)
     assert done.exit_code == 2
     assert message in done.stderr
+
+
+def test_an_export_takes_part_of_the_front_in_an_order(stored: Result, tmp_path: Path, command: Command) -> None:
+    torque = sorted(row["peak_torque_Nm"] for row in stored.designs)[15]  # type: ignore[type-var]
+    files = ("--csv", tmp_path / "a.csv", "--json", tmp_path / "a.json")
+    options = ("--where", f"peak_torque <= {torque} N m", "--sort", "crank", "--reverse")
+    done = command("export", "latest", *files, *options)
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    expected = [row for row in numbered(stored.designs) if row["peak_torque_Nm"] <= torque]  # type: ignore[operator]
+    expected.sort(key=lambda row: row["crank_mm"], reverse=True)  # type: ignore[arg-type, return-value]
+    assert 0 < len(expected) < len(stored.designs)
+    assert rows_from_csv((tmp_path / "a.csv").read_text()) == expected
+    written = json.loads((tmp_path / "a.json").read_text())
+    assert written["numbers"] == [row["number"] for row in expected]
+    assert [row["crank_mm"] for row in written["designs"]] == [row["crank_mm"] for row in expected]
+
+
+def test_an_export_of_no_design_is_exit_code_3_and_writes_nothing(
+    stored: Result, tmp_path: Path, command: Command
+) -> None:
+    done = command("export", "latest", "--csv", tmp_path / "a.csv", "--where", "peak_torque < 0 N m")
+    assert (done.exit_code, done.stdout) == (3, "")
+    assert f"none of the {len(stored.designs)} designs meets" in done.stderr
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_front_shows_the_design_of_a_number(stored: Result, command: Command) -> None:
+    record = json.loads(command("front", "latest", "--design", 4, "--json").stdout)
+    assert (record["number"], record["designs"]) == (4, [finite(stored.designs[3])])
+    assert "design 4 of 30" in command("front", "latest", "--design", 4).stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--design", 31), "the run has designs 1 to 30; got 31"),
+        (("--design", 0), "the run has designs 1 to 30; got 0"),
+        (("--design", 1, "--knee"), "a design is chosen in one way"),
+        (("--design", 1, "--where", "stroke > 1 mm"), "a design is chosen in one way"),
+    ],
+)
+def test_a_wrong_number_of_a_design_is_refused(
+    arguments: tuple[object, ...], words: str, stored: Result, command: Command
+) -> None:
+    done = command("front", "latest", *arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr

@@ -24,6 +24,7 @@ from slidercrank.service.api import throttle as turns
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
+from slidercrank.service.designs.selection import numbered
 from slidercrank.service.runs.result import csv_text, finite, rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
@@ -52,6 +53,7 @@ def test_a_design_has_the_same_numbers_everywhere(solved: Solved, tmp_path: Path
         singles = [client.design(solved.number, number + 1) for number in range(len(exported))]
     assert len(exported) == 8
     for row, given in enumerate(exported):
+        assert (given.pop("number"), by_csv[row]["number"], singles[row]["number"], table.index[row]) == (row + 1,) * 4
         for key, value in given.items():
             same = value if isinstance(value, str) else pytest.approx(value, rel=0.0, abs=0.0, nan_ok=True)
             assert (by_csv[row][key], parquet.iloc[row][key]) == (same, same), (row, key)
@@ -63,7 +65,7 @@ def test_a_design_has_the_same_numbers_everywhere(solved: Solved, tmp_path: Path
 
 def test_exports_are_those_of_the_command_line_but_for_formulas(solved: Solved, client: httpx.Client) -> None:
     csv = client.get(f"{solved.path}/export.csv")
-    assert csv.text == csv_text(solved.result.designs)
+    assert csv.text == csv_text(numbered(solved.result.designs))
     assert csv.headers["content-type"] == "text/csv; charset=utf-8"
     assert csv.headers["content-disposition"] == f'attachment; filename="short-test-job-{solved.number}.csv"'
     whole = client.get(f"{solved.path}/export.json").text
