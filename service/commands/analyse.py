@@ -120,7 +120,7 @@ def analyse(
             cancelled=interruption.asked,
             lenient=ALL in (show or ()),
         )
-    design = [topic for topic in found.topics if topic.name in found.found]
+    told = [topic for topic in found.topics if topic.name in found.found]
     rules = [] if problem is None else [rule_in(rule, units) for rule in judged(problem, row)]
     if json:
         record = record_in(found.record(), units)
@@ -131,15 +131,15 @@ def analyse(
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
-        if design and units != "metric":
+        if told and units != "metric":
             screen.print("\nTopics are told in metric units; --json has them in those asked for.", style="dim")
-        for topic in design:
+        for topic in told:
             screen.print()
             topic.show(screen, found.found[topic.name])
     for note in found.notes:
         say(note)
     if figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, design, figures, units)
+        _draw(problem, mechanism, linkage, row, told, figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
 
