@@ -10,7 +10,7 @@ import typer
 from ...model.errors import InputError
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import length_option, value_option
+from ..text.options import Crank, Offset, Rod, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
 from ..topics.allocation.numbers import allocation_numbers
 from ..topics.allocation.text import show
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 def allocate(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with [costs].")],
     limit: Annotated[str, typer.Option(metavar="LENGTH", help='Position error that is allowed, such as "0.1 mm".')],
-    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help="Crank, unless fixed by JOB.")] = None,
-    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod, likewise.")] = None,
-    offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset, likewise.")] = None,
+    crank: Crank = None,
+    rod: Rod = None,
+    offset: Offset = None,
     kind: Annotated[
         str, typer.Option(metavar="KIND", help='How errors add up: "worst case" or "rss" (root-sum-square).')
     ] = "worst case",
@@ -49,9 +49,7 @@ def allocate(
             "an allocation needs what the tolerances cost; got a job without [costs]; "
             'add for example [costs] crank = { cost = 8.0, at = "0.05 mm" }'
         )
-    lengths = [
-        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
-    ]
+    lengths = lengths_of(problem, crank, rod, offset)
     most = value_option("--limit", limit, LENGTH, sign="positive")
     mechanism = problem.mechanism
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)

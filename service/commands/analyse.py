@@ -14,7 +14,7 @@ from ..designs.judged_rules import judged, rule_in
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import Units, length_option, speed_option, value_option
+from ..text.options import Crank, Offset, Rod, Units, lengths_of, speed_option, value_option
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
 from ..topics.design_analysis import analysis_of, numbers_of
@@ -40,11 +40,9 @@ def analyse(
             metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from. A run with --design."
         ),
     ] = None,
-    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help='Crank, such as "40 mm".')] = None,
-    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod.")] = None,
-    offset: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help='Offset of the slider line, such as "-20 mm".')
-    ] = None,
+    crank: Crank = None,
+    rod: Rod = None,
+    offset: Offset = None,
     speed: Annotated[
         str | None,
         typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
@@ -97,7 +95,7 @@ def analyse(
     if design is None:
         problem = _load(job, put or [])
         mechanism = Mechanism() if problem is None else problem.mechanism.nominal
-        lengths = [length_option(name, text, problem) for name, text in given.items()]
+        lengths = lengths_of(problem, crank, rod, offset)
     else:
         stored = _stored(job, design, runs, {**given, "set": put or None})
         problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])

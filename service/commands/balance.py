@@ -10,7 +10,7 @@ import typer
 from ...model.errors import InputError
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import length_option, value_option
+from ..text.options import Crank, Offset, Rod, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
 from ..topics.counterweight.numbers import balance_numbers
 from ..topics.counterweight.text import show
@@ -23,9 +23,9 @@ _LENGTH = "LENGTH"
 
 def balance(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file: speed and masses come from it.")],
-    crank: Annotated[str | None, typer.Option(metavar=_LENGTH, help="Crank, unless fixed by JOB.")] = None,
-    rod: Annotated[str | None, typer.Option(metavar=_LENGTH, help="Connecting rod, likewise.")] = None,
-    offset: Annotated[str | None, typer.Option(metavar=_LENGTH, help="Offset, likewise.")] = None,
+    crank: Crank = None,
+    rod: Rod = None,
+    offset: Offset = None,
     measure: Annotated[
         str, typer.Option(metavar="MEASURE", help='What is to be least over the cycle: "peak" or "rms".')
     ] = "peak",
@@ -59,9 +59,7 @@ def balance(
     from ...optimise.sizing import counterweight as balancing
 
     problem = load_job(job)
-    lengths = [
-        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
-    ]
+    lengths = lengths_of(problem, crank, rod, offset)
     mechanism = problem.mechanism
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
 

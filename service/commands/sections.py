@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..runs.result import json_text
-from ..text.options import length_option
+from ..text.options import Crank, Offset, Rod, lengths_of
 from ..text.screen import console, give, waiting
 
 if TYPE_CHECKING:
@@ -19,9 +19,9 @@ _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
 def sections(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with a table [sections].")],
-    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help='Crank, such as "40 mm".')] = None,
-    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod.")] = None,
-    offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset of the slider line.")] = None,
+    crank: Crank = None,
+    rod: Rod = None,
+    offset: Offset = None,
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:
     """Size crank and rod of one design as rectangular bars of least mass.
@@ -36,9 +36,7 @@ def sections(
 
     problem = load_job(job)
     material, limits = load_sections(job)
-    lengths = [
-        length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))
-    ]
+    lengths = lengths_of(problem, crank, rod, offset)
     linkage = Linkage(lengths[0], lengths[1], lengths[2], problem.mechanism.branch)
     with waiting("sizing the sections"):
         found = size_sections(problem.mechanism, linkage, material, limits)

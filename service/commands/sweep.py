@@ -12,7 +12,7 @@ from ...model.errors import InputError
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from ..text.options import Units, length_option, value_option
+from ..text.options import Crank, Offset, Rod, Units, length_option, value_option
 from ..text.screen import give, say
 from ..topics.sweep.text import show
 
@@ -34,9 +34,9 @@ def sweep(
     of: Annotated[
         list[str], typer.Option(metavar="QUANTITY", help="What to compute, such as peak_torque. Repeatable.")
     ],
-    crank: Annotated[str | None, typer.Option(metavar="LENGTH", help="Crank, unless fixed by JOB or swept.")] = None,
-    rod: Annotated[str | None, typer.Option(metavar="LENGTH", help="Connecting rod, likewise.")] = None,
-    offset: Annotated[str | None, typer.Option(metavar="LENGTH", help="Offset, likewise.")] = None,
+    crank: Crank = None,
+    rod: Rod = None,
+    offset: Offset = None,
     figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the sweep into sweep.png there.")] = None,
     units: Units = "metric",
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,

@@ -25,6 +25,21 @@ Units = Annotated[
 ]
 
 
+Crank = Annotated[
+    str | None, typer.Option("--crank", metavar="LENGTH", help='Crank, such as "40 mm", unless JOB fixes it.')
+]
+Rod = Annotated[str | None, typer.Option("--rod", metavar="LENGTH", help="Connecting rod, likewise.")]
+Offset = Annotated[
+    str | None,
+    typer.Option("--offset", metavar="LENGTH", help='Offset of the slider line, such as "-20 mm", likewise.'),
+]
+
+
+def lengths_of(problem: Problem | None, crank: str | None, rod: str | None, offset: str | None) -> list[float]:
+    """Return crank, rod and offset, m, each as `length_option` gives it."""
+    return [length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))]
+
+
 def length_option(name: str, text: str | None, problem: Problem | None) -> float:
     """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
     from ...objectives.kinds import LENGTH
