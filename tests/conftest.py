@@ -1,5 +1,7 @@
 """Set up once for all tests: fixed random cases."""
 
+import gc
+
 import pytest
 from hypothesis import settings
 
@@ -9,3 +11,8 @@ settings.register_profile("fixed", deadline=None, derandomize=True)
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("fixed")
+
+
+def pytest_collection_finish() -> None:
+    """Keep what was imported and collected, some 10^5 objects, out of every later search for garbage."""
+    gc.freeze()
