@@ -1,7 +1,8 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
-They are the test files that differ, and those named after a source file that differs, anywhere under the mirror of its
-folder at the top: `optimise/solve.py` has `tests/optimise/**/test_solve*.py`. A package goes by the name of its folder.
+They are the test files that differ, and those named after a source file that differs or after the folder that it is in,
+wherever they are in the mirror of its folder at the top: `service/topics/clearance/text.py` has all `test_text*.py` and
+`test_clearance*.py` under `tests/service/`.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ def belonging(file: Path, root: Path) -> list[Path]:
         return [file] if (root / file).is_file() else []
     if file.parts[0] not in SOURCES:
         return []
-    name = file.parent.name if file.name == "__init__.py" else file.stem
-    return sorted(found.relative_to(root) for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
+    names = {file.stem, *file.parts[1:-1][-1:]} - {"__init__"}
+    tests = (found for name in names for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
+    return sorted({found.relative_to(root) for found in tests})
 
 
 def changed(branch: str, root: Path) -> list[Path]:

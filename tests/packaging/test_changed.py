@@ -36,7 +36,7 @@ def git(folder: Path, *arguments: str) -> None:
     [
         ("optimise/solve.py", ["tests/optimise/test_solve.py", "tests/optimise/test_solve_robust.py"]),
         ("optimise/job/__init__.py", ["tests/optimise/test_job_box.py"]),
-        ("optimise/job/text.py", ["tests/optimise/job/test_text.py"]),
+        ("optimise/job/text.py", ["tests/optimise/job/test_text.py", "tests/optimise/test_job_box.py"]),
         ("tests/optimise/test_other.py", ["tests/optimise/test_other.py"]),
         ("tests/optimise/test_deleted.py", []),
         ("tests/optimise/problems.py", []),
@@ -63,7 +63,7 @@ def test_what_is_committed_edited_or_new_since_main_was_left_differs(
     }
     main("main")
     assert capsys.readouterr().out.splitlines() == [
-        *("tests/optimise/job/test_text.py", "tests/optimise/test_new.py"),
+        *("tests/optimise/job/test_text.py", "tests/optimise/test_job_box.py", "tests/optimise/test_new.py"),
         *("tests/optimise/test_solve.py", "tests/optimise/test_solve_robust.py"),
     ]
 
