@@ -2,12 +2,17 @@
 
 const QUALITY = ["status", "residual"];
 
-/** Return [{title, columns}]: every column of a design but those of constraints and of the optimum, by the groups that the service gives. */
+/**
+ * Return [{title, columns}]: every column of a design but those of constraints and of the optimum, by the groups that the service gives.
+ * @param {Api.Column[]} columns
+ */
 export function groupsOf(columns) {
+  /** @type {Map<string, { title: string, columns: Api.Column[] }>} */
   const groups = new Map();
   for (const column of columns.filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key)).sort((a, b) => a.group_place - b.group_place)) {
-    if (!groups.has(column.group)) groups.set(column.group, { title: column.group, columns: [] });
-    groups.get(column.group).columns.push(column);
+    const group = groups.get(column.group) ?? { title: column.group, columns: [] };
+    groups.set(column.group, group);
+    group.columns.push(column);
   }
   return [...groups.values()];
 }

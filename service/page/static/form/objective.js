@@ -1,14 +1,18 @@
 /** What is wanted of a quantity: a check box, and whether to minimise, to maximise, or to come near a value. */
 
 import { h } from "../lib/dom.js";
-import { number, numberInput, unitSelect } from "./controls.js";
+import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { explanation, field } from "./field.js";
-import { idOf } from "./path.js";
-import { convert, join, kindOf, split } from "./units.js";
+import { at, idOf } from "./path.js";
+import { join, kindOf, split } from "./units.js";
 
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
 
-/** Return the field of the objective of a quantity {name, title, unit, sentence}. */
+/**
+ * Return the field of the objective of a quantity {name, title, unit, sentence}.
+ * @param {Form.Whole} form
+ * @param {Api.Quantity} quantity
+ */
 export function objective(form, quantity) {
   const path = ["objectives", quantity.name];
   const given = form.at(path);
@@ -22,11 +26,18 @@ export function objective(form, quantity) {
   const controls = given === undefined ? [] : wanted(form, path, quantity, kind, given);
   const made = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
   made.classList.add("wanted");
-  made.querySelector(".field-label").replaceWith(h("div", { class: "wish" }, box, h("label", { for: box.id }, quantity.title), ask.button));
-  made.querySelector(".field-controls").after(ask.text);
+  made.querySelector(".field-label")?.replaceWith(h("div", { class: "wish" }, box, h("label", { for: box.id }, quantity.title), ask?.button));
+  if (ask) made.querySelector(".field-controls")?.after(ask.text);
   return made;
 }
 
+/**
+ * @param {Form.Whole} form
+ * @param {Form.Path} path
+ * @param {Api.Quantity} quantity
+ * @param {string | null} kind
+ * @param {unknown} given
+ */
 function wanted(form, path, quantity, kind, given) {
   const sense = typeof given === "object" && given !== null ? "target" : String(given).replace("imize", "imise");
   const select = h("select", { id: idOf(path, "s"), "aria-label": `${quantity.title}: what is wanted` }, SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)));
@@ -37,19 +48,19 @@ function wanted(form, path, quantity, kind, given) {
     });
     return [select];
   }
-  const { number: value, unit } = split(given.target === "" ? undefined : given.target, kind);
+  const target = at(given, ["target"]);
+  const { number: value, unit } = split(target === "" ? undefined : target, kind);
   const input = numberInput(idOf(path, "t"), value, `${quantity.title}: value to come near to`);
-  const units = unitSelect(quantity.title, kind, unit, false, idOf(path, "u"));
-  const write = () => form.put(path, { target: (kind ? join(input.value, units.value) : number(input.value)) ?? "" });
+  const units = kind ? unitSelect(quantity.title, kind, unit, false, idOf(path, "u")) : null;
+  const write = () => form.put(path, { target: (units ? join(input.value, units.value) : number(input.value)) ?? "" });
   input.addEventListener("input", write);
   units?.addEventListener("change", () => {
-    input.value = convert(input.value, units.dataset.from, units.value, kind);
-    units.dataset.from = units.value;
+    changeUnit(units, [input], kind);
     write();
   });
   select.addEventListener("change", () => {
     form.put(path, select.value);
     form.redraw();
   });
-  return [select, input, units].filter(Boolean);
+  return units ? [select, input, units] : [select, input];
 }

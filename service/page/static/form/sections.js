@@ -12,7 +12,10 @@ import { speed } from "./speed.js";
 
 const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance"]);
 
-/** Return the sections for a job, ready to be put into the form. */
+/**
+ * Return the sections for a job, ready to be put into the form.
+ * @param {Form.Whole} form
+ */
 export function sections(form) {
   form.fields.length = 0;
   return [
@@ -33,38 +36,60 @@ export function sections(form) {
   ].filter(Boolean);
 }
 
+/**
+ * @param {string} title
+ * @param {...Dom.Child} content
+ */
 function section(title, ...content) {
   const id = `s-${title.toLowerCase().replaceAll(" ", "-")}`;
   return h("section", { class: "panel", "aria-labelledby": id }, h("h2", { id }, title), content);
 }
 
+/** @param {...Dom.Child} content */
 function fields(...content) {
   return h("div", { class: "fields" }, content);
 }
 
+/**
+ * @param {string} title
+ * @param {...Dom.Child} content
+ */
 function more(title, ...content) {
   return h("details", { class: "more" }, h("summary", {}, title), h("div", { class: "fields" }, content));
 }
 
-/** Return the names of the quantities that a part of the form asks for without being told to. */
+/**
+ * Return the names of the quantities that a part of the form asks for without being told to.
+ * @param {Form.Whole} form
+ * @param {string} part
+ */
 function offered(form, part) {
   return [...form.quantities.values()].filter((one) => one.offered.includes(part)).map(({ name }) => name);
 }
 
+/** @param {Form.Whole} form */
 function asked(form) {
   return ["motion", "proportions", "requirement"].flatMap((part) => offered(form, part));
 }
 
+/**
+ * @param {Form.Whole} form
+ * @param {string[]} names
+ */
 function requirements(form, names) {
   return names.map((name) => requirement(form, form.quantity(name)));
 }
 
-/** Return the quantities beside the usual ones that the job has requirements on. */
+/**
+ * Return the quantities beside the usual ones that the job has requirements on.
+ * @param {Form.Whole} form
+ */
 function others(form) {
   const usual = new Set(asked(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));
 }
 
+/** @param {Form.Whole} form */
 function adding(form) {
   const taken = new Set([...asked(form), ...Object.keys(form.at(["constraints"]) ?? {})]);
   const left = form.judging().filter(({ name }) => !taken.has(name));
@@ -78,8 +103,9 @@ function adding(form) {
   return h("p", { class: "row" }, h("label", { for: "add-requirement" }, "Another requirement"), select);
 }
 
+/** @param {Form.Whole} form */
 function masses(form) {
-  const slider = { kind: "mass", label: "slider mass", why: form.schema.property(["mechanism", "slider", "mass"]).description };
+  const slider = { kind: "mass", label: "slider mass", why: form.schema.property(["mechanism", "slider", "mass"])?.description };
   return [
     link(form, ["mechanism", "crank"], "crank"),
     link(form, ["mechanism", "rod"], "rod"),
@@ -89,10 +115,12 @@ function masses(form) {
   ];
 }
 
+/** @param {Form.Whole} form */
 function pins(form) {
   return ["crank_pivot", "crank_pin", "slider_pin"].map((name) => byschema(form, ["friction", name]));
 }
 
+/** @param {Form.Whole} form */
 function wishes(form) {
   const given = Object.keys(form.at(["objectives"]) ?? {});
   const main = new Set([...offered(form, "objective"), ...given]);
@@ -103,7 +131,9 @@ function wishes(form) {
   ];
 }
 
+/** @param {Form.Whole} form */
 function tolerances(form) {
+  /** @param {string} key */
   const dimension = (key) => byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
@@ -111,6 +141,7 @@ function tolerances(form) {
   ];
 }
 
+/** @param {Form.Whole} form */
 function robust(form) {
   const on = form.at(["robust"]) !== undefined;
   const select = choice(
@@ -121,7 +152,10 @@ function robust(form) {
   return [select, on ? byschema(form, ["robust"], { label: "robust" }) : null];
 }
 
-/** Return which parts of the job have no fields. */
+/**
+ * Return which parts of the job have no fields.
+ * @param {Form.Whole} form
+ */
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
   const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));

@@ -3,11 +3,16 @@
 import { get } from "../lib/api.js";
 import { system } from "../lib/numbers.js";
 
+/** @type {Record<string, Record<string, number>>} */
 let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
+/** @type {Record<string, Record<string, string>>} */
 let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
-/** Make ready to offer units: the service has the table of kinds. */
+/**
+ * Make ready to offer units: the service has the table of kinds.
+ * @param {AbortSignal} signal
+ */
 export async function readyKinds(signal) {
   const { kinds: known } = await get("units", {}, signal);
   KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
@@ -19,41 +24,65 @@ export function kinds() {
   return Object.keys(KINDS);
 }
 
-/** Return the kind of value that a unit measures, "length" for "mm"; null for none. */
+/**
+ * Return the kind of value that a unit measures, "length" for "mm"; null for none.
+ * @param {string} unit
+ */
 export function kindOf(unit) {
   return Object.keys(KINDS).find((kind) => unit in KINDS[kind]) ?? null;
 }
 
-/** Return the units of a kind, smallest system first; percent: with the share of a dimension. */
+/**
+ * Return the units of a kind, smallest system first; percent: with the share of a dimension.
+ * @param {string} kind
+ * @param {{ percent?: boolean }} given
+ */
 export function unitsOf(kind, { percent = false } = {}) {
   return [...Object.keys(KINDS[kind] ?? {}), ...(percent ? ["%"] : [])];
 }
 
-/** Return the unit that an empty field of a kind begins with, by what the reader prefers. */
+/**
+ * Return the unit that an empty field of a kind begins with, by what the reader prefers.
+ * @param {string} kind
+ */
 export function usual(kind) {
   return USUAL[system()][kind] ?? USUAL.si[kind] ?? Object.keys(KINDS[kind] ?? { "": 1 })[0];
 }
 
-/** Return {number, unit} of a value of a job, both text: what is no value with a unit stays as it is, as the number. */
+/**
+ * Return {number, unit} of a value of a job, both text: what is no value with a unit stays as it is, as the number.
+ * @param {unknown} value
+ * @param {string | null | undefined} kind
+ */
 export function split(value, kind) {
   if (value === undefined || value === null) return { number: "", unit: kind ? usual(kind) : "" };
-  if (typeof value === "number") return { number: String(value), unit: Object.keys(KINDS[kind] ?? { "": 1 })[0] };
+  if (typeof value === "number") return { number: String(value), unit: Object.keys(KINDS[kind ?? ""] ?? { "": 1 })[0] };
   const match = NUMBER.exec(String(value));
   const known = match && (match[2] === "%" || (kind && match[2].trim() in KINDS[kind]));
   if (known) return { number: match[1], unit: match[2].trim() };
   return { number: String(value), unit: "" };
 }
 
-/** Return the value of a job for a number and a unit as typed; undefined for an empty number. */
+/**
+ * Return the value of a job for a number and a unit as typed; undefined for an empty number.
+ * @param {string} number
+ * @param {string} unit
+ */
 export function join(number, unit) {
-  const typed = number.trim().replace("−", "-");
+  const typed = number.trim().replaceAll("−", "-");
   if (typed === "") return undefined;
   return unit ? `${typed} ${unit}` : typed;
 }
 
-/** Return a number as typed in another unit of its kind, to ten digits; what is no number, or a share, stays. */
+/**
+ * Return a number as typed in another unit of its kind, to ten digits; what is no number, or a share, stays.
+ * @param {string} number
+ * @param {string} from
+ * @param {string} to
+ * @param {string | null | undefined} kind
+ */
 export function convert(number, from, to, kind) {
-  const factors = KINDS[kind] ?? {};
+  const factors = KINDS[kind ?? ""] ?? {};
   if (!(from in factors) || !(to in factors) || number.trim() === "" || !Number.isFinite(Number(number))) return number;
   return String(Number(((Number(number) * factors[from]) / factors[to]).toPrecision(10)));
 }
