@@ -2,14 +2,14 @@
 # Without node they are left out, and make says so.
 .PHONY: lint-javascript test-javascript clean-javascript
 lint: lint-javascript
-test: test-javascript
+test check: test-javascript
 clean: clean-javascript
 
 JAVASCRIPT := .javascript
 IN_NODE := $(JAVASCRIPT)/node_modules/.bin
 
 ifneq ($(shell sh -c 'command -v npm'),)
-lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed
+lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed-test
 	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 $(JAVASCRIPT) service tests
 	$(BIN)/python $(JAVASCRIPT)/describe.py >$(JAVASCRIPT)/openapi.json
 	$(IN_NODE)/openapi-typescript $(JAVASCRIPT)/openapi.json --output $(JAVASCRIPT)/openapi.d.ts >/dev/null

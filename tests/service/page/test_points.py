@@ -13,9 +13,8 @@ DRAWN = """async (places) => {
   const { points } = await import(new URL("page/charts/points.js", document.baseURI));
   const column = { title: "peak torque", unit: "N m" };
   const picture = points([{ points: places }], column, column, "a front");
-  const read = (one) => Number(one.textContent.replace("\\u2212", "-"));
-  const texts = [...picture.querySelectorAll("text:not(.title)")].map(read);
-  return [picture.querySelectorAll("circle").length, texts];
+  const ticks = [...picture.querySelectorAll("text:not(.title)")].map((one) => one.textContent);
+  return [picture.querySelectorAll("circle").length, ticks];
 }"""
 
 

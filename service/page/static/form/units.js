@@ -16,7 +16,7 @@ const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 export async function readyKinds(signal) {
   const { kinds: known } = await get("units", {}, signal);
   KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
-  USUAL = Object.fromEntries(["si", "inch"].map((one) => [one, Object.fromEntries(known.map((kind) => [kind.name, kind[one]]))]));
+  USUAL = { si: Object.fromEntries(known.map(({ name, si }) => [name, si])), inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])) };
 }
 
 /** Return the names of all kinds. */
