@@ -1,7 +1,8 @@
 """The modules of the page as one script, and its styles as one: a browser asks for two files instead of seventy.
 
 A first view of 10,000 designs is seen in four fifths of the time. The modules stay as they are, and are tried as they
-are served. They use a small part of the language's modules, and anything else is refused when the service starts:
+are served. Comments that explain or type a function are not sent: they are a fifth of the text. The modules use a small
+part of the language's modules, and anything else is refused when the service starts:
 `import { a, b as c } from "./file.js";`, `import("./file.js")`, and `export` before a function, class or const.
 """
 
@@ -15,6 +16,7 @@ _IMPORT = re.compile(r'^import \{([^}]*)\} from "([^"]+)";', re.MULTILINE)
 _LATER = re.compile(r'\bimport\("([^"]+)"\)')
 _EXPORT = re.compile(r"^export ((?:async )?function\*? |class |const )(\w+)", re.MULTILINE)
 _LEFT = re.compile(r"^(?:import|export)\b.*|\bimport\(.*", re.MULTILINE)
+_EXPLAINED = re.compile(r"^[ \t]*/\*\*.*?\*/\n", re.MULTILINE | re.DOTALL)
 _TAKE = """const made = {};
 const make = {};
 function take(name) {
@@ -65,7 +67,8 @@ def _as_function(name: str, sources: Mapping[str, str]) -> tuple[str, list[str],
         later.append(beside(found[1]))
         return f'Promise.resolve().then(() => take("{later[-1]}"))'
 
-    text = _LATER.sub(imported_later, _IMPORT.sub(imported, sources[name]))
+    code = _EXPLAINED.sub("", sources[name])
+    text = _LATER.sub(imported_later, _IMPORT.sub(imported, code))
     exported = [found[2] for found in _EXPORT.finditer(text)]
     text = _EXPORT.sub(r"\1\2", text)
     if strange := _LEFT.search(text):

@@ -16,10 +16,7 @@ let playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 /** @type {number | null} */
 let before = null;
 
-/**
- * A value between those one degree apart; none next to a gap.
- * @type {(values: (number | null)[], degrees: number) => number | null}
- */
+/** A value between those one degree apart; none next to a gap. @type {(values: (number | null)[], degrees: number) => number | null} */
 function between(values, degrees) {
   const place = (degrees / 360) * count;
   const low = Math.floor(place) % count;

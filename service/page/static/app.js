@@ -60,12 +60,7 @@ function markNavigation() {
 function showPreferences() {
   const scheme = localStorage.getItem("scheme") ?? "auto";
   document.documentElement.dataset.scheme = scheme;
-  /**
-   * @param {string} label
-   * @param {[string, string][]} options
-   * @param {string} value
-   * @param {(value: string) => unknown} choose
-   */
+  /** @param {string} label @param {[string, string][]} options @param {string} value @param {(value: string) => unknown} choose */
   const choice = (label, options, value, choose) =>
     h("label", {}, h("span", { class: "hidden" }, label), h("select", { onchange: (event) => choose(event.currentTarget.value) },
       options.map(([key, title]) => h("option", { value: key, selected: key === value }, title))));

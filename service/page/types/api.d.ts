@@ -39,7 +39,8 @@ declare global {
     /** What stands behind the "?" of an address; what is null is left out. */
     type Query = Record<string, string | number | boolean | null | undefined | readonly string[]>;
 
-    type Column = Schemas["ColumnModel"];
+    // A column that the page makes itself has no group.
+    type Column = Omit<Schemas["ColumnModel"], "group" | "group_place"> & Partial<Schemas["ColumnModel"]>;
     type Columns = Schemas["ColumnsModel"];
     type Cycle = Schemas["CycleModel"];
     type Event = Schemas["EventShown"];

@@ -25,6 +25,19 @@ def test_the_script_does_what_the_modules_do(browser: Browser) -> None:
     page.close()
 
 
+def test_what_explains_and_types_a_module_is_not_sent() -> None:
+    explained = """/** Sums. */
+/** @import { Late } from "../views/late.js" */
+/**
+ * Return twice a number.
+ * @param {number} n
+ */
+"""
+    source = "export function twice(n) {\n  /** @type {number} */\n  const two = 2; /** two */\n  return two * n;\n}\n"
+    plain = source.replace("  /** @type {number} */\n", "")
+    assert joined_modules({"app.js": explained + source}, "app.js") == joined_modules({"app.js": plain}, "app.js")
+
+
 @pytest.mark.parametrize(
     ("sources", "said"),
     [

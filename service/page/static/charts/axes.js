@@ -9,8 +9,7 @@ export function wordTicks(words) {
 
 /**
  * Draw axes {at, ticks: [[value, text]], column} around an area.
- * @param {Page.Canvas} context
- * @param {{ x: Page.Axis, y: Page.Axis, area: Page.Room, width: number, height: number, ink: Page.Ink }} given
+ * @param {Page.Canvas} context @param {{ x: Page.Axis, y: Page.Axis, area: Page.Room, width: number, height: number, ink: Page.Ink }} given
  */
 export function drawAxes(context, { x, y, area, width, height, ink }) {
   const [right, bottom] = [width - area.right, height - area.bottom];

@@ -30,8 +30,7 @@ export function tornado(rows, { largest, good, caption, signed = true }) {
 /**
  * Put a histogram into `place`. edges: of the bins; counts: in them; marks: each {value, title}, drawn as lines; axis(value): text
  * of a value; label: for screen readers. It fills the width of its place; returns {close()}.
- * @param {HTMLElement} place
- * @param {{ edges: number[], counts: number[], marks: { value: number, title: string }[], label: string }} given
+ * @param {HTMLElement} place @param {{ edges: number[], counts: number[], marks: { value: number, title: string }[], label: string }} given
  */
 export function histogram(place, { edges, counts, marks, label }) {
   const picture = svg("svg", { class: "chart histogram", role: "img", "aria-label": label });

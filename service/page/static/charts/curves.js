@@ -22,8 +22,7 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
  * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
  * - show(series, panels): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
  *   panels: each {key, title, unit}, a curve of the API. - turn({angle, settled}). - close().
- * @param {HTMLElement} place
- * @param {(angle: number, taken: boolean) => void} turned
+ * @param {HTMLElement} place @param {(angle: number, taken: boolean) => void} turned
  */
 export function curveCharts(place, turned) {
   const grid = h("div", { class: "curves" });
@@ -63,10 +62,7 @@ export function curveCharts(place, turned) {
     later = setTimeout(() => charts.forEach(drawn), SOON);
   }
 
-  /**
-   * Draw a chart that has changed.
-   * @param {ReturnType<typeof chart>} one
-   */
+  /** Draw a chart that has changed. @param {ReturnType<typeof chart>} one */
   function drawn(one) {
     one.stale?.();
     if (one.stale) one.turn(at, true);
@@ -92,10 +88,7 @@ export function curveCharts(place, turned) {
   const watcher = new ResizeObserver(() => charts.length && Math.round(charts[0].plot.clientWidth) !== width && arrange());
   watcher.observe(grid);
   return {
-    /**
-     * @param {Shown[]} series
-     * @param {Panel[]} panels
-     */
+    /** @param {Shown[]} series @param {Panel[]} panels */
     show(series, panels) {
       shown = { series, panels };
       arrange();
@@ -108,10 +101,7 @@ export function curveCharts(place, turned) {
   };
 }
 
-/**
- * @param {Panel} panel
- * @param {(angle: number, taken: boolean) => void} turned
- */
+/** @param {Panel} panel @param {(angle: number, taken: boolean) => void} turned */
 function chart(panel, turned) {
   const readout = h("span", { class: "readout number" });
   const title = h("span", { class: "title" });
@@ -151,11 +141,7 @@ function chart(panel, turned) {
     plot,
     /** @type {(() => void) | null} */
     stale: null, // draws what has changed
-    /**
-     * @param {Panel} given
-     * @param {Shown[]} all
-     * @param {number} width
-     */
+    /** @param {Panel} given @param {Shown[]} all @param {number} width */
     draw({ key, title: words, unit }, all, width) {
       series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)) }));
       title.textContent = `${words} (${unitOf(unit)})`;
@@ -169,10 +155,7 @@ function chart(panel, turned) {
       fill(picture, axes(across, y, width), centreLines(across, series[0]), series.map((one) => line(one, across, y)).reverse(), series[0] && peaks(series[0], across, y));
       fill(plot, picture, cursor, dots.toReversed());
     },
-    /**
-     * @param {number} angle
-     * @param {boolean} read
-     */
+    /** @param {number} angle @param {boolean} read */
     turn(angle, read) {
       if (!x) return;
       const across = x.at(angle).toFixed(1);
@@ -184,11 +167,7 @@ function chart(panel, turned) {
   };
 }
 
-/**
- * @param {Page.Scale} x
- * @param {Page.Scale} y
- * @param {number} width
- */
+/** @param {Page.Scale} x @param {Page.Scale} y @param {number} width */
 function axes(x, y, width) {
   return svg(
     "g",
@@ -201,10 +180,7 @@ function axes(x, y, width) {
   );
 }
 
-/**
- * @param {Page.Scale} x
- * @param {Shown | undefined} first
- */
+/** @param {Page.Scale} x @param {Shown | undefined} first */
 function centreLines(x, first) {
   return (first?.centres ?? []).map((angle, n) =>
     svg("g", { class: "centre" },
@@ -212,11 +188,7 @@ function centreLines(x, first) {
       svg("text", { x: x.at(angle), y: ROOM.top - 4, "text-anchor": angle < 20 ? "start" : angle > 340 ? "end" : "middle" }, n ? "outer" : "inner")));
 }
 
-/**
- * @param {Drawn} given
- * @param {Page.Scale} x
- * @param {Page.Scale} y
- */
+/** @param {Drawn} given @param {Page.Scale} x @param {Page.Scale} y */
 function line({ values, series }, x, y) {
   let path = "";
   let pen = "M";
@@ -233,11 +205,7 @@ function line({ values, series }, x, y) {
   return svg("path", { class: "curve", "data-series": series, d: path });
 }
 
-/**
- * @param {Drawn} given
- * @param {Page.Scale} x
- * @param {Page.Scale} y
- */
+/** @param {Drawn} given @param {Page.Scale} x @param {Page.Scale} y */
 function peaks({ values, series }, x, y) {
   const found = extremes(values);
   if (!found || found.low.value === found.high.value) return null;
@@ -252,10 +220,7 @@ function peaks({ values, series }, x, y) {
 
 /**
  * Return a sentence for a curve: its least and greatest value, and where.
- * @param {string} words
- * @param {string} unit
- * @param {Shown[]} series
- * @param {string} key
+ * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key
  */
 function summary(words, unit, series, key) {
   const each = series.map(({ name, curves }) => {

@@ -1,18 +1,13 @@
 /** Curves over a turn of the crank, as the API gives them: values at evenly spaced angles from 0 deg. */
 
-/**
- * Return an angle in [0, 360).
- * @param {number} angle
- */
+/** Return an angle in [0, 360). @param {number} angle */
 export function turned(angle) {
   return ((angle % 360) + 360) % 360;
 }
 
 /**
  * Return the value of a curve at a crank angle, deg, straight between its points; null where it has none.
- * @param {readonly (number | null)[]} values
- * @param {number} angle
- * @returns {number | null}
+ * @param {readonly (number | null)[]} values @param {number} angle @returns {number | null}
  */
 export function between(values, angle) {
   const place = (turned(angle) / 360) * values.length;
@@ -22,10 +17,7 @@ export function between(values, angle) {
   return from + (place - first) * (to - from);
 }
 
-/**
- * Return {low, high} of a curve, each with its {angle, value}; null for a curve without values.
- * @param {readonly (number | null)[]} values
- */
+/** Return {low, high} of a curve, each with its {angle, value}; null for a curve without values. @param {readonly (number | null)[]} values */
 export function extremes(values) {
   let [low, high] = [-1, -1]; // where they are
   let [least, most] = [Infinity, -Infinity];

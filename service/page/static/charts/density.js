@@ -5,12 +5,7 @@
  * line, -1 where it has none there. A line can be taken away again, so that a change costs only the lines that it is about.
  */
 export class Density {
-  /**
-   * @param {number} width
-   * @param {number} height
-   * @param {number[]} across
-   * @param {Int16Array} heights
-   */
+  /** @param {number} width @param {number} height @param {number[]} across @param {Int16Array} heights */
   constructor(width, height, across, heights) {
     this.width = width;
     this.height = height;
@@ -21,11 +16,7 @@ export class Density {
     this.pixels = new Uint32Array(this.image.data.buffer);
   }
 
-  /**
-   * Add a line (by 1) or take it away (by -1).
-   * @param {number} line
-   * @param {1 | -1} by
-   */
+  /** Add a line (by 1) or take it away (by -1). @param {number} line @param {1 | -1} by */
   add(line, by) {
     const { across, heights, counts, width } = this;
     const axes = across.length;
@@ -59,9 +50,7 @@ export class Density {
 
   /**
    * Draw on a canvas in a colour [r, g, b]; `strength` is how much of it one line has.
-   * @param {Page.Canvas} context
-   * @param {number[]} colour
-   * @param {number} strength
+   * @param {Page.Canvas} context @param {number[]} colour @param {number} strength
    */
   paint(context, [red, green, blue], strength) {
     const { counts, pixels } = this;

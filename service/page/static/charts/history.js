@@ -10,9 +10,7 @@ const AREA = { left: 64, right: 14, top: 12, bottom: 40 };
 
 /**
  * Return a picture of points [[round, value], ...] under a heading.
- * @param {readonly [number, number | null][]} points
- * @param {string} heading
- * @param {number} rounds
+ * @param {readonly [number, number | null][]} points @param {string} heading @param {number} rounds
  */
 export function history(points, heading, rounds) {
   const up = range(points.map(([, value]) => value), 0.08);

@@ -4,9 +4,7 @@ const MOST = 32; // corners: a link stays short
 
 /**
  * Return whether a place is inside a closed line [[x, y], ...]: a ray from it crosses the line an odd number of times.
- * @param {readonly Page.Point[]} line
- * @param {number} x
- * @param {number} y
+ * @param {readonly Page.Point[]} line @param {number} x @param {number} y
  */
 export function inside(line, x, y) {
   let odd = false;
@@ -17,21 +15,13 @@ export function inside(line, x, y) {
   return odd;
 }
 
-/**
- * Return a line with at most 32 of its corners, evenly spread.
- * @param {readonly Page.Point[]} line
- */
+/** Return a line with at most 32 of its corners, evenly spread. @param {readonly Page.Point[]} line */
 export function thinned(line) {
   const step = Math.max(1, line.length / MOST);
   return Array.from({ length: Math.min(MOST, line.length) }, (_, index) => line[Math.floor(index * step)]);
 }
 
-/**
- * Draw a closed line of pixels on canvas.
- * @param {Page.Canvas} context
- * @param {readonly Page.Point[]} line
- * @param {Page.Ink} ink
- */
+/** Draw a closed line of pixels on canvas. @param {Page.Canvas} context @param {readonly Page.Point[]} line @param {Page.Ink} ink */
 export function drawLasso(context, line, ink) {
   context.beginPath();
   line.forEach(([x, y], index) => (index ? context.lineTo(x, y) : context.moveTo(x, y)));

@@ -4,8 +4,7 @@ import { h } from "../lib/dom.js";
 
 /**
  * Return layers over each other: {place, resize(width, height), contexts}; lengths are pixels of the page.
- * @param {number} count
- * @param {string} label
+ * @param {number} count @param {string} label
  */
 export function layers(count, label) {
   const canvases = Array.from({ length: count }, () => h("canvas", { "aria-hidden": "true" }));
@@ -18,9 +17,7 @@ export function layers(count, label) {
     top: canvases[count - 1],
     /**
      * Give all layers a size and clear them. plain: the layers that count pixels of the page, not of the screen.
-     * @param {number} width
-     * @param {number} height
-     * @param {readonly number[]} plain
+     * @param {number} width @param {number} height @param {readonly number[]} plain
      */
     resize(width, height, plain = []) {
       place.style.height = `${height}px`;
@@ -31,18 +28,11 @@ export function layers(count, label) {
         contexts[index].setTransform(factor, 0, 0, factor, 0, 0);
       });
     },
-    /**
-     * Show a layer, or hide it.
-     * @param {number} index
-     * @param {boolean} shown
-     */
+    /** Show a layer, or hide it. @param {number} index @param {boolean} shown */
     show(index, shown) {
       canvases[index].style.visibility = shown ? "visible" : "hidden";
     },
-    /**
-     * Clear a layer.
-     * @param {number} index
-     */
+    /** Clear a layer. @param {number} index */
     clear(index) {
       const context = contexts[index];
       context.save();
@@ -56,11 +46,7 @@ export function layers(count, label) {
 /**
  * Draw squares of 3 pixels at places, in colours[of[i]], those that `mask` has; all of them without one. They take the place of
  * everything on the layer, whose pixels are those of the page.
- * @param {Page.Canvas} context
- * @param {ArrayLike<number>} across
- * @param {ArrayLike<number>} up
- * @param {Uint8Array | null} mask
- * @param {Uint8Array} of
+ * @param {Page.Canvas} context @param {ArrayLike<number>} across @param {ArrayLike<number>} up @param {Uint8Array | null} mask @param {Uint8Array} of
  * @param {string[]} colours
  */
 export function squares(context, across, up, mask, of, colours) {
@@ -81,22 +67,14 @@ export function squares(context, across, up, mask, of, colours) {
   context.putImageData(image, 0, 0);
 }
 
-/**
- * Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp.
- * @param {string} colour
- * @returns {number[]}
- */
+/** Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp. @param {string} colour @returns {number[]} */
 export function rgb(colour) {
   if (colour.startsWith("rgb")) return (colour.match(/\d+/g) ?? []).map(Number);
   const digits = parseInt(colour.slice(1), 16);
   return [digits >> 16, (digits >> 8) & 255, digits & 255];
 }
 
-/**
- * Return `count` colours from low to high: from one to another colour of the style, through a third.
- * @param {Page.Ink} ink
- * @param {number} count
- */
+/** Return `count` colours from low to high: from one to another colour of the style, through a third. @param {Page.Ink} ink @param {number} count */
 export function ramp(ink, count) {
   const stops = [rgb(ink["series-1"]), rgb(ink["series-4"]), rgb(ink["series-2"])];
   return Array.from({ length: count }, (_, index) => {
@@ -108,11 +86,7 @@ export function ramp(ink, count) {
   });
 }
 
-/**
- * Return the colours of words: those of the series, again from the first after the last.
- * @param {Page.Ink} ink
- * @param {number} count
- */
+/** Return the colours of words: those of the series, again from the first after the last. @param {Page.Ink} ink @param {number} count */
 export function palette(ink, count) {
   return Array.from({ length: count }, (_, index) => ink[`series-${1 + (index % 6)}`]);
 }

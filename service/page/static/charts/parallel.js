@@ -82,13 +82,7 @@ export function parallel(chart) {
     view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
   }
 
-  /**
-   * @param {Page.Canvas} context
-   * @param {(row: number) => boolean} wanted
-   * @param {string} colour
-   * @param {number} width
-   * @param {number} alpha
-   */
+  /** @param {Page.Canvas} context @param {(row: number) => boolean} wanted @param {string} colour @param {number} width @param {number} alpha */
   function lines(context, wanted, colour, width, alpha = 1) {
     const { axes, across, heights } = view;
     context.strokeStyle = colour;
@@ -161,11 +155,7 @@ export function parallel(chart) {
     }
   }
 
-  /**
-   * @param {Page.Canvas} context
-   * @param {number} axis
-   * @param {Page.Limit | undefined} limit
-   */
+  /** @param {Page.Canvas} context @param {number} axis @param {Page.Limit | undefined} limit */
   function drawLimit(context, axis, limit) {
     if (!limit) return;
     const { ink, across } = view;
@@ -179,28 +169,16 @@ export function parallel(chart) {
     }
   }
 
-  /**
-   * Return the pixels [top, bottom] that a limit lets through.
-   * @param {number} axis
-   * @param {Page.Limit} limit
-   * @returns {number[][]}
-   */
+  /** Return the pixels [top, bottom] that a limit lets through. @param {number} axis @param {Page.Limit} limit @returns {number[][]} */
   function spans(axis, limit) {
     const { at, low, high } = view.scales[axis];
-    /**
-     * @param {number} a
-     * @param {number} b
-     * @returns {number[]}
-     */
+    /** @param {number} a @param {number} b @returns {number[]} */
     const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
     if (limit.words) {
       const words = chart.data.words(view.axes[axis].key) ?? [];
       return limit.words.filter((word) => words.includes(word)).map((word) => [at(words.indexOf(word)) - 9, at(words.indexOf(word)) + 9]);
     }
-    /**
-     * @param {number | null} value
-     * @param {number} end
-     */
+    /** @param {number | null} value @param {number} end */
     const inside = (value, end) => at(Math.min(high, Math.max(low, value ?? end)));
     return [sorted(inside(limit.low, low), inside(limit.high, high))];
   }
@@ -274,10 +252,7 @@ export function parallel(chart) {
 
   return {
     place,
-    /**
-     * Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks".
-     * @param {"all" | "chosen" | "marks"} what
-     */
+    /** Draw: "all" after a change of axes, size or colours; "chosen" after one of limits; "marks". @param {"all" | "chosen" | "marks"} what */
     draw(what) {
       if (what === "all" || !view) {
         lay();
@@ -289,13 +264,7 @@ export function parallel(chart) {
   };
 }
 
-/**
- * @param {Page.Canvas} context
- * @param {number} row
- * @param {number} axes
- * @param {number[]} across
- * @param {Int16Array} heights
- */
+/** @param {Page.Canvas} context @param {number} row @param {number} axes @param {number[]} across @param {Int16Array} heights */
 function line(context, row, axes, across, heights) {
   context.beginPath();
   let down = false;
@@ -309,19 +278,12 @@ function line(context, row, axes, across, heights) {
   context.stroke();
 }
 
-/**
- * Return how much colour one of so many lines has.
- * @param {number} count
- */
+/** Return how much colour one of so many lines has. @param {number} count */
 function strength(count) {
   return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
 }
 
-/**
- * @param {Page.Range} given
- * @param {string} unit
- * @returns {[number, string][]}
- */
+/** @param {Page.Range} given @param {string} unit @returns {[number, string][]} */
 function ticks({ low, high }, unit) {
   const shown = scale(inShown(low, unit), inShown(high, unit), 0, 1, 4);
   const factor = inShown(1, unit);

@@ -17,20 +17,12 @@ const SHAPES = [
 
 /**
  * Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape.
- * @param {{ points: Api.Row[string][][], name?: string }[]} series
- * @param {Page.Heading} x
- * @param {Page.Heading} y
- * @param {string} label
+ * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
  */
 export function points(series, x, y, label) {
   const drawn = series.map((one) => one.points.filter(isPoint));
   const places = drawn.flat();
-  /**
-   * @param {0 | 1} index
-   * @param {Page.Heading} column
-   * @param {number} start
-   * @param {number} end
-   */
+  /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
   const axis = (index, column, start, end) => {
     const values = places.map((point) => inShown(point[index], column.unit));
     const { low, high } = range(values);
@@ -54,10 +46,7 @@ export function isPoint(point) {
   return point.every(Number.isFinite);
 }
 
-/**
- * Return the sign of a series for a legend.
- * @param {number} index
- */
+/** Return the sign of a series for a legend. @param {number} index */
 export function sign(index) {
   return svg("svg", { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" }, svg("g", { class: `series-${1 + (index % 6)}` }, SHAPES[index % SHAPES.length](6, 6)));
 }

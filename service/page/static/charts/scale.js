@@ -4,12 +4,7 @@ import { isConstant } from "../lib/constant.js";
 
 /**
  * Return {at(value), value(pixel), ticks, text(tick)} for values from `low` to `high` on pixels from `start` to `end`.
- * @param {number} low
- * @param {number} high
- * @param {number} start
- * @param {number} end
- * @param {number} count
- * @returns {Page.Scale}
+ * @param {number} low @param {number} high @param {number} start @param {number} end @param {number} count @returns {Page.Scale}
  */
 export function scale(low, high, start, end, count = 5) {
   if (isConstant(low, high)) {
@@ -31,11 +26,7 @@ export function scale(low, high, start, end, count = 5) {
   };
 }
 
-/**
- * Return a tick as text, to the digit of a power of ten.
- * @param {number} tick
- * @param {number} power
- */
+/** Return a tick as text, to the digit of a power of ten. @param {number} tick @param {number} power */
 function tickText(tick, power) {
   const size = Math.abs(tick);
   const text = size >= 1e5 ? tick.toExponential(Math.max(0, Math.floor(Math.log10(size)) - power)) : tick.toFixed(Math.max(0, -power));
@@ -44,9 +35,7 @@ function tickText(tick, power) {
 
 /**
  * Return {low, high} of values, those that are no numbers left out, with `room` of the range on both sides.
- * @param {Iterable<Api.Row[string]>} values
- * @param {number} room
- * @returns {Page.Range}
+ * @param {Iterable<Api.Row[string]>} values @param {number} room @returns {Page.Range}
  */
 export function range(values, room = 0.04) {
   let low = Infinity;
@@ -61,20 +50,13 @@ export function range(values, room = 0.04) {
   return { low: low - more, high: high + more };
 }
 
-/**
- * Return 1, 2 or 5 times a power of ten, at least `step`.
- * @param {number} step
- */
+/** Return 1, 2 or 5 times a power of ten, at least `step`. @param {number} step */
 function roundStep(step) {
   const power = 10 ** Math.floor(Math.log10(step));
   return power * ([1, 2, 5].find((factor) => factor * power >= step * (1 - 1e-9)) ?? 10);
 }
 
-/**
- * Return the colours of the page's style, as canvas needs them.
- * @param {Element} element
- * @returns {Page.Ink}
- */
+/** Return the colours of the page's style, as canvas needs them. @param {Element} element @returns {Page.Ink} */
 export function colours(element = document.documentElement) {
   const style = getComputedStyle(element);
   return new Proxy({}, { get: (_, name) => style.getPropertyValue(`--${String(name)}`).trim() });

@@ -66,13 +66,7 @@ export function scatter(chart) {
     if (!many) for (let row = 0; row < data.count; row += 1) dot(context, row);
   }
 
-  /**
-   * @param {string} key
-   * @param {number} start
-   * @param {number} end
-   * @param {number} count
-   * @returns {Page.Axis}
-   */
+  /** @param {string} key @param {number} start @param {number} end @param {number} count @returns {Page.Axis} */
   function axis(key, start, end, count) {
     const { data } = chart;
     const column = data.column(key);
@@ -100,10 +94,7 @@ export function scatter(chart) {
     return { of, colours: ramp(ink, SHADES) };
   }
 
-  /**
-   * @param {Page.Canvas} context
-   * @param {number} row
-   */
+  /** @param {Page.Canvas} context @param {number} row */
   function dot(context, row) {
     context.beginPath();
     context.arc(view.across[row], view.up[row], 3.5, 0, 7);
@@ -154,11 +145,7 @@ export function scatter(chart) {
 
   /**
    * Write a name beside a design, unless others are `written` there.
-   * @param {Page.Canvas} context
-   * @param {string} name
-   * @param {number} x
-   * @param {number} y
-   * @param {Page.Ink} ink
+   * @param {Page.Canvas} context @param {string} name @param {number} x @param {number} y @param {Page.Ink} ink
    * @param {{ start: number, end: number, y: number }[]} written
    */
   function write(context, name, x, y, ink, written) {
@@ -183,10 +170,7 @@ export function scatter(chart) {
     return { x: event.clientX - left, y: event.clientY - above };
   }
 
-  /**
-   * Return the design that is pointed at, a chosen one, or null.
-   * @param {{ x: number, y: number }} given
-   */
+  /** Return the design that is pointed at, a chosen one, or null. @param {{ x: number, y: number }} given */
   function under({ x, y }) {
     const { across, up } = view;
     const { mask } = chart.limits;
@@ -241,13 +225,7 @@ export function scatter(chart) {
   top.addEventListener("pointercancel", end);
   top.addEventListener("pointerleave", () => from || chart.point(null));
 
-  /**
-   * @param {string} key
-   * @param {Page.Axis} drawn
-   * @param {number} first
-   * @param {number} second
-   * @returns {Page.Limit}
-   */
+  /** @param {string} key @param {Page.Axis} drawn @param {number} first @param {number} second @returns {Page.Limit} */
   function limitOf(key, drawn, first, second) {
     const [low, high] = [drawn.value(first), drawn.value(second)];
     const words = chart.data.words(key);
@@ -262,28 +240,19 @@ export function scatter(chart) {
 
   return {
     place,
-    /**
-     * Draw: "all" after a change of quantities, size or colours; "chosen" after one of limits; "marks".
-     * @param {"all" | "chosen" | "marks"} what
-     */
+    /** Draw: "all" after a change of quantities, size or colours; "chosen" after one of limits; "marks". @param {"all" | "chosen" | "marks"} what */
     draw(what) {
       if (what === "all" || !view) lay();
       if (what !== "marks") drawChosen();
       if (what !== "chosen" || box || line || chart.limits.lasso) drawOver();
     },
-    /**
-     * Choose what a drag draws: a line by hand, or a box.
-     * @param {boolean} yes
-     */
+    /** Choose what a drag draws: a line by hand, or a box. @param {boolean} yes */
     byHand: (yes) => {
       free = yes;
     },
     /** Return the colours of the legend, low to high. */
     colours: () => view.shades.colours,
-    /**
-     * Return where a design is, in pixels of the page within the place.
-     * @param {number} row
-     */
+    /** Return where a design is, in pixels of the page within the place. @param {number} row */
     where: (row) => (view ? { x: view.across[row], y: view.up[row] } : null),
   };
 }

@@ -9,8 +9,7 @@ const HEIGHT = 48;
 
 /**
  * Return a picture of points [[x, y], ...] without axes; of one objective, of its values in order.
- * @param {Api.Row[string][][]} points
- * @param {string} label
+ * @param {Api.Row[string][][]} points @param {string} label
  */
 export function thumbnail(points, label) {
   const places = points.map((point, index) => (point.length > 1 ? point : [index, point[0]])).filter(isPoint);

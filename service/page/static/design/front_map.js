@@ -10,18 +10,14 @@ const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
 
 /**
  * Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null.
- * @param {HTMLElement} place
- * @param {{ objectives: Api.Objective[], front: Api.Row[] }} given
+ * @param {HTMLElement} place @param {{ objectives: Api.Objective[], front: Api.Row[] }} given
  */
 export function frontMap(place, { objectives, front }) {
   // The front is a picture of its own, so that thousands of points are not painted again as one moves.
   const [cloud, moving] = ["", "moving"].map((kind) => svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }));
   const picture = h("div", { class: "front-map", role: "img" }, cloud, moving);
   const chosen = [0, Math.min(1, objectives.length - 1)];
-  /**
-   * @param {number} n
-   * @param {string} label
-   */
+  /** @param {number} n @param {string} label */
   const choice = (n, label) => h("label", {}, h("span", { class: "quiet" }, `${label} `), h("select", { onchange: (event) => { chosen[n] = Number(event.currentTarget.value); arrange(); } },
     objectives.map((objective, at) => h("option", { value: at, selected: at === chosen[n] }, `${objective.title} (${sense(objective)})`))));
   /** @type {Page.Scale} */
@@ -32,11 +28,7 @@ export function frontMap(place, { objectives, front }) {
   let shown = [null, null];
   fill(place, h("div", { class: "axes-choice" }, choice(0, "Across"), choice(1, "Up")), picture);
 
-  /**
-   * @param {Api.Row | null} row
-   * @param {Api.Objective} objective
-   * @returns {number}
-   */
+  /** @param {Api.Row | null} row @param {Api.Objective} objective @returns {number} */
   const value = (row, objective) => {
     const cell = row?.[objective.column];
     return typeof cell === "number" ? inShown(cell, objective.unit) : NaN;
@@ -71,10 +63,7 @@ export function frontMap(place, { objectives, front }) {
   }
 
   return {
-    /**
-     * @param {Api.Row} row
-     * @param {Api.Row | null} changed
-     */
+    /** @param {Api.Row} row @param {Api.Row | null} changed */
     show(row, changed) {
       shown = [row, changed];
       const inside = x && (!changed || [x, y].every((axis, n) => { const one = value(changed, objectives[chosen[n]]); return one >= axis.low && one <= axis.high; }));

@@ -5,10 +5,7 @@ import { withResultants } from "./panels.js";
 
 /**
  * Return a design as the view shows it: {number, name, series, row, columns, curves, curveColumns, centres}. series: 1, 2, 3.
- * @param {string} job
- * @param {number} number
- * @param {number} series
- * @param {AbortSignal} signal
+ * @param {string} job @param {number} number @param {number} series @param {AbortSignal} signal
  * @returns {Promise<Page.Machine & { number: number, columns: Api.Column[] }>}
  */
 export async function loadDesign(job, number, series, signal) {
@@ -24,8 +21,7 @@ export function lengthsOf(row) {
 
 /**
  * Return the curves of an answer of the API: {curves, curveColumns, centres}.
- * @param {Api.Cycle} cycle
- * @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres">}
+ * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres">}
  */
 export function cycleOf(cycle) {
   const { curves, columns } = withResultants(cycle);
@@ -34,8 +30,7 @@ export function cycleOf(cycle) {
 
 /**
  * Return the numbers of the designs that stand beside one, as the address gives them: at most two, each once.
- * @param {URLSearchParams} query
- * @param {number} number
+ * @param {URLSearchParams} query @param {number} number
  */
 export function besideOf(query, number) {
   const asked = (query.get("beside") ?? "").split(",").map(Number);

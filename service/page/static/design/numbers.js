@@ -21,19 +21,14 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
   fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, slow, names), quality(designs, columns)));
 }
 
-/**
- * Return a link to the help of a column.
- * @param {{ key: string, title: string }} column
- * @param {Record<string, string>} names
- */
+/** Return a link to the help of a column. @param {{ key: string, title: string }} column @param {Record<string, string>} names */
 export function helpLink({ key, title }, names) {
   return h("a", { href: link(["help", names[key] ?? key]), class: "help-link" }, title);
 }
 
 /**
  * Return a cell with a number, which carries its full precision.
- * @param {Api.Row[string] | undefined} value
- * @param {{ key: string, unit: string }} column
+ * @param {Api.Row[string] | undefined} value @param {{ key: string, unit: string }} column
  * @param {{ tag?: "td" | "strong", digits?: number, name?: string }} looks
  */
 export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
@@ -42,8 +37,7 @@ export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) 
 
 /**
  * Return how much a value is from another, as text: "+1.2 %"; empty where that has no meaning.
- * @param {Api.Row[string] | undefined} value
- * @param {Api.Row[string] | undefined} from
+ * @param {Api.Row[string] | undefined} value @param {Api.Row[string] | undefined} from
  */
 export function difference(value, from) {
   if (typeof value !== "number" || typeof from !== "number" || from === 0) return "";
@@ -52,12 +46,7 @@ export function difference(value, from) {
   return `${percent > 0 ? "+" : "−"}${Math.abs(percent) >= 1000 ? Math.round(Math.abs(percent)) : Number(Math.abs(percent).toPrecision(3))} %`;
 }
 
-/**
- * @param {string} caption
- * @param {Shown[]} designs
- * @param {Api.Column[]} columns
- * @param {Record<string, string>} names
- */
+/** @param {string} caption @param {Shown[]} designs @param {Api.Column[]} columns @param {Record<string, string>} names */
 function table(caption, designs, columns, names) {
   const [first, ...others] = designs;
   const head = h("tr", {}, h("th", { scope: "col" }, "Quantity"), heading(first), others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]), h("th", { scope: "col" }, "Unit"));
@@ -73,20 +62,12 @@ function heading({ name, series }) {
   return h("th", { scope: "col", class: "number", "data-series": series }, name);
 }
 
-/**
- * @param {string} label
- * @param {Element} node
- */
+/** @param {string} label @param {Element} node */
 function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
 }
 
-/**
- * @param {Shown[]} designs
- * @param {Api.Requirement[]} requirements
- * @param {string | null | undefined} slow
- * @param {Record<string, string>} names
- */
+/** @param {Shown[]} designs @param {Api.Requirement[]} requirements @param {string | null | undefined} slow @param {Record<string, string>} names */
 function limits(designs, requirements, slow, names) {
   const ofStroke = slow && h("tr", {}, h("th", { scope: "row" }, helpLink({ key: "slow_stroke", title: "slow stroke" }, names), h("span", { class: "quiet asked" }, ` ${slow}`)),
     designs.map(({ row, name }) => [cell(row.slow_stroke, { key: "slow_stroke", unit: "" }, { name }), h("td", {}, h("span", { class: row.slow_stroke === slow ? "good" : "bad" }, row.slow_stroke === slow ? "met" : "broken"))]));
@@ -102,10 +83,7 @@ function limits(designs, requirements, slow, names) {
       : h("p", { class: "quiet" }, "The job sets none."));
 }
 
-/**
- * Return what a rule asks, in words.
- * @param {Api.Requirement} requirement
- */
+/** Return what a rule asks, in words. @param {Api.Requirement} requirement */
 export function wanted({ lower, upper, unit }) {
   if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;
@@ -113,10 +91,7 @@ export function wanted({ lower, upper, unit }) {
   return `${text(lower, unit)} to ${withUnit(upper, unit)}`;
 }
 
-/**
- * @param {Api.Row} row
- * @param {Api.Requirement} requirement
- */
+/** @param {Api.Row} row @param {Api.Requirement} requirement */
 function met(row, { lower, upper, slack, unit }) {
   const left = row[slack];
   const size = Math.max(Math.abs(lower ?? 0), Math.abs(upper ?? 0), 1e-300);
@@ -127,10 +102,7 @@ function met(row, { lower, upper, slack, unit }) {
   return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);
 }
 
-/**
- * @param {Shown[]} designs
- * @param {Api.Column[]} columns
- */
+/** @param {Shown[]} designs @param {Api.Column[]} columns */
 function quality(designs, columns) {
   if (!columns.some(({ key }) => key === "status")) return null;
   /** @param {Api.Row} row */

@@ -7,8 +7,7 @@ import { helpLink } from "./numbers.js";
 
 /**
  * Return a number that is the smaller the better a value of an objective is.
- * @param {Api.Row[string] | undefined} value
- * @param {Pick<Api.Objective, "sense" | "target">} objective
+ * @param {Api.Row[string] | undefined} value @param {Pick<Api.Objective, "sense" | "target">} objective
  */
 export function rankOf(value, { sense, target }) {
   if (typeof value !== "number") return Infinity;
@@ -16,10 +15,7 @@ export function rankOf(value, { sense, target }) {
   return sense === "maximise" ? -value : value;
 }
 
-/**
- * Return what is wanted of an objective, in words.
- * @param {Api.Objective} objective
- */
+/** Return what is wanted of an objective, in words. @param {Api.Objective} objective */
 export function sense({ sense: way, target, unit }) {
   return typeof target !== "number" ? way : `target ${withUnit(target, unit)}`;
 }

@@ -7,10 +7,7 @@ const RESULTANTS = [
 ];
 const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
 
-/**
- * Return {curves, columns} with the sizes of the joint forces beside their components.
- * @param {Pick<Api.Cycle, "curves" | "columns">} cycle
- */
+/** Return {curves, columns} with the sizes of the joint forces beside their components. @param {Pick<Api.Cycle, "curves" | "columns">} cycle */
 export function withResultants({ curves, columns }) {
   /** @type {Api.Curves} */
   const more = { ...curves };
@@ -25,8 +22,7 @@ export function withResultants({ curves, columns }) {
 
 /**
  * Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero or not defined in all designs.
- * @param {Api.Column[]} columns
- * @param {{ curves: Api.Curves }[]} designs
+ * @param {Api.Column[]} columns @param {{ curves: Api.Curves }[]} designs
  */
 export function panelsOf(columns, designs) {
   /** @param {Api.Column} column */

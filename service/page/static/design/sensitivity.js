@@ -13,9 +13,7 @@ const MEASURES = [
 
 /**
  * Put the tornado into `place`; quantities: of the API; objectives: of the job, shown first.
- * @param {HTMLElement} place
- * @param {Api.Sensitivity} found
- * @param {{ objectives: Api.Objective[], signal: AbortSignal }} given
+ * @param {HTMLElement} place @param {Api.Sensitivity} found @param {{ objectives: Api.Objective[], signal: AbortSignal }} given
  */
 export function sensitivity(place, { quantities }, { objectives, signal }) {
   const wanted = objectives.map(({ quantity }) => quantity);
@@ -34,22 +32,11 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
   function draw() {
     const shown = all ? [...own, ...rest] : own;
     const relative = measure.key === "percent";
-    /**
-     * @param {Api.Sensitive} one
-     * @param {string} name
-     * @returns {number | null}
-     */
+    /** @param {Api.Sensitive} one @param {string} name @returns {number | null} */
     const value = (one, name) => rateOf(one[`${name}_${measure.key}`]);
-    /**
-     * @param {Api.Sensitive} one
-     * @param {string} name
-     * @returns {number | null}
-     */
+    /** @param {Api.Sensitive} one @param {string} name @returns {number | null} */
     const below = (one, name) => rateOf(one[`${name}_${measure.key}_below`]) ?? value(one, name);
-    /**
-     * @param {Api.Sensitive} one
-     * @param {string} name
-     */
+    /** @param {Api.Sensitive} one @param {string} name */
     const size = (one, name) => Math.max(Math.abs(value(one, name) ?? 0), Math.abs(below(one, name) ?? 0));
     const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => size(one, name))));
     fill(bars, shown.map((one) => {

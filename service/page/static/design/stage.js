@@ -17,8 +17,7 @@ const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown
 /**
  * Put mechanisms and their controls into `place`; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
- * @param {HTMLElement} place
- * @param {ReturnType<typeof turningOf>} turning
+ * @param {HTMLElement} place @param {ReturnType<typeof turningOf>} turning
  */
 export function stage(place, turning) {
   const drawn = h("div", { class: "machines" });
@@ -118,11 +117,7 @@ export function stage(place, turning) {
   return { show, fade: (/** @type {boolean} */ yes) => drawings.forEach((one) => one.fade(yes)), close: () => drawings.forEach((one) => one.close()) };
 }
 
-/**
- * Let the crank of a drawing be dragged; hold(angle) is told.
- * @param {ReturnType<typeof drawing>} one
- * @param {(angle: number) => void} hold
- */
+/** Let the crank of a drawing be dragged; hold(angle) is told. @param {ReturnType<typeof drawing>} one @param {(angle: number) => void} hold */
 function draggable(one, hold) {
   const { handle } = one;
   let held = false;

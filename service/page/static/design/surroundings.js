@@ -4,10 +4,7 @@ import { get } from "../lib/api.js";
 
 /**
  * Return the objectives of all designs of a front, as rows by column.
- * @param {string} job
- * @param {Api.Front} front
- * @param {AbortSignal} signal
- * @returns {Promise<Api.Row[]>}
+ * @param {string} job @param {Api.Front} front @param {AbortSignal} signal @returns {Promise<Api.Row[]>}
  */
 export async function loadFront(job, front, signal) {
   const keys = front.objectives.map(({ column }) => column);

@@ -19,18 +19,12 @@ const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
 /**
  * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
  * itself again with null.
- * @param {string} job
- * @param {number} number
- * @param {{ signal?: AbortSignal }} options
+ * @param {string} job @param {number} number @param {{ signal?: AbortSignal }} options
  */
 export function takeAway(job, number, { signal } = {}) {
   /** @type {Page.Lengths | null} */
   let lengths = null;
-  /**
-   * @param {string} path
-   * @param {string} title
-   * @param {string} words
-   */
+  /** @param {string} path @param {string} title @param {string} words */
   const anchor = (path, title, words) => ({ path, node: h("a", { class: "button", download: "", title: words }, title) });
   const links = [
     ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),

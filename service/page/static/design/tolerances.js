@@ -4,12 +4,7 @@ import { histogram, tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";
 import { grouped, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 
-/**
- * Put the numbers of the API into `place`.
- * @param {HTMLElement} place
- * @param {Api.Tolerances} found
- * @param {{ signal: AbortSignal }} given
- */
+/** Put the numbers of the API into `place`. @param {HTMLElement} place @param {Api.Tolerances} found @param {{ signal: AbortSignal }} given */
 export function tolerances(place, found, { signal }) {
   const chart = h("div", {});
   const facts = h("div", {});
@@ -30,10 +25,7 @@ export function tolerances(place, found, { signal }) {
   signal.addEventListener("abort", () => drawn?.close(), { once: true });
 }
 
-/**
- * @param {HTMLElement} place
- * @param {Api.Tolerances} found
- */
+/** @param {HTMLElement} place @param {Api.Tolerances} found */
 function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_square_mm: square }) {
   const { histogram: bins, samples, stuck } = simulated;
   if (!bins) {
@@ -56,10 +48,7 @@ function spread(place, { monte_carlo: simulated, worst_case_mm: worst, root_sum_
 /** @param {Api.Tolerances} found */
 function numbers(found) {
   const { exact_worst_case_mm: exact, monte_carlo: { percentiles_greatest_mm: percentiles, stuck }, yields } = found;
-  /**
-   * @param {number} size
-   * @param {number} angle
-   */
+  /** @param {number} size @param {number} angle */
   const at = (size, angle) => `${withUnit(size, "mm", 4)} at ${text(angle, "deg", 4)}°`;
   const rows = [
     ["worst case, first order", at(found.worst_case_mm, found.worst_case_angle_deg)],
@@ -76,10 +65,7 @@ function numbers(found) {
 function contributions({ contributions: parts }) {
   /** @param {Api.Contribution} part */
   const limit = (part) => (part.limit_mm === null ? `${text(part.limit_deg, "deg", 3)}°` : withUnit(part.limit_mm, "mm", 3));
-  /**
-   * @param {"share_of_worst_case_percent" | "share_of_variance_percent"} key
-   * @param {string} caption
-   */
+  /** @param {"share_of_worst_case_percent" | "share_of_variance_percent"} key @param {string} caption */
   const table = (key, caption) => tornado(
     parts.map((part) => ({ title: `${part.source}, ±${limit(part)}`, value: part[key], text: `${part[key].toFixed(1)} %` })),
     { largest: Math.max(...parts.map((part) => part[key])), good: () => null, caption, signed: false });

@@ -5,17 +5,10 @@ import { h } from "../lib/dom.js";
 
 /** @typedef {{ job: string, number: number, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
-/**
- * Return the head.
- * @param {Place} place
- */
+/** Return the head. @param {Place} place */
 export function top({ job, number, front, others }) {
   const beside = others.map((one) => one.number).join(",");
-  /**
-   * @param {number} to
-   * @param {string} words
-   * @param {string} sign
-   */
+  /** @param {number} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
     to >= 1 && to <= front.count
       ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside: beside || null }), "aria-label": words, title: words }, sign)

@@ -6,8 +6,7 @@ import { apiSystem } from "../lib/numbers.js";
 
 /**
  * Put the trade-off rates into `place`, in the units that the reader prefers.
- * @param {HTMLElement} place
- * @param {{ job: string, number: number, signal: AbortSignal }} given
+ * @param {HTMLElement} place @param {{ job: string, number: number, signal: AbortSignal }} given
  */
 export async function tradeOffs(place, { job, number, signal }) {
   const body = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));

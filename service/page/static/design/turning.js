@@ -12,8 +12,7 @@ const SHORTEST = 0.2; // s of a turn that a screen can show
  * Return the shared crank angle: {angle, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
  * rpm: of the crank, its sign the direction. told({angle, playing, settled}) is called for every change and every frame; settled:
  * whether nothing moves, so that what takes longer to draw may be drawn.
- * @param {number} rpm
- * @param {AbortSignal} signal
+ * @param {number} rpm @param {AbortSignal} signal
  */
 export function turning(rpm, signal) {
   /** @type {((turn: Page.Turn) => void)[]} */
@@ -69,8 +68,7 @@ export function turning(rpm, signal) {
 
 /**
  * Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen.
- * @param {number} rpm
- * @returns {Pace[]}
+ * @param {number} rpm @returns {Pace[]}
  */
 function pacesOf(rpm) {
   const real = rpm ? 60 / Math.abs(rpm) : null;

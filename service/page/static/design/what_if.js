@@ -98,10 +98,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     }
   }
 
-  /**
-   * Let the other lengths stand where they followed to.
-   * @param {Api.Row} design
-   */
+  /** Let the other lengths stand where they followed to. @param {Api.Row} design */
   function follow(design) {
     const to = lengthsOf(design);
     for (const row of rows) {
@@ -148,12 +145,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   };
 }
 
-/**
- * @param {keyof Page.Lengths} key
- * @param {string} title
- * @param {readonly number[]} ends
- * @param {(value: number) => void} set
- */
+/** @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number) => void} set */
 function lengthRow(key, title, [low, high], set) {
   const fixed = low === high;
   /** @param {number} value */
@@ -166,10 +158,7 @@ function lengthRow(key, title, [low, high], set) {
     take(currentTarget, inShown(value, "mm"));
   } });
 
-  /**
-   * @param {Element} from
-   * @param {number} shown
-   */
+  /** @param {Element} from @param {number} shown */
   function take(from, shown) {
     const value = fromShown(shown, "mm");
     const inside = Number.isFinite(value) && value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high);
@@ -194,11 +183,7 @@ function lengthRow(key, title, [low, high], set) {
   };
 }
 
-/**
- * @param {Api.Objective[]} objectives
- * @param {Api.Row} before
- * @param {Api.Row} after
- */
+/** @param {Api.Objective[]} objectives @param {Api.Row} before @param {Api.Row} after */
 function comparison(objectives, before, after) {
   const rows = objectives.map((objective) => {
     const [from, to] = [before, after].map((row) => row[objective.column]);
@@ -214,11 +199,7 @@ function comparison(objectives, before, after) {
     h("tbody", {}, rows));
 }
 
-/**
- * @param {Api.WhatIf} answer
- * @param {Api.Requirement[]} requirements
- * @param {string} job
- */
+/** @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {string} job */
 function sentences(answer, requirements, job) {
   const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
   const found = broken.map((column) => {

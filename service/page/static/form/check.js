@@ -7,8 +7,7 @@ const AGAIN = 3000; // ms until the next try while the service does not answer
 
 /**
  * Return a function that asks about a job; told({answer}) or told({problem}) with the latest; `signal` ends it.
- * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} told
- * @param {AbortSignal} signal
+ * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} told @param {AbortSignal} signal
  */
 export function checker(told, signal) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */

@@ -11,10 +11,7 @@ const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list }
 
 /**
  * Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can say.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Partial<Form.Looks>} options
- * @returns {HTMLElement | null}
+ * @param {Form.Whole} form @param {Form.Path} path @param {Partial<Form.Looks>} options @returns {HTMLElement | null}
  */
 export function byschema(form, path, options = {}) {
   const node = form.schema.property(path);
@@ -30,12 +27,7 @@ export function byschema(form, path, options = {}) {
   return make ? make(form, path, { ...found, ...options, label, why }) : null;
 }
 
-/**
- * Return a field of a number with its unit.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Form.Looks} looks
- */
+/** Return a field of a number with its unit. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function quantity(form, path, { kind, percent = false, label, why, wide }) {
   const { number, unit } = split(form.at(path), kind);
   const input = numberInput(idOf(path, "c"), number);
@@ -49,12 +41,7 @@ export function quantity(form, path, { kind, percent = false, label, why, wide }
   return field(form, path, label, select ? [input, select] : [input], why, { wide });
 }
 
-/**
- * Return a field of one of several words. Left out means the fallback.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Form.Looks} looks
- */
+/** Return a field of one of several words. Left out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function choice(form, path, { options = [], fallback, label, why, required = false, changed = () => {} }) {
   const given = form.at(path);
   const known = given === undefined || options.some((one) => one === given);
@@ -70,9 +57,7 @@ export function choice(form, path, { options = [], fallback, label, why, require
 
 /**
  * Return a field of a text, a ratio or a whole number; what is no number is kept as it was typed, for the service to say so.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Form.Looks} looks
+ * @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks
  */
 export function plain(form, path, { control, label, why, wide = false, long = false, fallback }) {
   const given = form.at(path);
@@ -87,12 +72,7 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
   return field(form, path, label, [input], why, { wide });
 }
 
-/**
- * Return a field of a list, its entries separated by commas.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Form.Looks} looks
- */
+/** Return a field of a list, its entries separated by commas. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function list(form, path, { label, why, example }) {
   const given = form.at(path);
   const text = Array.isArray(given) ? given.join(", ") : given === undefined ? "" : JSON.stringify(given);
@@ -106,9 +86,7 @@ export function list(form, path, { label, why, example }) {
 
 /**
  * Return an input for a number as text, so that what is mistyped can be said.
- * @param {string} id
- * @param {string} value
- * @param {string | null} label
+ * @param {string} id @param {string} value @param {string | null} label
  */
 export function numberInput(id, value, label = null) {
   return h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "short number", id, value, "aria-label": label });
@@ -116,11 +94,7 @@ export function numberInput(id, value, label = null) {
 
 /**
  * Return a select of the units of a kind. A unit that is not in the list is added to it.
- * @param {string} label
- * @param {string} kind
- * @param {string} unit
- * @param {boolean} percent
- * @param {string | null} id
+ * @param {string} label @param {string} kind @param {string} unit @param {boolean} percent @param {string | null} id
  */
 export function unitSelect(label, kind, unit, percent = false, id = null) {
   const units = unitsOf(kind, { percent });
@@ -131,9 +105,7 @@ export function unitSelect(label, kind, unit, percent = false, id = null) {
 
 /**
  * Have inputs show the same values in the unit that was chosen.
- * @param {HTMLSelectElement} select
- * @param {HTMLInputElement[]} inputs
- * @param {string | null | undefined} kind
+ * @param {HTMLSelectElement} select @param {HTMLInputElement[]} inputs @param {string | null | undefined} kind
  */
 export function changeUnit(select, inputs, kind) {
   const from = select.dataset.from ?? select.value;
@@ -141,10 +113,7 @@ export function changeUnit(select, inputs, kind) {
   select.dataset.from = select.value;
 }
 
-/**
- * Return what a job holds for a typed number: a number if it is one.
- * @param {string} text
- */
+/** Return what a job holds for a typed number: a number if it is one. @param {string} text */
 export function number(text) {
   const typed = text.trim().replaceAll("−", "-");
   if (typed === "") return undefined;

@@ -2,10 +2,7 @@
 
 const KEY = "new-run";
 
-/**
- * Return the draft {job, submission, source, key}; null if there is none.
- * @returns {Form.Draft | null}
- */
+/** Return the draft {job, submission, source, key}; null if there is none. @returns {Form.Draft | null} */
 export function kept() {
   try {
     const found = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
@@ -15,10 +12,7 @@ export function kept() {
   }
 }
 
-/**
- * Keep a draft; null forgets it.
- * @param {Form.Draft | null} draft
- */
+/** Keep a draft; null forgets it. @param {Form.Draft | null} draft */
 export function keepDraft(draft) {
   try {
     if (draft === null) sessionStorage.removeItem(KEY);

@@ -4,21 +4,13 @@ import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { limitText, unitOf, withUnit } from "../lib/numbers.js";
 
-/**
- * Fill a place with what a preview says.
- * @param {HTMLElement} place
- * @param {Api.Preview} preview
- */
+/** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, example, understood }) {
   if (!allowed) {
     fill(place, h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."));
     return;
   }
-  /**
-   * @param {string} title
-   * @param {Dom.Child} value
-   * @param {string | null} note
-   */
+  /** @param {string} title @param {Dom.Child} value @param {string | null} note */
   const row = (title, value, note = null) => [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
   fill(
     place,
@@ -52,10 +44,7 @@ function share(value) {
   return value > 0.99 && value < 1 ? "over 99 %" : `${Math.round(100 * value)} %`;
 }
 
-/**
- * @param {readonly number[] | null} ends
- * @param {string} unit
- */
+/** @param {readonly number[] | null} ends @param {string} unit */
 function between(ends, unit) {
   if (!ends) return "none";
   const [low, high] = ends;

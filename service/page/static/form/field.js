@@ -6,11 +6,7 @@ import { idOf, written } from "./path.js";
 /**
  * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
  * page of its own. The field is registered with the form, which tells it what is wrong.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {string} label
- * @param {HTMLElement[]} controls
- * @param {Form.Why | undefined} why
+ * @param {Form.Whole} form @param {Form.Path} path @param {string} label @param {HTMLElement[]} controls @param {Form.Why | undefined} why
  * @param {{ wide?: boolean, labelled?: boolean, register?: boolean }} looks
  */
 export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
@@ -32,9 +28,7 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
 
 /**
  * Return a button "?" and the sentence that it shows and hides; null without a sentence.
- * @param {string} id
- * @param {string} label
- * @param {Form.Why | undefined} why
+ * @param {string} id @param {string} label @param {Form.Why | undefined} why
  */
 export function explanation(id, label, why) {
   const { sentence, name } = typeof why === "string" ? { sentence: why, name: null } : why ?? {};
@@ -53,11 +47,7 @@ export function explanation(id, label, why) {
   return { button, text };
 }
 
-/**
- * Show on fields what is wrong; return the sentences that belong to no field.
- * @param {Form.Field[]} fields
- * @param {Api.Wrong[]} wrong
- */
+/** Show on fields what is wrong; return the sentences that belong to no field. @param {Form.Field[]} fields @param {Api.Wrong[]} wrong */
 export function showWrong(fields, wrong) {
   for (const one of fields) say(one, []);
   /** @type {Map<Form.Field, string[]>} */
@@ -73,10 +63,7 @@ export function showWrong(fields, wrong) {
   return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
 }
 
-/**
- * @param {Form.Field} one
- * @param {string[]} sentences
- */
+/** @param {Form.Field} one @param {string[]} sentences */
 function say(one, sentences) {
   const bad = sentences.length > 0;
   one.error.hidden = !bad;
@@ -93,24 +80,15 @@ function say(one, sentences) {
   if (bad) for (let fold = one.node.closest("details"); fold; fold = fold.parentElement?.closest("details") ?? null) fold.open = true;
 }
 
-/**
- * @param {Form.Field[]} fields
- * @param {string} path
- */
+/** @param {Form.Field[]} fields @param {string} path */
 function nearest(fields, path) {
-  /**
-   * @param {string} outer
-   * @param {string} inner
-   */
+  /** @param {string} outer @param {string} inner */
   const within = (outer, inner) => inner === outer || inner.startsWith(`${outer}.`) || inner.startsWith(`${outer} #`);
   const above = fields.filter((one) => within(one.key, path)).sort((a, b) => b.key.length - a.key.length);
   return above[0] ?? fields.find((one) => within(path, one.key)) ?? null;
 }
 
-/**
- * @param {string} outer
- * @param {string} path
- */
+/** @param {string} outer @param {string} path */
 function rest(outer, path) {
   return path.startsWith(outer) ? path.slice(outer.length).replace(/^\./, "") : path;
 }

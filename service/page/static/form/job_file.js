@@ -8,8 +8,7 @@ const WAIT = 300; // ms after the last letter until the text is taken into the f
 
 /**
  * Return {node, refresh}: the part of the form that has the job as a text. taken(job, source) is called with a job from a text or a file.
- * @param {Form.Whole} form
- * @param {(job: Form.Job, source: string | null) => void} taken
+ * @param {Form.Whole} form @param {(job: Form.Job, source: string | null) => void} taken
  */
 export function jobFile(form, taken) {
   const wrong = h("p", { class: "error", id: "job-text-error", hidden: true });
@@ -80,10 +79,7 @@ export function jobFile(form, taken) {
   };
 }
 
-/**
- * @param {File} file
- * @returns {Promise<Form.Job>}
- */
+/** @param {File} file @returns {Promise<Form.Job>} */
 async function jobOf(file) {
   if (file.size > 1e6) throw new Problem(0, "A job file has at most 1 MB; is it the right file?");
   const content = await file.text();
@@ -105,11 +101,7 @@ async function toml(job) {
   return response.text();
 }
 
-/**
- * @param {string} content
- * @param {string} type
- * @param {string} name
- */
+/** @param {string} content @param {string} type @param {string} name */
 function download(content, type, name) {
   const link = h("a", { href: URL.createObjectURL(new Blob([content], { type })), download: name });
   link.click();
@@ -121,10 +113,7 @@ function slug(name) {
   return String(name ?? "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "job";
 }
 
-/**
- * Return the shipped jobs.
- * @param {AbortSignal} signal
- */
+/** Return the shipped jobs. @param {AbortSignal} signal */
 export async function presets(signal) {
   return (await get("presets", {}, signal)).presets;
 }

@@ -17,12 +17,7 @@ const WAYS = {
   },
 };
 
-/**
- * Return the fields of crank or rod.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {string} label
- */
+/** Return the fields of crank or rod. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
 export function link(form, path, label) {
   const given = form.at(path);
   const way = given === undefined ? "none" : isTable(given) && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";

@@ -14,10 +14,7 @@ const KINDS = [
   { key: "crank_angles", title: "table of forces over the crank angle", first: { crank_angles: ["0 deg", "180 deg"], forces: ["0 N", "-100 N"] } },
 ];
 
-/**
- * Return the fields of all loads, with buttons to add and to remove one.
- * @param {Form.Whole} form
- */
+/** Return the fields of all loads, with buttons to add and to remove one. @param {Form.Whole} form */
 export function loads(form) {
   const given = form.at(["load"]);
   const all = Array.isArray(given) ? given : [];
@@ -29,12 +26,7 @@ export function loads(form) {
   return [all.map((load, place) => one(form, load, place, all)), h("p", {}, add)];
 }
 
-/**
- * @param {Form.Whole} form
- * @param {unknown} load
- * @param {number} place
- * @param {unknown[]} all
- */
+/** @param {Form.Whole} form @param {unknown} load @param {number} place @param {unknown[]} all */
 function one(form, load, place, all) {
   const path = ["load", place];
   const kind = KINDS.find(({ key }) => isTable(load) && key in load) ?? KINDS[0];
@@ -59,11 +51,7 @@ function one(form, load, place, all) {
   );
 }
 
-/**
- * Return the table of the schema whose loads have a key.
- * @param {Form.Whole["schema"]} schema
- * @param {string} key
- */
+/** Return the table of the schema whose loads have a key. @param {Form.Whole["schema"]} schema @param {string} key */
 function tableOf(schema, key) {
   const tables = schema.property(["load"])?.items?.oneOf ?? [];
   return tables.map(schema.resolve).find((table) => table.properties?.[key]) ?? {};

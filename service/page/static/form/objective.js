@@ -8,11 +8,7 @@ import { join, kindOf, split } from "./units.js";
 
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
 
-/**
- * Return the field of the objective of a quantity {name, title, unit, sentence}.
- * @param {Form.Whole} form
- * @param {Api.Quantity} quantity
- */
+/** Return the field of the objective of a quantity {name, title, unit, sentence}. @param {Form.Whole} form @param {Api.Quantity} quantity */
 export function objective(form, quantity) {
   const path = ["objectives", quantity.name];
   const given = form.at(path);
@@ -31,13 +27,7 @@ export function objective(form, quantity) {
   return made;
 }
 
-/**
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {Api.Quantity} quantity
- * @param {string | null} kind
- * @param {unknown} given
- */
+/** @param {Form.Whole} form @param {Form.Path} path @param {Api.Quantity} quantity @param {string | null} kind @param {unknown} given */
 function wanted(form, path, quantity, kind, given) {
   const sense = typeof given === "object" && given !== null ? "target" : String(given).replace("imize", "imise");
   const select = h("select", { id: idOf(path, "s"), "aria-label": `${quantity.title}: what is wanted` }, SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)));

@@ -1,11 +1,6 @@
 /** Places in a job: lists of keys, such as ["load", 0, "force"], and what stands there. */
 
-/**
- * Return what stands at a path of a job; undefined where there is nothing.
- * @param {unknown} job
- * @param {Form.Path} path
- * @returns {unknown}
- */
+/** Return what stands at a path of a job; undefined where there is nothing. @param {unknown} job @param {Form.Path} path @returns {unknown} */
 export function at(job, path) {
   let part = job;
   for (const key of path) {
@@ -17,9 +12,7 @@ export function at(job, path) {
 
 /**
  * Put a value at a path of a job; undefined takes the key away, and the tables that are empty without it.
- * @param {Record<string | number, unknown>} job
- * @param {Form.Path} path
- * @param {unknown} value
+ * @param {Record<string | number, unknown>} job @param {Form.Path} path @param {unknown} value
  */
 export function put(job, path, value) {
   const [key, ...rest] = path;
@@ -38,20 +31,12 @@ export function put(job, path, value) {
   if (value === undefined && !Object.keys(/** @type {object} */ (inner)).length && !Array.isArray(job)) delete job[key];
 }
 
-/**
- * Return a path as the service writes it: "load #1.force".
- * @param {Form.Path} path
- * @returns {string}
- */
+/** Return a path as the service writes it: "load #1.force". @param {Form.Path} path @returns {string} */
 export function written(path) {
   return path.map((key, place) => (typeof key === "number" ? ` #${key + 1}` : place ? `.${key}` : key)).join("");
 }
 
-/**
- * Return an id for the control of a path, the same each time that the form is drawn.
- * @param {Form.Path} path
- * @param {string | number} part
- */
+/** Return an id for the control of a path, the same each time that the form is drawn. @param {Form.Path} path @param {string | number} part */
 export function idOf(path, part = "") {
   return `f-${[...path, part].filter((key) => key !== "").join("-").replace(/[^\w-]/g, "_")}`;
 }

@@ -10,9 +10,7 @@ const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["choices", "one
 
 /**
  * Return the field of the range of crank, rod or offset; why: {sentence, name}.
- * @param {Form.Whole} form
- * @param {Form.Path} path
- * @param {{ label: string, why: Form.Why }} looks
+ * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why }} looks
  */
 export function range(form, path, { label, why }) {
   const given = form.at(path);

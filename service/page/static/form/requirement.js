@@ -14,9 +14,7 @@ const SAID = { equals: "exactly", min: "at least", max: "at most" };
 
 /**
  * Return the field of the requirement on a quantity {name, title, unit, sentence}.
- * @param {Form.Whole} form
- * @param {Api.Quantity} quantity
- * @param {{ label?: string, place?: Form.Path }} given
+ * @param {Form.Whole} form @param {Api.Quantity} quantity @param {{ label?: string, place?: Form.Path }} given
  */
 export function requirement(form, quantity, { label = quantity.title, place = ["constraints"] } = {}) {
   const path = [...place, quantity.name];
@@ -57,10 +55,7 @@ export function requirement(form, quantity, { label = quantity.title, place = ["
   return made;
 }
 
-/**
- * Return which kind of requirement is given.
- * @param {unknown} given
- */
+/** Return which kind of requirement is given. @param {unknown} given */
 function modeOf(given) {
   if (!isTable(given)) return "any";
   if (given.equals !== undefined) return "equals";

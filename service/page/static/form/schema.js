@@ -2,21 +2,14 @@
 
 import { kindOf } from "./units.js";
 
-/**
- * Return a reader of a JSON Schema: property(path) and resolve(node).
- * @param {Form.Schema} schema
- */
+/** Return a reader of a JSON Schema: property(path) and resolve(node). @param {Form.Schema} schema */
 export function reader(schema) {
-  /**
-   * @param {Form.Schema} node
-   * @returns {Form.Schema}
-   */
+  /** @param {Form.Schema} node @returns {Form.Schema} */
   const resolve = ({ $ref, ...node }) => ($ref ? { ...schema.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)], ...node } : node);
 
   /**
    * Return what belongs at a path of the job; for a choice between tables, the one that has the next key.
-   * @param {Form.Path} path
-   * @returns {Form.Schema | null}
+   * @param {Form.Path} path @returns {Form.Schema | null}
    */
   function property(path) {
     let node = resolve(schema);
@@ -35,8 +28,7 @@ export function reader(schema) {
 /**
  * Return what control a node needs: {control, kind, percent, options, description, fallback, keys}.
  * control: "quantity", "choice", "whole", "ratio", "text", "list", "table", or "other", which only the job file can say.
- * @param {Form.Schema} node
- * @returns {Form.Described}
+ * @param {Form.Schema} node @returns {Form.Described}
  */
 export function describe(node) {
   const description = node.description ?? "";
@@ -55,10 +47,7 @@ export function describe(node) {
   return { ...common, control: "other" };
 }
 
-/**
- * Return a key as words: "crank_angle" is "crank angle".
- * @param {string | number | boolean} key
- */
+/** Return a key as words: "crank_angle" is "crank angle". @param {string | number | boolean} key */
 export function words(key) {
   return String(key).replaceAll("_", " ");
 }

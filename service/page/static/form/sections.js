@@ -12,10 +12,7 @@ import { speed } from "./speed.js";
 
 const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance"]);
 
-/**
- * Return the sections for a job, ready to be put into the form.
- * @param {Form.Whole} form
- */
+/** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
   form.fields.length = 0;
   return [
@@ -36,10 +33,7 @@ export function sections(form) {
   ].filter(Boolean);
 }
 
-/**
- * @param {string} title
- * @param {...Dom.Child} content
- */
+/** @param {string} title @param {...Dom.Child} content */
 function section(title, ...content) {
   const id = `s-${title.toLowerCase().replaceAll(" ", "-")}`;
   return h("section", { class: "panel", "aria-labelledby": id }, h("h2", { id }, title), content);
@@ -50,10 +44,7 @@ function fields(...content) {
   return h("div", { class: "fields" }, content);
 }
 
-/**
- * @param {string} title
- * @param {...Dom.Child} content
- */
+/** @param {string} title @param {...Dom.Child} content */
 function more(title, ...content) {
   return h("details", { class: "more" }, h("summary", {}, title), h("div", { class: "fields" }, content));
 }
@@ -80,10 +71,7 @@ function requirements(form, names) {
   return names.map((name) => requirement(form, form.quantity(name)));
 }
 
-/**
- * Return the quantities beside the usual ones that the job has requirements on.
- * @param {Form.Whole} form
- */
+/** Return the quantities beside the usual ones that the job has requirements on. @param {Form.Whole} form */
 function others(form) {
   const usual = new Set(asked(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));
@@ -152,10 +140,7 @@ function robust(form) {
   return [select, on ? byschema(form, ["robust"], { label: "robust" }) : null];
 }
 
-/**
- * Return which parts of the job have no fields.
- * @param {Form.Whole} form
- */
+/** Return which parts of the job have no fields. @param {Form.Whole} form */
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
   const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));

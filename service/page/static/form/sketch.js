@@ -5,10 +5,7 @@ import { drawing } from "../mechanism/drawing.js";
 
 const TURN = 4000; // ms of a turn
 
-/**
- * Return {node, show(example), close()}; show(null) takes the linkage away.
- * @param {AbortSignal} signal
- */
+/** Return {node, show(example), close()}; show(null) takes the linkage away. @param {AbortSignal} signal */
 export function sketch(signal) {
   const place = h("div", { class: "sketch" });
   const caption = h("p", { class: "quiet" });

@@ -8,10 +8,7 @@ import { join, split } from "./units.js";
 
 const PATH = ["mechanism", "speed"];
 
-/**
- * Return the fields of speed and direction.
- * @param {Form.Whole} form
- */
+/** Return the fields of speed and direction. @param {Form.Whole} form */
 export function speed(form) {
   const { number, unit } = split(form.at(PATH), "angular speed");
   const backwards = number.startsWith("-");

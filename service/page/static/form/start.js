@@ -1,16 +1,9 @@
 /** The job that an empty form begins with. */
 
-/**
- * Return a job that can be solved, in the reader's units: system is "si" or "inch".
- * @param {"si" | "inch"} system
- * @returns {Form.Job}
- */
+/** Return a job that can be solved, in the reader's units: system is "si" or "inch". @param {"si" | "inch"} system @returns {Form.Job} */
 export function firstJob(system) {
   const inch = system === "inch";
-  /**
-   * @param {number} mm
-   * @param {number} inches
-   */
+  /** @param {number} mm @param {number} inches */
   const length = (mm, inches) => (inch ? `${inches} in` : `${mm} mm`);
   return {
     name: "New slider-crank",

@@ -24,35 +24,27 @@ export function kinds() {
   return Object.keys(KINDS);
 }
 
-/**
- * Return the kind of value that a unit measures, "length" for "mm"; null for none.
- * @param {string} unit
- */
+/** Return the kind of value that a unit measures, "length" for "mm"; null for none. @param {string} unit */
 export function kindOf(unit) {
   return Object.keys(KINDS).find((kind) => unit in KINDS[kind]) ?? null;
 }
 
 /**
  * Return the units of a kind, smallest system first; percent: with the share of a dimension.
- * @param {string} kind
- * @param {{ percent?: boolean }} given
+ * @param {string} kind @param {{ percent?: boolean }} given
  */
 export function unitsOf(kind, { percent = false } = {}) {
   return [...Object.keys(KINDS[kind] ?? {}), ...(percent ? ["%"] : [])];
 }
 
-/**
- * Return the unit that an empty field of a kind begins with, by what the reader prefers.
- * @param {string} kind
- */
+/** Return the unit that an empty field of a kind begins with, by what the reader prefers. @param {string} kind */
 export function usual(kind) {
   return USUAL[system()][kind] ?? USUAL.si[kind] ?? Object.keys(KINDS[kind] ?? { "": 1 })[0];
 }
 
 /**
  * Return {number, unit} of a value of a job, both text: what is no value with a unit stays as it is, as the number.
- * @param {unknown} value
- * @param {string | null | undefined} kind
+ * @param {unknown} value @param {string | null | undefined} kind
  */
 export function split(value, kind) {
   if (value === undefined || value === null) return { number: "", unit: kind ? usual(kind) : "" };
@@ -63,11 +55,7 @@ export function split(value, kind) {
   return { number: String(value), unit: "" };
 }
 
-/**
- * Return the value of a job for a number and a unit as typed; undefined for an empty number.
- * @param {string} number
- * @param {string} unit
- */
+/** Return the value of a job for a number and a unit as typed; undefined for an empty number. @param {string} number @param {string} unit */
 export function join(number, unit) {
   const typed = number.trim().replaceAll("−", "-");
   if (typed === "") return undefined;
@@ -76,10 +64,7 @@ export function join(number, unit) {
 
 /**
  * Return a number as typed in another unit of its kind, to ten digits; what is no number, or a share, stays.
- * @param {string} number
- * @param {string} from
- * @param {string} to
- * @param {string | null | undefined} kind
+ * @param {string} number @param {string} from @param {string} to @param {string | null | undefined} kind
  */
 export function convert(number, from, to, kind) {
   const factors = KINDS[kind ?? ""] ?? {};

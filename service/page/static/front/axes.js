@@ -28,19 +28,10 @@ export function axisFields(explorer) {
     limits();
   }
 
-  /**
-   * @param {Axis} given
-   * @param {number} index
-   * @param {number} count
-   */
+  /** @param {Axis} given @param {number} index @param {number} count */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
-    /**
-     * @param {string} sign
-     * @param {string} label
-     * @param {() => void} doing
-     * @param {boolean} disabled
-     */
+    /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled */
     const act = (sign, label, doing, disabled = false) =>
       h("button", { type: "button", class: "small", title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: (event) => {
         const { act: held = "" } = event.currentTarget.dataset;
@@ -62,11 +53,7 @@ export function axisFields(explorer) {
     const words = explorer.data.words(key);
     if (words) return ofWords(key, column, words.slice(0, MOST_WORDS));
     const [low, high] = ends(explorer.data.range(key), column.unit);
-    /**
-     * @param {string} side
-     * @param {string} placeholder
-     * @param {string} label
-     */
+    /** @param {string} side @param {string} placeholder @param {string} label */
     const input = (side, placeholder, label) =>
       h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder, "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
     const least = input("min", low, "At least");
@@ -91,11 +78,7 @@ export function axisFields(explorer) {
     };
   }
 
-  /**
-   * @param {string} key
-   * @param {Api.Column} column
-   * @param {string[]} words
-   */
+  /** @param {string} key @param {Api.Column} column @param {string[]} words */
   function ofWords(key, column, words) {
     /** @type {HTMLInputElement[]} */
     const ticks = words.map((word) => h("input", { type: "checkbox", value: word, "data-limit": `is.${key}`, onchange: () => {
@@ -120,9 +103,7 @@ export function axisFields(explorer) {
 
 /**
  * Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none.
- * @param {HTMLInputElement} node
- * @param {string} unit
- * @returns {number | null | undefined}
+ * @param {HTMLInputElement} node @param {string} unit @returns {number | null | undefined}
  */
 function number(node, unit) {
   const written = node.value.trim().replaceAll("−", "-").replace(",", ".");

@@ -9,8 +9,7 @@ const MOST = 3; // designs side by side
 
 /**
  * Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights.
- * @param {URLSearchParams} query
- * @param {Api.Front} front
+ * @param {URLSearchParams} query @param {Api.Front} front
  */
 export function choicesFrom(query, front) {
   const keys = front.columns.map(({ key }) => key);
@@ -22,10 +21,7 @@ export function choicesFrom(query, front) {
   const strokes = front.strokes_differ ? ["slow_stroke"] : [];
   /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
-  /**
-   * @param {string} name
-   * @param {string} otherwise
-   */
+  /** @param {string} name @param {string} otherwise */
   const one = (name, otherwise) => {
     const asked = query.get(name);
     return known(asked) ? asked : otherwise;
@@ -53,10 +49,7 @@ export function choicesFrom(query, front) {
   };
 }
 
-/**
- * @param {URLSearchParams} query
- * @param {(key: string) => boolean} known
- */
+/** @param {URLSearchParams} query @param {(key: string) => boolean} known */
 function limitsFrom(query, known) {
   /** @type {Map<string, Page.Limit>} */
   const limits = new Map();
@@ -72,11 +65,7 @@ function limitsFrom(query, known) {
   return limits;
 }
 
-/**
- * @param {URLSearchParams} query
- * @param {(key: string | undefined) => key is string} known
- * @returns {Page.Lasso | null}
- */
+/** @param {URLSearchParams} query @param {(key: string | undefined) => key is string} known @returns {Page.Lasso | null} */
 function lassoFrom(query, known) {
   const [x, y, ...corners] = (query.get("lasso") ?? "").split(",");
   const numbers = corners.map(Number);
@@ -84,17 +73,10 @@ function lassoFrom(query, known) {
   return { x, y, line: Array.from({ length: numbers.length / 2 }, (_, index) => [numbers[2 * index], numbers[2 * index + 1]]) };
 }
 
-/**
- * Return the query of an address; what is as it would be anyway is left out.
- * @param {Chosen} chosen
- * @param {Page.Lasso | null} lasso
- */
+/** Return the query of an address; what is as it would be anyway is left out. @param {Chosen} chosen @param {Page.Lasso | null} lasso */
 export function queryOf(chosen, lasso) {
   const { standard } = chosen;
-  /**
-   * @param {string} value
-   * @param {string | undefined} usual
-   */
+  /** @param {string} value @param {string | undefined} usual */
   const unless = (value, usual) => (value === usual ? "" : value);
   /** @type {Record<string, Dom.Value>} */
   const query = {
@@ -119,8 +101,7 @@ export function queryOf(chosen, lasso) {
 
 /**
  * Return the selected designs with one more, or one less; the first goes when there are too many.
- * @param {number[]} selected
- * @param {number} number
+ * @param {number[]} selected @param {number} number
  */
 export function toggled(selected, number) {
   if (selected.includes(number)) return selected.filter((one) => one !== number);

@@ -4,10 +4,7 @@ import { h } from "../lib/dom.js";
 
 /**
  * Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order.
- * @param {string} heading
- * @param {Api.Column[]} columns
- * @param {() => string[]} chosen
- * @param {(keys: string[]) => void} choose
+ * @param {string} heading @param {Api.Column[]} columns @param {() => string[]} chosen @param {(keys: string[]) => void} choose
  */
 export function chooser(heading, columns, chosen, choose) {
   const ticks = columns.map(({ key, title, unit }) => {

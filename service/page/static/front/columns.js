@@ -11,39 +11,27 @@ const ENDINGS = [
   ["_mm", "mm"], ["_deg", "deg"], ["_N", "N"], ["_W", "W"], ["_MPa", "MPa"],
 ];
 
-/**
- * Return {key, title, unit} of a key such as "peak_torque_Nm".
- * @param {string} key
- * @returns {Api.Column}
- */
+/** Return {key, title, unit} of a key such as "peak_torque_Nm". @param {string} key @returns {Api.Column} */
 export function columnOf(key) {
   const [ending, unit] = ENDINGS.find(([ending]) => key.endsWith(ending)) ?? ["", ""];
   return { key, title: key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
 }
 
-/**
- * Return the link to what a column means; the slack of a quantity is explained with it.
- * @param {string} key
- */
+/** Return the link to what a column means; the slack of a quantity is explained with it. @param {string} key */
 export function helpLink(key) {
   return link(["help", key.replace(/^slack_/, "")]);
 }
 
 /**
  * Return a value of a column with its title and unit: "peak torque 3.12 N m".
- * @param {string} key
- * @param {Api.Row[string]} value
- * @param {number} digits
+ * @param {string} key @param {Api.Row[string]} value @param {number} digits
  */
 export function named(key, value, digits = 4) {
   const { title, unit } = columnOf(key);
   return `${title} ${withUnit(value, unit, digits)}`;
 }
 
-/**
- * Return a title with the unit that the reader chose, on one line.
- * @param {Page.Heading} column
- */
+/** Return a title with the unit that the reader chose, on one line. @param {Page.Heading} column */
 export function headed(column) {
   const unit = unitOf(column.unit);
   return unit ? `${column.title},\u00a0${unit}` : column.title; // no line begins with a unit

@@ -7,11 +7,7 @@ import { isConstant } from "../lib/constant.js";
 
 /** The front of a job: `front` is what /jobs/N/front says of it. */
 export class FrontData {
-  /**
-   * @param {number} job
-   * @param {Api.Front} front
-   * @param {AbortSignal} [signal]
-   */
+  /** @param {number} job @param {Api.Front} front @param {AbortSignal} [signal] */
   constructor(job, front, signal) {
     this.job = job;
     this.front = front;
@@ -26,27 +22,17 @@ export class FrontData {
     this.known = new Map(front.columns.map((column) => [column.key, column]));
   }
 
-  /**
-   * Return {key, title, unit} of a column of this front.
-   * @param {string} key
-   * @returns {Api.Column}
-   */
+  /** Return {key, title, unit} of a column of this front. @param {string} key @returns {Api.Column} */
   column(key) {
     return /** @type {Api.Column} */ (this.known.get(key));
   }
 
-  /**
-   * Whether the designs have a column.
-   * @param {string} key
-   */
+  /** Whether the designs have a column. @param {string} key */
   knows(key) {
     return this.known.has(key);
   }
 
-  /**
-   * Fetch those of these columns that are not here yet, in one request.
-   * @param {string[]} keys
-   */
+  /** Fetch those of these columns that are not here yet, in one request. @param {string[]} keys */
   async need(keys) {
     const wanted = [...new Set(keys)].filter((key) => this.known.has(key) && !this.kept.has(key));
     if (!wanted.length || !this.count) return;
@@ -54,59 +40,37 @@ export class FrontData {
     this.take(values);
   }
 
-  /**
-   * Take in columns as the service gives them: {key: cells}.
-   * @param {Record<string, Api.Row[string][]>} values
-   */
+  /** Take in columns as the service gives them: {key: cells}. @param {Record<string, Api.Row[string][]>} values */
   take(values) {
     for (const [key, cells] of Object.entries(values)) this.kept.set(key, stored(cells));
   }
 
-  /**
-   * Whether a column is here.
-   * @param {string} key
-   */
+  /** Whether a column is here. @param {string} key */
   has(key) {
     return this.kept.has(key);
   }
 
-  /**
-   * Return a column that is here.
-   * @param {string} key
-   */
+  /** Return a column that is here. @param {string} key */
   of(key) {
     return /** @type {Kept} */ (this.kept.get(key));
   }
 
-  /**
-   * Return the numbers of a column, NaN where a design has none; of words, their places in `words(key)`.
-   * @param {string} key
-   */
+  /** Return the numbers of a column, NaN where a design has none; of words, their places in `words(key)`. @param {string} key */
   numbers(key) {
     return this.of(key).numbers;
   }
 
-  /**
-   * Return the different words of a column in alphabetical order, null for a column of numbers.
-   * @param {string} key
-   */
+  /** Return the different words of a column in alphabetical order, null for a column of numbers. @param {string} key */
   words(key) {
     return this.kept.get(key)?.words ?? null;
   }
 
-  /**
-   * Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined.
-   * @param {string} key
-   */
+  /** Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined. @param {string} key */
   range(key) {
     return this.of(key).range;
   }
 
-  /**
-   * Return what a design, counted from 0, has in a column: a number, a word, or null.
-   * @param {string} key
-   * @param {number} row
-   */
+  /** Return what a design, counted from 0, has in a column: a number, a word, or null. @param {string} key @param {number} row */
   cell(key, row) {
     const { numbers, words } = this.of(key);
     const number = numbers[row];
@@ -114,18 +78,12 @@ export class FrontData {
     return words ? words[number] : number;
   }
 
-  /**
-   * Return the best sense of a column: "maximise" where more is better, else "minimise".
-   * @param {string} key
-   */
+  /** Return the best sense of a column: "maximise" where more is better, else "minimise". @param {string} key */
   sense(key) {
     return this.objectives.find(({ column }) => column === key)?.sense ?? "minimise";
   }
 
-  /**
-   * Return all designs in the order of a column, smallest first, those without a value last.
-   * @param {string} key
-   */
+  /** Return all designs in the order of a column, smallest first, those without a value last. @param {string} key */
   order(key) {
     let order = this.orders.get(key);
     if (!order) {
@@ -141,8 +99,7 @@ export class FrontData {
 
 /**
  * Return a column as it is kept. Plain loops: of 10,000 designs and more, with iterators they take five times as long.
- * @param {Api.Row[string][]} cells
- * @returns {Kept}
+ * @param {Api.Row[string][]} cells @returns {Kept}
  */
 function stored(cells) {
   const words = cells.some((cell) => typeof cell === "string") ? [...new Set(cells.filter((cell) => cell !== null).map(String))].sort() : null;

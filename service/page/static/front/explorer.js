@@ -48,10 +48,7 @@ function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
 
 /** What is chosen in a front, and the parts that show it; they tell it what the reader does. */
 export class Explorer {
-  /**
-   * @param {HTMLElement} place
-   * @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given
-   */
+  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given */
   constructor(place, { job, data, chosen, limits, signal }) {
     this.place = place;
     this.job = job;
@@ -121,8 +118,7 @@ export class Explorer {
 
   /**
    * Take over choices and draw what they change: "marks", "table", "chosen" (designs) or "all".
-   * @param {Partial<Chosen>} choices
-   * @param {What} what
+   * @param {Partial<Chosen>} choices @param {What} what
    */
   async change(choices, what) {
     Object.assign(this.chosen, choices);
@@ -135,11 +131,7 @@ export class Explorer {
     this.update(what);
   }
 
-  /**
-   * Set a limit, null to let go.
-   * @param {string} key
-   * @param {Page.Limit | null} limit
-   */
+  /** Set a limit, null to let go. @param {string} key @param {Page.Limit | null} limit */
   limit(key, limit) {
     this.limits.set(key, limit);
     this.chosen.page = 1;
@@ -147,10 +139,7 @@ export class Explorer {
     else this.change({}, "chosen");
   }
 
-  /**
-   * Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go.
-   * @param {Page.Point[] | null} line
-   */
+  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. @param {Page.Point[] | null} line */
   surround(line) {
     this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
     this.chosen.page = 1;
@@ -163,10 +152,7 @@ export class Explorer {
     this.update("marks"); // a line around designs is drawn with them
   }
 
-  /**
-   * Draw in the next frame; several changes within a frame are drawn once.
-   * @param {What} what
-   */
+  /** Draw in the next frame; several changes within a frame are drawn once. @param {What} what */
   update(what) {
     if (!this.waiting || ORDER.indexOf(what) > ORDER.indexOf(this.waiting)) this.waiting = what;
     if (this.frame || this.signal.aborted) return;
@@ -206,10 +192,7 @@ export class Explorer {
     this.selected.draw();
   }
 
-  /**
-   * Draw the table; where it may wait, after the frame, and not again within a moment.
-   * @param {boolean} waits
-   */
+  /** Draw the table; where it may wait, after the frame, and not again within a moment. @param {boolean} waits */
   drawTable(waits) {
     clearTimeout(this.tabling);
     if (waits) {
@@ -240,10 +223,7 @@ export class Explorer {
   names() {
     /** @type {Map<number, string[]>} */
     const names = new Map();
-    /**
-     * @param {number} row
-     * @param {string} name
-     */
+    /** @param {number} row @param {string} name */
     const add = (row, name) => names.set(row, [...(names.get(row) ?? []), name]);
     if (this.front.knee !== null) add(this.front.knee, "knee");
     for (const [quantity, row] of Object.entries(this.front.extremes)) {
@@ -266,10 +246,7 @@ export class Explorer {
     location.hash = this.hrefOf(row);
   }
 
-  /**
-   * Return the link of a design, beside the selected ones if it is one of them.
-   * @param {number} row
-   */
+  /** Return the link of a design, beside the selected ones if it is one of them. @param {number} row */
   hrefOf(row) {
     return link(["jobs", this.job.id, "designs", row + 1]);
   }
@@ -299,10 +276,7 @@ export class Explorer {
     this.setAxes(keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }));
   }
 
-  /**
-   * @param {number} index
-   * @param {number} by
-   */
+  /** @param {number} index @param {number} by */
   moveAxis(index, by) {
     const axes = [...this.chosen.axes];
     axes.splice(index + by, 0, ...axes.splice(index, 1));

@@ -11,11 +11,7 @@ const NEAR = 1e-9; // relative: a design on a limit is within it, also where the
  * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
  */
 export class Limits {
-  /**
-   * @param {FrontData} data
-   * @param {Map<string, Page.Limit>} given
-   * @param {Page.Lasso | null} lasso
-   */
+  /** @param {FrontData} data @param {Map<string, Page.Limit>} given @param {Page.Lasso | null} lasso */
   constructor(data, given = new Map(), lasso = null) {
     this.data = data;
     this.of = given;
@@ -24,11 +20,7 @@ export class Limits {
     this.chosen = 0;
   }
 
-  /**
-   * Set the limit of a column, or take it away with null.
-   * @param {string} key
-   * @param {Page.Limit | null} limit
-   */
+  /** Set the limit of a column, or take it away with null. @param {string} key @param {Page.Limit | null} limit */
   set(key, limit) {
     const open = !limit || (limit.words ? limit.words.length === 0 : limit.low === null && limit.high === null);
     if (open) this.of.delete(key);

@@ -9,10 +9,7 @@ import { apiSystem, withUnit } from "../lib/numbers.js";
 
 const PAUSE = 150; // ms after a slider moved
 
-/**
- * Return {place, draw(what)} of the marks of an explorer.
- * @param {Explorer} explorer
- */
+/** Return {place, draw(what)} of the marks of an explorer. @param {Explorer} explorer */
 export function marksPanel(explorer) {
   const { data, front, chosen } = explorer;
   const list = h("ul", { class: "marks" });
@@ -34,10 +31,7 @@ export function marksPanel(explorer) {
   let asked = "";
   explorer.signal.addEventListener("abort", () => clearTimeout(timer));
 
-  /**
-   * @param {Api.Objective} given
-   * @param {number} index
-   */
+  /** @param {Api.Objective} given @param {number} index */
   function slider({ title }, index) {
     const value = h("output", { class: "number" });
     const input = h("input", { type: "range", min: 0, max: 10, step: 1, name: `weight-${index}`, oninput: () => {
@@ -87,10 +81,7 @@ export function marksPanel(explorer) {
     }, PAUSE);
   }
 
-  /**
-   * @param {number} row
-   * @param {string} name
-   */
+  /** @param {number} row @param {string} name */
   function item(row, name) {
     const of = data.objectives.map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4)).join(" · ");
     return h("li", { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },

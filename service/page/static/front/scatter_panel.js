@@ -11,16 +11,11 @@ import { headed } from "./columns.js";
 
 /**
  * Return {place, draw(), legend(), point()} around the scatter of an explorer.
- * @param {Explorer} explorer
- * @param {ReturnType<typeof scatter>} dots
+ * @param {Explorer} explorer @param {ReturnType<typeof scatter>} dots
  */
 export function scatterPanel(explorer, dots) {
   const { data, chosen } = explorer;
-  /**
-   * @param {string} label
-   * @param {"x" | "y" | "colour"} name
-   * @param {string} none
-   */
+  /** @param {string} label @param {"x" | "y" | "colour"} name @param {string} none */
   const pick = (label, name, none = "") => {
     const select = h("select", { name, onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all") },
       none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title)));
@@ -52,10 +47,7 @@ export function scatterPanel(explorer, dots) {
     const column = data.column(chosen.colour);
     const words = data.words(chosen.colour);
     const inks = dots.colours();
-    /**
-     * @param {string} ink
-     * @param {boolean} [wide]
-     */
+    /** @param {string} ink @param {boolean} [wide] */
     const patch = (ink, wide) => {
       const node = h("span", { class: wide ? "shade" : "patch" });
       node.style.background = ink;

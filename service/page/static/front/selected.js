@@ -5,10 +5,7 @@ import { fill, h } from "../lib/dom.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-/**
- * Return {place, draw()} for the selected designs of an explorer.
- * @param {Explorer} explorer
- */
+/** Return {place, draw()} for the selected designs of an explorer. @param {Explorer} explorer */
 export function selectedBar(explorer) {
   const place = h("div", { class: "row selected-designs" });
   /** @type {string | null} */

@@ -10,10 +10,7 @@ const PAGE = 20;
 /** @type {Record<string, number>} */
 const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 
-/**
- * Return {place, draw()} of the table of an explorer.
- * @param {Explorer} explorer
- */
+/** Return {place, draw()} of the table of an explorer. @param {Explorer} explorer */
 export function designTable(explorer) {
   const head = h("thead");
   const body = h("tbody");
@@ -50,12 +47,7 @@ export function designTable(explorer) {
     const names = explorer.names();
     fill(body, [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)));
     if (!found.length) fill(body, h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")));
-    /**
-     * @param {string} sign
-     * @param {string} label
-     * @param {number} to
-     * @param {boolean} disabled
-     */
+    /** @param {string} sign @param {string} label @param {number} to @param {boolean} disabled */
     const turn = (sign, label, to, disabled) => h("button", { type: "button", "aria-label": label, "data-act": label, disabled, onclick: () => explorer.change({ page: to }, "table") }, sign);
     const first = (page - 1) * PAGE;
     fill(pages,
@@ -78,11 +70,7 @@ export function designTable(explorer) {
       h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"));
   }
 
-  /**
-   * @param {number} row
-   * @param {string[]} columns
-   * @param {Map<number, string[]>} names
-   */
+  /** @param {number} row @param {string[]} columns @param {Map<number, string[]>} names */
   function line(row, columns, names) {
     const { data, chosen } = explorer;
     const number = row + 1;
@@ -97,10 +85,7 @@ export function designTable(explorer) {
       }));
   }
 
-  /**
-   * Arrows go from row to row, Enter opens, the space bar selects.
-   * @param {KeyboardEvent} event
-   */
+  /** Arrows go from row to row, Enter opens, the space bar selects. @param {KeyboardEvent} event */
   function keys(event) {
     const step = STEPS[event.key];
     const at = event.target instanceof Element ? event.target : body;
@@ -132,9 +117,7 @@ export function designTable(explorer) {
 
 /**
  * Return a value with as many places as all of its column have, so that the points are in line; others as they are.
- * @param {Api.Row[string]} value
- * @param {string} unit
- * @param {Page.Range} range
+ * @param {Api.Row[string]} value @param {string} unit @param {Page.Range} range
  */
 function aligned(value, unit, { low, high }) {
   const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));

@@ -18,11 +18,7 @@ const OUT = { pin: [112.5, 106.1], slider: [241, LINE] };
 const IN = { pin: [38.5, 122.7], slider: [163.2, LINE] };
 const RADIUS = 38;
 
-/**
- * Return the picture of a kind of quantity; title: for readers of the screen.
- * @param {string} kind
- * @param {string} title
- */
+/** Return the picture of a kind of quantity; title: for readers of the screen. @param {string} kind @param {string} title */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
   return svg("svg", { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
@@ -71,34 +67,22 @@ function ghost({ pin, slider }) {
   return [svg("path", { class: "ghost", d: `M${O}L${pin}L${slider}` }), box(slider, "ghost")];
 }
 
-/**
- * @param {Page.Point} centre
- * @param {string} kind
- */
+/** @param {Page.Point} centre @param {string} kind */
 function box([x, y], kind) {
   return svg("rect", { class: kind === "dashed" ? "mark dashed" : kind, x: x - 18, y: y - 12, width: 36, height: 24, rx: 2 });
 }
 
-/**
- * @param {Page.Point} from
- * @param {Page.Point} to
- */
+/** @param {Page.Point} from @param {Page.Point} to */
 function bold(from, to) {
   return svg("path", { class: "mark thick", d: `M${from}L${to}` });
 }
 
-/**
- * @param {Page.Point} from
- * @param {Page.Point} to
- */
+/** @param {Page.Point} from @param {Page.Point} to */
 function thin(from, to) {
   return svg("path", { class: "mark dashed", d: `M${from}L${to}` });
 }
 
-/**
- * @param {Page.Point} from
- * @param {number} to
- */
+/** @param {Page.Point} from @param {number} to */
 function drop([x, y], to) {
   return svg("path", { class: "mark dashed", d: `M${x} ${y}V${to}` });
 }
@@ -113,11 +97,7 @@ function stroked(d) {
   return svg("path", { class: "mark", d });
 }
 
-/**
- * @param {Page.Point} from
- * @param {Page.Point} to
- * @param {number} way
- */
+/** @param {Page.Point} from @param {Page.Point} to @param {number} way */
 function wide(from, to, way) {
   return svg("path", { class: "mark", d: `M${from}A${RADIUS} ${RADIUS} 0 1 ${way ? 0 : 1} ${to}` });
 }
@@ -126,17 +106,9 @@ function turning() {
   return svg("path", { class: "mark", d: "M48.1 85.1A38 38 0 0 0 42 130M34.5 122L42 130L46 120" });
 }
 
-/**
- * A line with an arrow head at its end.
- * @param {Page.Point} from
- * @param {Page.Point} to
- * @param {boolean} both
- */
+/** A line with an arrow head at its end. @param {Page.Point} from @param {Page.Point} to @param {boolean} both */
 function arrow(from, to, both = false) {
-  /**
-   * @param {Page.Point} tip
-   * @param {Page.Point} other
-   */
+  /** @param {Page.Point} tip @param {Page.Point} other */
   const head = (tip, other) => {
     const way = Math.atan2(other[1] - tip[1], other[0] - tip[0]);
     /** @param {number} by */
@@ -146,19 +118,12 @@ function arrow(from, to, both = false) {
   return svg("path", { class: "mark", d: `M${from}L${to}${head(to, from)}${both ? head(from, to) : ""}` });
 }
 
-/**
- * @param {Page.Point} from
- * @param {Page.Point} to
- */
+/** @param {Page.Point} from @param {Page.Point} to */
 function size(from, to) {
   return arrow(from, to, Math.hypot(to[0] - from[0], to[1] - from[1]) > 12);
 }
 
-/**
- * @param {number} x
- * @param {number} y
- * @param {string} text
- */
+/** @param {number} x @param {number} y @param {string} text */
 function label(x, y, text) {
   return svg("text", { x, y }, text);
 }

@@ -9,16 +9,11 @@ import { ENDED } from "./states.js";
 /**
  * Return the buttons of a job. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
  * whoever deleted it.
- * @param {Api.Job} job
- * @param {(job: Api.Job | null) => unknown} changed
+ * @param {Api.Job} job @param {(job: Api.Job | null) => unknown} changed
  */
 export function actions(job, changed) {
   const of = `run ${job.id}, ${job.name}`;
-  /**
-   * @param {string} label
-   * @param {"cancel" | "resume"} path
-   * @param {string} told
-   */
+  /** @param {string} label @param {"cancel" | "resume"} path @param {string} told */
   const act = (label, path, told) =>
     h("button", { type: "button", "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
       const now = await post(`jobs/${job.id}/${path}`);
@@ -35,10 +30,7 @@ export function actions(job, changed) {
       changed(null);
     });
   };
-  /**
-   * @param {HTMLButtonElement} button
-   * @param {() => Promise<void>} doing
-   */
+  /** @param {HTMLButtonElement} button @param {() => Promise<void>} doing */
   const run = async (button, doing) => {
     button.disabled = true;
     try {
@@ -63,10 +55,7 @@ export function actions(job, changed) {
 
 /**
  * Ask whether something is meant; the promise gives the answer.
- * @param {string} question
- * @param {string} consequence
- * @param {string} yes
- * @returns {Promise<boolean>}
+ * @param {string} question @param {string} consequence @param {string} yes @returns {Promise<boolean>}
  */
 function confirmed(question, consequence, yes) {
   return new Promise((answer) => {

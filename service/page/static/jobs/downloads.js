@@ -9,21 +9,13 @@ const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs 
 
 /**
  * Return a list of files behind a button; those that have to be asked for are asked for when it opens.
- * @param {Api.Job} job
- * @param {{ designs: boolean, signal: AbortSignal }} given
+ * @param {Api.Job} job @param {{ designs: boolean, signal: AbortSignal }} given
  */
 export function downloads(job, { designs, signal }) {
-  /**
-   * @param {string} path
-   * @param {string} name
-   */
+  /** @param {string} path @param {string} name */
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
   // In the units that the reader prefers at the moment.
-  /**
-   * @param {string} path
-   * @param {Dom.Attributes<HTMLAnchorElement>} attributes
-   * @param {string | undefined} name
-   */
+  /** @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name */
   const shown = (path, attributes, name) => {
     const link = h("a", { ...attributes }, name);
     const renew = () => (link.href = address(`jobs/${job.id}/${path}`, { units: apiSystem() }));
@@ -60,10 +52,7 @@ export function downloads(job, { designs, signal }) {
     fill(figures, h("li", { class: "quiet" }, "Looking …"));
     try {
       const found = await get(`jobs/${job.id}/figures`, {}, signal);
-      /**
-       * @param {string} name
-       * @param {string} kind
-       */
+      /** @param {string} name @param {string} kind */
       const as = (name, kind) => shown(`figures/${name}.${kind}`, { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
       fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
     } catch (problem) {

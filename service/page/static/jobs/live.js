@@ -21,9 +21,7 @@ const AT_LEAST = 5000; // ms that this takes at least
 /**
  * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
  * is gone.
- * @param {HTMLElement} place
- * @param {Api.Job} job
- * @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} given
+ * @param {HTMLElement} place @param {Api.Job} job @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} given
  */
 export function watch(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
@@ -83,19 +81,13 @@ export function watch(place, job, { signal, changed }) {
     } else note(event.at, String(event.data.text));
   }
 
-  /**
-   * @param {number} at
-   * @param {string} sentence
-   */
+  /** @param {number} at @param {string} sentence */
   function note(at, sentence) {
     log.prepend(h("li", {}, h("span", { class: "quiet number" }, clock(at)), ` ${sentence}`));
     while (log.children.length > LOG) log.lastElementChild?.remove();
   }
 
-  /**
-   * Take in the end of a round; a search that began anew takes the place of the one before.
-   * @param {Api.Progress} data
-   */
+  /** Take in the end of a round; a search that began anew takes the place of the one before. @param {Api.Progress} data */
   function grow(data) {
     while (rounds.length && rounds[rounds.length - 1].round >= data.round) rounds.pop();
     rounds.push(data);
@@ -106,10 +98,7 @@ export function watch(place, job, { signal, changed }) {
     });
   }
 
-  /**
-   * @param {Api.Progress} data
-   * @param {boolean} running
-   */
+  /** @param {Api.Progress} data @param {boolean} running */
   function stand(data, running = true) {
     const steps = data.steps ?? 0; // a long stage between two rounds, of which nobody knows how long it takes
     bar.max = steps || data.rounds;
@@ -135,10 +124,7 @@ export function watch(place, job, { signal, changed }) {
     }
   }
 
-  /**
-   * Look at the job soon: its front so far, and its state.
-   * @param {number} wait
-   */
+  /** Look at the job soon: its front so far, and its state. @param {number} wait */
   function soon(wait = OFTEN) {
     if (timer !== null) {
       if (wait > 0) return;
@@ -177,10 +163,7 @@ export function watch(place, job, { signal, changed }) {
     latest = found;
     const columns = found.columns.map(columnOf);
     if (columns.length > 2 && !pickers.childElementCount) {
-      /**
-       * @param {string} label
-       * @param {"x" | "y"} name
-       */
+      /** @param {string} label @param {"x" | "y"} name */
       const pick = (label, name) => h("label", {}, `${label} `, h("select", { onchange: (event) => {
         axes[name] = Number(event.currentTarget.value);
         drawFront(found);

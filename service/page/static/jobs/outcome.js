@@ -3,10 +3,7 @@
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 
-/**
- * Return what to say of a job that has ended otherwise than done; null of one that is done.
- * @param {Api.Job} job
- */
+/** Return what to say of a job that has ended otherwise than done; null of one that is done. @param {Api.Job} job */
 export function outcome(job) {
   const again = h("a", { class: "button", href: link(["new"], { from: job.id }) }, "Change the job");
   const found = job.summary?.designs ?? 0;
@@ -25,11 +22,7 @@ export function outcome(job) {
   return null;
 }
 
-/**
- * @param {string} heading
- * @param {string} reason
- * @param {Dom.Child[]} remedy
- */
+/** @param {string} heading @param {string} reason @param {Dom.Child[]} remedy */
 function said(heading, reason, remedy) {
   return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, reason), h("p", {}, remedy));
 }

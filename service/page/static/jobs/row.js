@@ -11,8 +11,7 @@ import { ago } from "./times.js";
 
 /**
  * Return a run as an item of the list. compare(number, yes): it is ticked or not; changed(): something was done with it.
- * @param {Api.Job} job
- * @param {{ chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.Job | null) => unknown }} given
+ * @param {Api.Job} job @param {{ chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.Job | null) => unknown }} given
  */
 export function runRow(job, { chosen, compare, changed }) {
   const { summary, progress } = job;
@@ -30,10 +29,7 @@ export function runRow(job, { chosen, compare, changed }) {
     h("div", { class: "row acts" }, actions(job, changed)));
 }
 
-/**
- * Return how far a job is, or what it found.
- * @param {Api.Job} job
- */
+/** Return how far a job is, or what it found. @param {Api.Job} job */
 function standing(job) {
   if (job.summary?.designs) {
     const { designs, best } = job.summary;

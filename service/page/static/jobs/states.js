@@ -11,18 +11,12 @@ export const STATES = ["queued", "running", "done", "infeasible", "cancelled", "
 /** @type {string[]} */
 export const ENDED = ["done", "infeasible", "cancelled", "failed"];
 
-/**
- * Return what a state is called.
- * @param {string} state
- */
+/** Return what a state is called. @param {string} state */
 export function stateWord(state) {
   return WORDS[state] ?? state;
 }
 
-/**
- * Return a badge that says in which state a job is.
- * @param {Api.Job} job
- */
+/** Return a badge that says in which state a job is. @param {Api.Job} job */
 export function badge(job) {
   const state = job.state === "running" && job.cancel_asked ? "stopping" : job.state;
   return h("span", { class: `state ${state}` }, h("span", { "aria-hidden": "true" }, SIGNS[state] ?? ""), ` ${stateWord(state)}`);

@@ -5,10 +5,7 @@ import { h } from "../lib/dom.js";
 /** @type {[string, number][]} */
 const STEPS = [["day", 86_400], ["hour", 3600], ["minute", 60]];
 
-/**
- * Return how long ago a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at.
- * @param {number} seconds
- */
+/** Return how long ago a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
 export function ago(seconds) {
   const date = new Date(1000 * seconds);
   /** @param {{ currentTarget: HTMLElement }} event */
@@ -28,18 +25,12 @@ function agoText(seconds) {
   return `${count} ${unit}${count === 1 ? "" : "s"} ago`;
 }
 
-/**
- * Return the time of the day of an event.
- * @param {number} seconds
- */
+/** Return the time of the day of an event. @param {number} seconds */
 export function clock(seconds) {
   return new Date(1000 * seconds).toLocaleTimeString(undefined, { hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
-/**
- * Return a duration in words: "about 3 min".
- * @param {number} seconds
- */
+/** Return a duration in words: "about 3 min". @param {number} seconds */
 export function duration(seconds) {
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
   if (seconds < 100) return `${Math.round(seconds)} s`;

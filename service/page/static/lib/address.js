@@ -8,8 +8,7 @@ export function read() {
 
 /**
  * Return a link to a view: link(["jobs", 7], {x: "crank_mm"}). Values that are null or empty are left out.
- * @param {readonly (string | number)[]} parts
- * @param {Record<string, Dom.Value>} query
+ * @param {readonly (string | number)[]} parts @param {Record<string, Dom.Value>} query
  */
 export function link(parts, query = {}) {
   const parameters = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "").map(([key, value]) => [key, String(value)]));
@@ -38,11 +37,7 @@ window.addEventListener("hashchange", ({ oldURL }) => {
   sessionStorage.setItem(`left ${hash.split("?")[0]}`, hash);
 });
 
-/**
- * Go to a view.
- * @param {readonly (string | number)[]} parts
- * @param {Record<string, Dom.Value>} query
- */
+/** Go to a view. @param {readonly (string | number)[]} parts @param {Record<string, Dom.Value>} query */
 export function go(parts, query = {}) {
   location.hash = link(parts, query);
 }

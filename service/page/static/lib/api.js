@@ -28,8 +28,7 @@ export function statusOf(error) {
 
 /**
  * Return the address of something in the API; query: an object, its arrays repeat a key, null leaves one out.
- * @param {string} path
- * @param {Api.Query} query
+ * @param {string} path @param {Api.Query} query
  */
 export function address(path, query = {}) {
   const parameters = new URLSearchParams();
@@ -77,11 +76,7 @@ export function remove(path) {
 
 /**
  * The answer is what the description of the API says, which the tests of the service hold it to.
- * @param {string} method
- * @param {string} url
- * @param {unknown} [body]
- * @param {AbortSignal} [signal]
- * @param {Record<string, string>} [more]
+ * @param {string} method @param {string} url @param {unknown} [body] @param {AbortSignal} [signal] @param {Record<string, string>} [more]
  */
 async function ask(method, url, body, signal, more = {}) {
   /** @type {Record<string, string>} */

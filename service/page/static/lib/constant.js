@@ -4,9 +4,7 @@ export const SAME = 1e-9; // relative spread of what counts as one number
 
 /**
  * Return whether the numbers from `low` to `high` are one. size: what they are rounded against besides, a target.
- * @param {number} low
- * @param {number} high
- * @param {number} size
+ * @param {number} low @param {number} high @param {number} size
  */
 export function isConstant(low, high, size = 0) {
   const apart = high - low;

@@ -26,19 +26,14 @@ export function svg(tag, attributes = {}, ...children) {
   return dress(document.createElementNS(SVG, tag), attributes, children);
 }
 
-/**
- * Return the element of the document that has an id; the document that comes with the page has it.
- * @param {string} id
- */
+/** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */
 export function byId(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));
 }
 
 /**
  * Return the first element within a node that a selector names; null if there is none.
- * @param {Element} node
- * @param {string} selector
- * @returns {HTMLElement | null}
+ * @param {Element} node @param {string} selector @returns {HTMLElement | null}
  */
 export function first(node, selector) {
   return node.querySelector(selector);
@@ -50,11 +45,7 @@ export function focused(node) {
   return activeElement instanceof HTMLElement && node.contains(activeElement) ? activeElement : null;
 }
 
-/**
- * Put children in place of those that a node has.
- * @param {Element} node
- * @param {...Dom.Child} children
- */
+/** Put children in place of those that a node has. @param {Element} node @param {...Dom.Child} children */
 export function fill(node, ...children) {
   node.replaceChildren(...kept(children));
 }

@@ -5,11 +5,7 @@ import { byId, h } from "./dom.js";
 
 const SHOWN = 6000; // ms
 
-/**
- * Say something. kind: "info" goes away by itself, "error" stays until it is closed.
- * @param {string} sentence
- * @param {"info" | "error"} kind
- */
+/** Say something. kind: "info" goes away by itself, "error" stays until it is closed. @param {string} sentence @param {"info" | "error"} kind */
 export function say(sentence, kind = "info") {
   const notice = h("div", { class: `notice ${kind}` }, h("p", {}, sentence));
   notice.append(h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"));
@@ -17,10 +13,7 @@ export function say(sentence, kind = "info") {
   if (kind === "info") setTimeout(() => notice.remove(), SHOWN);
 }
 
-/**
- * Say what went wrong; nothing for what was only given up.
- * @param {unknown} error
- */
+/** Say what went wrong; nothing for what was only given up. @param {unknown} error */
 export function sayProblem(error) {
   if (!isAbort(error)) say(sentenceOf(error), "error");
 }

@@ -7,10 +7,7 @@ const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the serv
 /** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
 
-/**
- * The system of units that the reader chose: "si" or "inch".
- * @returns {"si" | "inch"}
- */
+/** The system of units that the reader chose: "si" or "inch". @returns {"si" | "inch"} */
 export function system() {
   return localStorage.getItem("units") === "inch" ? "inch" : "si";
 }
@@ -25,49 +22,32 @@ export async function readySystem() {
   SYSTEMS.inch ??= (await get("units")).inch;
 }
 
-/**
- * Choose a system; everything that shows numbers is drawn again (event "units" of the window).
- * @param {string} name
- */
+/** Choose a system; everything that shows numbers is drawn again (event "units" of the window). @param {string} name */
 export async function chooseSystem(name) {
   await readySystem();
   localStorage.setItem("units", name);
   window.dispatchEvent(new Event("units"));
 }
 
-/**
- * Return the unit that is shown for one of the API, such as "in" for "mm".
- * @param {string} unit
- * @returns {string}
- */
+/** Return the unit that is shown for one of the API, such as "in" for "mm". @param {string} unit @returns {string} */
 export function unitOf(unit) {
   const name = SYSTEMS[system()]?.[unit]?.unit ?? unit;
   return PRETTY[name] ?? name?.replace("^2", "²").replace("^3", "³");
 }
 
-/**
- * Return a value of the API in the unit that is shown for it.
- * @param {number} value
- * @param {string} unit
- */
+/** Return a value of the API in the unit that is shown for it. @param {number} value @param {string} unit */
 export function inShown(value, unit) {
   return value * (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
-/**
- * Return a shown value in the unit of the API.
- * @param {number} value
- * @param {string} unit
- */
+/** Return a shown value in the unit of the API. @param {number} value @param {string} unit */
 export function fromShown(value, unit) {
   return value / (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
 /**
  * Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash.
- * @param {Api.Row[string] | undefined} value
- * @param {string} unit
- * @param {number} digits
+ * @param {Api.Row[string] | undefined} value @param {string} unit @param {number} digits
  */
 export function text(value, unit = "", digits = 5) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
@@ -83,10 +63,7 @@ export function text(value, unit = "", digits = 5) {
 /**
  * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
  * asked for: what optimise/feasibility/safe_side.py does for sentences, in the unit that is shown.
- * @param {number} value
- * @param {string} unit
- * @param {"up" | "down"} side
- * @param {number} digits
+ * @param {number} value @param {string} unit @param {"up" | "down"} side @param {number} digits
  */
 export function limitText(value, unit, side, digits = 5) {
   const shown = inShown(value, unit);
@@ -97,12 +74,7 @@ export function limitText(value, unit, side, digits = 5) {
   return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replaceAll("-", "−");
 }
 
-/**
- * Return a number with its unit: "41.2 mm", "38°".
- * @param {Api.Row[string] | undefined} value
- * @param {string} unit
- * @param {number} digits
- */
+/** Return a number with its unit: "41.2 mm", "38°". @param {Api.Row[string] | undefined} value @param {string} unit @param {number} digits */
 export function withUnit(value, unit = "", digits = 5) {
   if (typeof value !== "number" || Number.isNaN(value)) return text(value);
   const shown = unitOf(unit);
@@ -111,18 +83,13 @@ export function withUnit(value, unit = "", digits = 5) {
 
 /**
  * Return the ends of an axis as text: a millionth of the axis is zero to every reader.
- * @param {Page.Range} given
- * @param {string} unit
- * @param {number} digits
+ * @param {Page.Range} given @param {string} unit @param {number} digits
  */
 export function ends({ low, high }, unit, digits = 4) {
   return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
 }
 
-/**
- * Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms.
- * @param {number} count
- */
+/** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. @param {number} count */
 export function grouped(count) {
   return String(count).replace(/\B(?=(\d{3})+$)/g, ",");
 }

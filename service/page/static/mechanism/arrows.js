@@ -19,10 +19,7 @@ export const ARROWS = [
   { name: "load-force", title: "load on slider", at: 2, along: ["load_N", null] },
 ];
 
-/**
- * Return the greatest force among curves, N; 0 where they have none.
- * @param {Api.Curves} curves
- */
+/** Return the greatest force among curves, N; 0 where they have none. @param {Api.Curves} curves */
 export function largestForce(curves) {
   let greatest = 0;
   for (const { along } of ARROWS) {
@@ -40,21 +37,12 @@ export function arrows() {
   let unit = 0; // pixels in a newton
   return {
     node: svg("g", { class: "forces", hidden: true }, lines),
-    /**
-     * @param {Api.Curves} motion
-     * @param {unknown} _view
-     * @param {number | undefined} largest
-     */
+    /** @param {Api.Curves} motion @param {unknown} _view @param {number | undefined} largest */
     size(motion, _view, largest = largestForce(motion)) {
       curves = motion;
       unit = largest > 0 ? LONGEST / largest : 0;
     },
-    /**
-     * @param {Page.Point} pivot
-     * @param {Page.Point} pin
-     * @param {Page.Point} slider
-     * @param {number} angle
-     */
+    /** @param {Page.Point} pivot @param {Page.Point} pin @param {Page.Point} slider @param {number} angle */
     move(pivot, pin, slider, angle) {
       const places = [pivot, pin, slider];
       ARROWS.forEach(({ at, along }, n) => {
@@ -65,11 +53,7 @@ export function arrows() {
   };
 }
 
-/**
- * @param {Page.Point} from
- * @param {number} right
- * @param {number} down
- */
+/** @param {Page.Point} from @param {number} right @param {number} down */
 function arrow([x, y], right, down) {
   const size = Math.hypot(right, down);
   if (size < SHORTEST) return "M0 0";

@@ -23,8 +23,7 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
- * @param {HTMLElement} place
- * @param {{ label: string }} given
+ * @param {HTMLElement} place @param {{ label: string }} given
  */
 export function drawing(place, { label }) {
   const parts = movingParts();
@@ -55,10 +54,7 @@ export function drawing(place, { label }) {
     turn(angle);
   }
 
-  /**
-   * @param {number} to
-   * @param {boolean} settled
-   */
+  /** @param {number} to @param {boolean} settled */
   function turn(to, settled = true) {
     angle = to;
     if (!view || !shown) return;
@@ -77,11 +73,7 @@ export function drawing(place, { label }) {
   return {
     node,
     handle,
-    /**
-     * @param {Page.Lengths} linkage
-     * @param {Api.Curves} motion
-     * @param {Options} options
-     */
+    /** @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Options} options */
     show(linkage, motion, options = {}) {
       shown = { linkage, motion, options };
       arrange();
@@ -95,10 +87,7 @@ export function drawing(place, { label }) {
       parts.forces.node.toggleAttribute("hidden", !yes);
       turn(angle);
     },
-    /**
-     * @param {number} x
-     * @param {number} y
-     */
+    /** @param {number} x @param {number} y */
     angleAt(x, y) {
       if (!view) return angle;
       const box = node.getBoundingClientRect();
@@ -109,10 +98,7 @@ export function drawing(place, { label }) {
   };
 }
 
-/**
- * @param {Api.Curves} motion
- * @param {Page.Point | undefined} angles
- */
+/** @param {Api.Curves} motion @param {Page.Point | undefined} angles */
 function deadCentres(motion, angles) {
   const { low, high } = reachOf(motion);
   const found = angles ?? [low.angle, high.angle];
@@ -156,10 +142,7 @@ function movingParts() {
       side = "";
     },
     /**
-     * @param {Page.Point} pivot
-     * @param {Page.Point} crankPin
-     * @param {Page.Point} slider
-     * @param {number | null | undefined} degrees
+     * @param {Page.Point} pivot @param {Page.Point} crankPin @param {Page.Point} slider @param {number | null | undefined} degrees
      * @param {boolean} settled
      */
     move(pivot, crankPin, slider, degrees, settled) {
@@ -174,9 +157,7 @@ function movingParts() {
 
   /**
    * Mark the angle between the rod and the normal of the slider line, on the rod's side. along: from the slider pin.
-   * @param {Page.Point} along
-   * @param {number | null | undefined} degrees
-   * @param {boolean} settled
+   * @param {Page.Point} along @param {number | null | undefined} degrees @param {boolean} settled
    */
   function angleBetween(along, degrees, settled) {
     const [away, up] = [along[0] < 0 ? 1 : -1, along[1] < 0 ? -1 : 1];

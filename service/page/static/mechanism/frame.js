@@ -22,9 +22,7 @@ export function reachOf(motion) {
 
 /**
  * Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider.
- * @param {Page.Lengths} linkage
- * @param {Api.Curves} motion
- * @returns {Frame}
+ * @param {Page.Lengths} linkage @param {Api.Curves} motion @returns {Frame}
  */
 export function frameOf({ crank_mm: r, offset_mm: e }, motion) {
   const { low, high } = reachOf(motion);
@@ -39,11 +37,7 @@ export function frameOf({ crank_mm: r, offset_mm: e }, motion) {
   };
 }
 
-/**
- * Return the frame that holds all of these; mechanisms drawn in one frame have one scale.
- * @param {Frame[]} frames
- * @returns {Frame}
- */
+/** Return the frame that holds all of these; mechanisms drawn in one frame have one scale. @param {Frame[]} frames @returns {Frame} */
 export function around(frames) {
   /** @param {keyof Frame} name */
   const all = (name) => frames.map((frame) => frame[name]);
@@ -58,8 +52,7 @@ export function around(frames) {
 
 /**
  * Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre.
- * @param {Frame} frame
- * @param {number} width
+ * @param {Frame} frame @param {number} width
  */
 export function fitted(frame, width) {
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];

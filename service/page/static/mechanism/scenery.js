@@ -18,11 +18,7 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const ends = centres.map((centre) => centre.position);
-  /**
-   * @param {string} kind
-   * @param {Page.Point} from
-   * @param {Page.Point} to
-   */
+  /** @param {string} kind @param {Page.Point} from @param {Page.Point} to */
   const line = (kind, from, to) => svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
   const [start, end] = [x(Math.min(...ends) - 1.2 * block), x(Math.max(...ends) + 1.2 * block)];
   const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
@@ -39,25 +35,14 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
   ];
 }
 
-/**
- * @param {number} start
- * @param {number} end
- * @param {number} y
- * @param {number} side
- */
+/** @param {number} start @param {number} end @param {number} y @param {number} side */
 function guide(start, end, y, side) {
   const strokes = [];
   for (let foot = start + PITCH; foot <= end; foot += PITCH) strokes.push(`M${foot} ${y}l${-PITCH * 0.8} ${-side * PITCH * 0.8}`);
   return svg("path", { class: "guide", d: `M${start} ${y}H${end}${strokes.join("")}` });
 }
 
-/**
- * @param {Centre} centre
- * @param {Page.Lengths} linkage
- * @param {View} view
- * @param {number} block
- * @param {number} link
- */
+/** @param {Centre} centre @param {Page.Lengths} linkage @param {View} view @param {number} block @param {number} link */
 function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, link) {
   const turn = (angle * Math.PI) / 180;
   const pin = /** @type {Page.Point} */ ([view.x(r * Math.cos(turn)), view.y(r * Math.sin(turn))]);
@@ -72,17 +57,10 @@ function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, 
   );
 }
 
-/**
- * @param {View} view
- * @param {number} r
- * @param {number} direction
- */
+/** @param {View} view @param {number} r @param {number} direction */
 function rotation(view, r, direction) {
   if (!direction) return null;
-  /**
-   * @param {number} degrees
-   * @returns {Page.Point}
-   */
+  /** @param {number} degrees @returns {Page.Point} */
   const at = (degrees) => [view.x(0) + view.unit * r * Math.cos(degrees), view.y(0) - view.unit * r * Math.sin(degrees)];
   const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
   const [start, end] = [at(from), at(to)];
@@ -94,11 +72,7 @@ function rotation(view, r, direction) {
   return svg("path", { class: "rotation", d: `${arc}M${wing(0.4)}L${end}L${wing(-0.4)}` });
 }
 
-/**
- * @param {View} view
- * @param {number} e
- * @param {number} x
- */
+/** @param {View} view @param {number} e @param {number} x */
 function offset(view, e, x) {
   const [from, to] = [view.y(0), view.y(e)];
   if (Math.abs(to - from) < 16) return null;
@@ -113,11 +87,7 @@ function offset(view, e, x) {
   );
 }
 
-/**
- * @param {number} x
- * @param {number} y
- * @param {number} link
- */
+/** @param {number} x @param {number} y @param {number} link */
 function bearing(x, y, link) {
   const foot = 1.7 * link;
   const ground = y + foot;
@@ -130,21 +100,13 @@ function bearing(x, y, link) {
   );
 }
 
-/**
- * Return the outline of a link with round ends, from the origin along +x.
- * @param {number} length
- * @param {number} width
- */
+/** Return the outline of a link with round ends, from the origin along +x. @param {number} length @param {number} width */
 export function bar(length, width) {
   const half = width / 2;
   return `M0 ${-half}H${length}A${half} ${half} 0 0 1 ${length} ${half}H0A${half} ${half} 0 0 1 0 ${-half}Z`;
 }
 
-/**
- * Return the transform that lays such a link from one point towards another.
- * @param {Page.Point} from
- * @param {Page.Point} to
- */
+/** Return the transform that lays such a link from one point towards another. @param {Page.Point} from @param {Page.Point} to */
 export function placed(from, to) {
   const turn = (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
   return `translate(${from[0].toFixed(2)} ${from[1].toFixed(2)}) rotate(${turn.toFixed(3)})`;

@@ -13,11 +13,7 @@ export const title = "Compare runs";
 const MOST = 6;
 const SHOWN = 300; // designs of each run in the picture
 
-/**
- * Fronts of several runs over each other, and their best values side by side.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
   const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter((number) => Number.isInteger(number) && number > 0);
   if (asked.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
@@ -61,12 +57,7 @@ export async function show(place, { query, signal }) {
   }
 
   function drawTable() {
-    /**
-     * @param {string} key
-     * @param {string} sense
-     * @param {number | null | undefined} target
-     * @returns {Api.Row[string][]}
-     */
+    /** @param {string} key @param {string} sense @param {number | null | undefined} target @returns {Api.Row[string][]} */
     const best = (key, sense, target) => runs.map(({ front, data }) => {
       const own = front.objectives.find((objective) => objective.column === key);
       if (own) return data.cell(key, front.extremes[own.quantity]);
@@ -83,10 +74,7 @@ export async function show(place, { query, signal }) {
         h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(known(column))}`)),
         values.map((value) => h("td", { class: "number" }, text(value, unit, 5), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
     });
-    /**
-     * @param {string} name
-     * @param {(run: (typeof runs)[0]) => Dom.Child} value
-     */
+    /** @param {string} name @param {(run: (typeof runs)[0]) => Dom.Child} value */
     const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
       h("thead", {}, h("tr", {}, h("td", {}), runs.map(({ job }, index) => h("th", { scope: "col", class: "number" }, sign(index), " ", h("a", { href: link(["jobs", job.id]) }, job.name), h("div", { class: "quiet" }, `run ${job.id}`))))),
@@ -97,10 +85,7 @@ export async function show(place, { query, signal }) {
         plain("seed", ({ front }) => String(front.seed)))));
   }
 
-  /**
-   * @param {string} label
-   * @param {"x" | "y"} name
-   */
+  /** @param {string} label @param {"x" | "y"} name */
   const pick = (label, name) => h("label", {}, `${label} `, h("select", { name, onchange: (event) => {
     axes[name] = event.currentTarget.value;
     keep({ jobs: asked.join(","), ...axes });
@@ -125,10 +110,7 @@ export async function show(place, { query, signal }) {
   window.addEventListener("units", draw, { signal });
 }
 
-/**
- * Return at most `SHOWN` rows, evenly spread.
- * @param {number} count
- */
+/** Return at most `SHOWN` rows, evenly spread. @param {number} count */
 function spread(count) {
   const shown = Math.min(count, SHOWN);
   return Array.from({ length: shown }, (_, index) => Math.floor((index * (count - 1)) / Math.max(1, shown - 1)));

@@ -22,11 +22,7 @@ export const title = "Design";
 const SOON = 150; // ms
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
-/**
- * Show the design that the address names.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { parts, query, signal }) {
   const [, job, , given] = parts;
   const number = Number(given);
@@ -42,10 +38,7 @@ export async function show(place, { parts, query, signal }) {
   const objectives = front.objectives;
   const shared = { job, number, front, objectives, rows, main, others, requirements, names, signal };
   const angle = turning(requirements.speed_rpm, signal);
-  /**
-   * @param {number} at
-   * @param {boolean} taken
-   */
+  /** @param {number} at @param {boolean} taken */
   const hold = (at, taken) => {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
@@ -78,10 +71,7 @@ export async function show(place, { parts, query, signal }) {
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
     start: startOf(query),
-    /**
-     * @param {Api.WhatIf | null} answer
-     * @param {Page.Lengths} [lengths]
-     */
+    /** @param {Api.WhatIf | null} answer @param {Page.Lengths} [lengths] */
     changed(answer, lengths) {
       changed = answer;
       clearTimeout(later);
@@ -102,19 +92,13 @@ export async function show(place, { parts, query, signal }) {
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
 
-/**
- * @param {URLSearchParams} query
- * @returns {Page.Lengths | null}
- */
+/** @param {URLSearchParams} query @returns {Page.Lengths | null} */
 function startOf(query) {
   const lengths = LENGTHS.map((key) => [key, Number.parseFloat(query.get(key) ?? "")]);
   return lengths.every(([, value]) => Number.isFinite(value)) ? Object.fromEntries(lengths) : null;
 }
 
-/**
- * @param {HTMLElement} place
- * @param {{ series: number | string, name: string }[]} series
- */
+/** @param {HTMLElement} place @param {{ series: number | string, name: string }[]} series */
 function legend(place, series) {
   const old = place.querySelector(".legend");
   const items = series.map((one) => h("li", { "data-series": one.series }, one.name));

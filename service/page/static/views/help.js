@@ -24,11 +24,7 @@ const DOCUMENTS = [
   ["docs/api.md", "the API that this page uses"],
 ];
 
-/**
- * Show one quantity, or all with a field to search.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** Show one quantity, or all with a field to search. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { parts, query, signal }) {
   const { quantities } = await get("quantities", {}, signal);
   const name = parts[1];
@@ -39,11 +35,7 @@ export async function show(place, { parts, query, signal }) {
   one(place, found, quantities);
 }
 
-/**
- * @param {HTMLElement} place
- * @param {Api.Quantity[]} quantities
- * @param {string} sought
- */
+/** @param {HTMLElement} place @param {Api.Quantity[]} quantities @param {string} sought */
 function overview(place, quantities, sought) {
   const list = h("ul", { class: "quantities" });
   const none = h("p", { class: "quiet", role: "status" });
@@ -80,17 +72,10 @@ function card(quantity) {
   return h("li", { class: "panel" }, picture(quantity.picture, quantity.title), h("div", {}, h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)), h("p", {}, quantity.sentence)));
 }
 
-/**
- * @param {HTMLElement} place
- * @param {Api.Quantity} quantity
- * @param {Api.Quantity[]} quantities
- */
+/** @param {HTMLElement} place @param {Api.Quantity} quantity @param {Api.Quantity[]} quantities */
 function one(place, quantity, quantities) {
   const unit = unitOf(quantity.unit);
-  /**
-   * @param {string} term
-   * @param {Dom.Child} text
-   */
+  /** @param {string} term @param {Dom.Child} text */
   const row = (term, text) => [h("dt", {}, term), h("dd", {}, text)];
   const alike = quantities.filter((other) => other.picture === quantity.picture && other.name !== quantity.name);
   fill(

@@ -18,11 +18,7 @@ import { system } from "../lib/numbers.js";
 
 export const title = "New run";
 
-/**
- * Show the form: what was typed before, a preset, or a copy of a job.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
   const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds(signal)]);
   const draft = await first(query, shipped, signal);
@@ -33,10 +29,7 @@ export async function show(place, { query, signal }) {
 
 /**
  * Return the draft that the address asks for: what was typed in it before comes first.
- * @param {URLSearchParams} query
- * @param {Api.Preset[]} shipped
- * @param {AbortSignal} signal
- * @returns {Promise<Form.Draft>}
+ * @param {URLSearchParams} query @param {Api.Preset[]} shipped @param {AbortSignal} signal @returns {Promise<Form.Draft>}
  */
 async function first(query, shipped, signal) {
   const [preset, from] = [query.get("preset"), query.get("from")];
@@ -50,19 +43,12 @@ async function first(query, shipped, signal) {
   return begin(found.job, `preset ${preset}`);
 }
 
-/**
- * @param {Form.Job} job
- * @param {string} source
- * @returns {Form.Draft}
- */
+/** @param {Form.Job} job @param {string} source @returns {Form.Draft} */
 function begin(job, source) {
   return { job: structuredClone(job), submission: {}, source, key: newKey() };
 }
 
-/**
- * Return what the address says of where a draft began.
- * @param {string} source
- */
+/** Return what the address says of where a draft began. @param {string} source */
 function addressOf(source) {
   const [kind, name] = source.split(" ");
   return kind === "preset" ? { preset: name } : kind === "job" ? { from: name } : {};
@@ -132,8 +118,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
   }
   /**
    * Put another draft in place of this one, which can be brought back.
-   * @param {Pick<Form.Draft, "job" | "submission" | "source">} other
-   * @param {{ text?: boolean }} given
+   * @param {Pick<Form.Draft, "job" | "submission" | "source">} other @param {{ text?: boolean }} given
    */
   function take(other, { text = false } = {}) {
     if (!text) undone = structuredClone({ ...draft });

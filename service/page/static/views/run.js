@@ -12,11 +12,7 @@ export const title = "Run";
 
 const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 
-/**
- * A run: while it goes on its progress, afterwards the explorer of its front.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** A run: while it goes on its progress, afterwards the explorer of its front. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1) throw new Problem(404, "A run has a number; choose one of the list.");
@@ -26,10 +22,7 @@ export async function show(place, { parts, signal }) {
   let inner = null; // ends what the body shows
   const explorer = import("../front/explorer.js"); // comes while the job is asked for
 
-  /**
-   * Show a job as it stands; null: somebody deleted it.
-   * @param {Api.Job | null} job
-   */
+  /** Show a job as it stands; null: somebody deleted it. @param {Api.Job | null} job */
   async function stand(job) {
     if (signal.aborted) return;
     if (job === null) {
@@ -61,9 +54,7 @@ export async function show(place, { parts, signal }) {
 
   /**
    * Ask for what the explorer shows of a job unless it is told otherwise.
-   * @param {number} id
-   * @param {object} best of the objectives, by column
-   * @param {AbortSignal} own
+   * @param {number} id @param {object} best of the objectives, by column @param {AbortSignal} own
    */
   function designs(id, best, own) {
     const columns = [...SIZES, ...Object.keys(best)].join(",");
@@ -83,11 +74,7 @@ export async function show(place, { parts, signal }) {
     go([]);
   }
 
-  /**
-   * @param {Api.Job} job
-   * @param {ReturnType<typeof designs> | null} asked
-   * @param {AbortSignal} own
-   */
+  /** @param {Api.Job} job @param {ReturnType<typeof designs> | null} asked @param {AbortSignal} own */
   async function ended(job, asked, own) {
     const place = asked && h("div", { class: "explorer" });
     fill(body, outcome(job), place);

@@ -9,11 +9,7 @@ export const title = "Runs";
 const EACH = 2000; // ms between two looks while the page is seen
 const PAGE = 25;
 
-/**
- * The list of runs, kept up to date while it is looked at.
- * @param {HTMLElement} place
- * @param {Page.Visit} given
- */
+/** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
   /** @type {{ state: string, name: string, before: string }} */
   const asked = { state: query.get("state") ?? "", name: query.get("name") ?? "", before: query.get("before") ?? "" };
@@ -37,10 +33,7 @@ export async function show(place, { query, signal }) {
     h("label", {}, "State ", h("select", { name: "state", onchange: (event) => choose("state", event.currentTarget.value) },
       h("option", { value: "" }, "all"), STATES.map((state) => h("option", { value: state, selected: state === asked.state }, stateWord(state))))),
     comparing);
-  /**
-   * @param {"name" | "state"} key
-   * @param {string} value
-   */
+  /** @param {"name" | "state"} key @param {string} value */
   const choose = (key, value) => {
     asked[key] = value;
     asked.before = "";
@@ -54,10 +47,7 @@ export async function show(place, { query, signal }) {
     changed();
     look().then(() => first(place, "h1")?.scrollIntoView());
   };
-  /**
-   * @param {number} number
-   * @param {boolean} yes
-   */
+  /** @param {number} number @param {boolean} yes */
   const compare = (number, yes) => {
     if (yes) compared.add(number);
     else compared.delete(number);
