@@ -6,14 +6,20 @@ test check: test-javascript
 clean: clean-javascript
 
 JAVASCRIPT := .javascript
+JS_CACHE := $(JAVASCRIPT)/node_modules/.cache
 IN_NODE := $(JAVASCRIPT)/node_modules/.bin
 
 ifneq ($(shell sh -c 'command -v npm'),)
-lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed-test
-	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 $(JAVASCRIPT) service tests
+lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(JAVASCRIPT)/openapi.d.ts
+	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 --cache --cache-location $(JS_CACHE)/eslint \
+	  $(JAVASCRIPT) service tests
+	$(IN_NODE)/tsc --project service/page --incremental --tsBuildInfoFile $(JS_CACHE)/types
+
+# The shapes of the API, from its own description: anew whenever Python has changed.
+$(JAVASCRIPT)/openapi.d.ts: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed-test $(JAVASCRIPT)/describe.py \
+  $(shell find model objectives optimise service -name '*.py')
 	$(BIN)/python $(JAVASCRIPT)/describe.py >$(JAVASCRIPT)/openapi.json
-	$(IN_NODE)/openapi-typescript $(JAVASCRIPT)/openapi.json --output $(JAVASCRIPT)/openapi.d.ts >/dev/null
-	$(IN_NODE)/tsc --project service/page
+	$(IN_NODE)/openapi-typescript $(JAVASCRIPT)/openapi.json --output $@ >/dev/null
 else
 lint-javascript:
 	@echo 'SKIPPED: lint and types of the JavaScript, which need npm; on Debian: apt install nodejs npm' >&2
