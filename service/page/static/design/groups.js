@@ -9,10 +9,11 @@ const QUALITY = ["status", "residual"];
 export function groupsOf(columns) {
   /** @type {Map<string, { title: string, columns: Api.Column[] }>} */
   const groups = new Map();
-  for (const column of columns.filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key)).sort((a, b) => a.group_place - b.group_place)) {
-    const group = groups.get(column.group) ?? { title: column.group, columns: [] };
-    groups.set(column.group, group);
-    group.columns.push(column);
+  for (const column of columns.filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key)).sort((a, b) => (a.group_place ?? 0) - (b.group_place ?? 0))) {
+    const title = column.group ?? "Further quantities";
+    const { columns: found } = groups.get(title) ?? { columns: /** @type {Api.Column[]} */ ([]) };
+    found.push(column);
+    groups.set(title, { title, columns: found });
   }
   return [...groups.values()];
 }

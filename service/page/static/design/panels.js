@@ -11,6 +11,7 @@ const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "tor
 export function withResultants({ curves, columns }) {
   /** @type {Api.Curves} */
   const more = { ...curves };
+  /** @type {Api.Column[]} */
   const known = [...columns];
   for (const [key, title, x, y] of RESULTANTS) {
     if (!curves[x] || !curves[y]) continue;

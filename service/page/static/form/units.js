@@ -11,7 +11,7 @@ const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
 /**
  * Make ready to offer units: the service has the table of kinds.
- * @param {AbortSignal} signal
+ * @param {AbortSignal} [signal]
  */
 export async function readyKinds(signal) {
   const { kinds: known } = await get("units", {}, signal);

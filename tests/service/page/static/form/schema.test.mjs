@@ -5,6 +5,9 @@ import "../browser.mjs";
 
 const { describe, reader, words } = await import("../../../../../service/page/static/form/schema.js");
 
+const { readyKinds } = await import("../../../../../service/page/static/form/units.js");
+await readyKinds();
+
 const QUANTITY = { anyOf: [{ type: "string" }, { type: "number" }], examples: ["40 mm"] };
 const SCHEMA = {
   properties: {
