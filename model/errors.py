@@ -6,6 +6,7 @@
     |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
     |   `-- NotFound        what was asked for by its name or number is not there
+    |-- MissingExtra        an optional part of the software is not installed; also an ImportError
     |-- OutputLost          standard output that is closed or full
     |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
@@ -42,6 +43,10 @@ class JobError(InputError):
 
 class NotFound(InputError):
     """What was asked for by its name or number is not there."""
+
+
+class MissingExtra(SlidercrankError, ImportError):
+    """An optional part of the software that is not installed; see the extras of pyproject.toml."""
 
 
 class OutputLost(SlidercrankError):

@@ -17,6 +17,7 @@ from platform import python_version_tuple
 from typing import Any
 
 from ...model.errors import EngineError, InputError, SlidercrankError
+from ...model.extras import required
 from .engine import Found, Item, Poll
 
 _log = logging.getLogger(__name__)
@@ -177,12 +178,7 @@ class Cluster:
 
     def _connected(self) -> Any:
         if self._client is None:
-            try:
-                dask: Any = import_module("distributed")
-            except ImportError:
-                raise EngineError(
-                    "a Dask cluster needs the package distributed, which is not installed; install slidercrank[dask]"
-                ) from None
+            dask = required("distributed", "a Dask cluster needs")
             for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
                 logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised, and logged, here
             security = None

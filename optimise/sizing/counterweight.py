@@ -25,12 +25,13 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from ...model.cycle.shaking import ShakingCurves, shaking_curves
 from ...model.errors import InputError
+from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.loads import require_word
@@ -216,9 +217,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, float, float]:
         """Return x (6,), the least objective, N, with peaks at some angles only, and the price of `most`, N / kg m."""
-        import cvxpy
-
-        cp: Any = cvxpy  # its own types know neither `norm` nor `abs`
+        cp = required("cvxpy", "counterweights of least shaking need")
         z = cp.Variable(self.count)
         goals, rules = [], []
         peaks = self.measure == "peak"

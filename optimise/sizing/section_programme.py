@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from ...model.errors import InputError
+from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
@@ -90,7 +90,7 @@ class SectionProgramme:
 
     def __init__(self, task: Task, loads: list[str]) -> None:
         """State the programme for the loads of these names."""
-        cp: Any = import_module("cvxpy")  # its stubs leave out most of its names
+        cp = required("cvxpy", "sections of least mass need")
 
         self.loads, self.powers = cp.Parameter(len(loads), pos=True), cp.Parameter((len(loads), 4))
         self.low, self.high = cp.Parameter(4, pos=True), cp.Parameter(4, pos=True)
@@ -119,7 +119,7 @@ class SectionProgramme:
 
         sizes: (4,), logarithms, where the loads (n,) have the slopes powers (n, 4).
         """
-        cp: Any = import_module("cvxpy")
+        cp = required("cvxpy", "sections of least mass need")
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)

@@ -27,12 +27,13 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
+from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.loads import require_word
@@ -163,9 +164,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, Array]:
         """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
-        import cvxpy
-
-        cp: Any = cvxpy  # its own types know neither `sum` nor `power`
+        cp = required("cvxpy", "tolerances of least cost need")
         rows, room = self.error.rows(angles)
         size = float(self.beta.sum())
         x = cp.Variable(len(self.beta))

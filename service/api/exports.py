@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-from importlib.util import find_spec
 
-from fastapi import APIRouter, HTTPException, Response
+from fastapi import APIRouter, Response
 
+from ...model.extras import is_installed, required
 from ..designs.selection import numbered
 from ..designs.shown_units import result_in, rows_in
 from ..runs.result import csv_text
@@ -20,7 +20,7 @@ router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 def formats() -> list[str]:
     """Return the endings of the files that a front is given as here: Parquet where pyarrow is installed."""
-    return ["csv", "json", *(["parquet"] if find_spec("pyarrow") else [])]
+    return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
 def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
@@ -62,11 +62,9 @@ def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
 )
 def export_parquet(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
-    if "parquet" not in formats():
-        raise HTTPException(
-            501, "Parquet needs pyarrow, which is not installed; install slidercrank[parquet], or take CSV"
-        )
     import pandas as pd
+
+    required("pyarrow", "fronts as Parquet need")
 
     out = io.BytesIO()
     pd.DataFrame(rows_in(found.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)

@@ -15,7 +15,7 @@ from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from ...model.errors import InputError, NotFound, QueueFull, RunError, SlidercrankError, StoreError
+from ...model.errors import InputError, MissingExtra, NotFound, QueueFull, RunError, SlidercrankError, StoreError
 
 _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -27,6 +27,7 @@ _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (StoreError, HTTPStatus.SERVICE_UNAVAILABLE),
     (RunError, HTTPStatus.CONFLICT),  # what is asked of a job is not there yet
     (NotFound, HTTPStatus.NOT_FOUND),
+    (MissingExtra, HTTPStatus.NOT_IMPLEMENTED),
     (InputError, HTTPStatus.UNPROCESSABLE_ENTITY),
 )
 _QUIET = 60.0  # s

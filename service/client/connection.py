@@ -8,9 +8,11 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-import httpx
-
 from ...model.errors import InputError, NotFound, RunError, ServiceError, SlidercrankError
+from ...model.extras import NamingExtra
+
+with NamingExtra("clients of a service need"):
+    import httpx
 
 PREFIX = "/api/v1"
 _TIMEOUT = 60.0  # s without a byte

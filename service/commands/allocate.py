@@ -10,7 +10,7 @@ import typer
 from ...model.errors import InputError
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, lengths_of, value_option
+from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
 from ..topics.allocation.numbers import allocation_numbers
 from ..topics.allocation.text import show
@@ -29,7 +29,8 @@ def allocate(
         str, typer.Option(metavar="KIND", help='How errors add up: "worst case" or "rss" (root-sum-square).')
     ] = "worst case",
     figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Draw error and costs into allocation.png there.")
+        Path | None,
+        typer.Option(metavar="DIR", callback=drawable, help="Draw error and costs into allocation.png there."),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:

@@ -14,7 +14,7 @@ from ..designs.judged_rules import judged, rule_in
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import Crank, Offset, Rod, Units, lengths_of, speed_option, value_option
+from ..text.options import Crank, Offset, Rod, Units, drawable, lengths_of, speed_option, value_option
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
 from ..topics.design_analysis import analysis_of, numbers_of
@@ -70,7 +70,8 @@ def analyse(
         typer.Option(metavar="SHARE", help="Speed fluctuation that the flywheel is for.  [default: 0.02]"),
     ] = None,
     figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Draw the design into design.png there, and each topic.")
+        Path | None,
+        typer.Option(metavar="DIR", callback=drawable, help="Draw the design into design.png there, and each topic."),
     ] = None,
     cycle: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write motion, forces and torque over the cycle as CSV.")

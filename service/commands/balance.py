@@ -10,7 +10,7 @@ import typer
 from ...model.errors import InputError
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, lengths_of, value_option
+from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
 from ..topics.counterweight.numbers import balance_numbers
 from ..topics.counterweight.text import show
@@ -45,7 +45,10 @@ def balance(
         typer.Option(metavar=_LENGTH, help="Count the shaking moment too, as moment / arm; needs a rod balance."),
     ] = None,
     figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Draw the hodograph before and after into balance.png there.")
+        Path | None,
+        typer.Option(
+            metavar="DIR", callback=drawable, help="Draw the hodograph before and after into balance.png there."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from ..runs.result import json_text
 from ..runs.run_folder import disk
+from ..text.options import drawable
 from ..text.screen import console, give, say
 
 
@@ -17,7 +18,8 @@ def cases(
         int | None, typer.Option("--case", min=1, max=5, metavar="N", help="Only case N, 1 to 5, in full.")
     ] = None,
     figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Draw the publications' figures anew, as PNG files there.")
+        Path | None,
+        typer.Option(metavar="DIR", callback=drawable, help="Draw the publications' figures anew, as PNG files there."),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:

@@ -17,7 +17,7 @@ from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import read_run
-from ..text.options import Units
+from ..text.options import Units, drawable
 from ..text.screen import console, give, say
 from ..text.tables import print_table
 from .optimise import Json, Runs
@@ -42,7 +42,9 @@ def compare(
     tolerance: Annotated[
         float, typer.Option(min=0.0, help="Share of an objective's range that counts as equal.")
     ] = 1e-6,
-    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Also draw the fronts, into this folder.")] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", callback=drawable, help="Also draw the fronts, into this folder.")
+    ] = None,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, StoreError
+from ...model.extras import is_installed, required
 from ...objectives.kinds import System
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import Result, json_text, result_of
@@ -58,7 +59,12 @@ def optimise(
     tls_key: TlsKey = None,
     units: Units = "metric",
     json: Json = False,
-    figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
+    figures: Annotated[
+        bool | None,
+        typer.Option(
+            "--figures/--no-figures", help='Draw the figures.  [default: if the extra "figures" is installed]'
+        ),
+    ] = None,
 ) -> None:
     """Find the Pareto front of a job.
 
@@ -75,6 +81,8 @@ def optimise(
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
     if resume is not None and (designs is not None or seed is not None):
         raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+    if figures:
+        required("matplotlib", "figures need")
     options = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key)
     with contextlib.ExitStack() as opened:
         listed = True
@@ -99,7 +107,8 @@ def optimise(
         run.keep_result(result, versions)
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
-        if figures and result.status == "done":
+        drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
+        if drawn:
             _draw(front, run, interruption, units)
     shown = shown_front(front, result, units)
     if json:
@@ -108,6 +117,8 @@ def optimise(
             say(f"slidercrank: {result.message}")
     else:
         show_result(shown)
+    if figures is None and result.status == "done" and not drawn:
+        say('without figures, which need the extra "figures": pip install "slidercrank[figures]"')
     if result.status == "cancelled" and again:
         say(f"go on with: {again}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
@@ -271,4 +282,4 @@ def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units:
 def _versions(front: ParetoFront) -> dict[str, str]:
     from importlib.metadata import version
 
-    return {**front.versions, "matplotlib": version("matplotlib")}
+    return {**front.versions, **({"matplotlib": version("matplotlib")} if is_installed("matplotlib") else {})}

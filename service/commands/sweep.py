@@ -12,7 +12,7 @@ from ...model.errors import InputError
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, Units, length_option, value_option
+from ..text.options import Crank, Offset, Rod, Units, drawable, length_option, value_option
 from ..text.screen import give, say
 from ..topics.sweep.text import show
 
@@ -37,7 +37,9 @@ def sweep(
     crank: Crank = None,
     rod: Rod = None,
     offset: Offset = None,
-    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw the sweep into sweep.png there.")] = None,
+    figures: Annotated[
+        Path | None, typer.Option(metavar="DIR", callback=drawable, help="Draw the sweep into sweep.png there.")
+    ] = None,
     units: Units = "metric",
     json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
 ) -> None:

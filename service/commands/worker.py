@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
 from ..resources.sizes import size_of
 from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
@@ -46,6 +47,7 @@ def worker(
     Ctrl-C and SIGTERM let every round end, or hand its job back when that takes longer than --grace: another worker
     goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
+    required("psutil", "workers need")  # they end what a job leaves behind with it
     from ..store import Limits
     from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor

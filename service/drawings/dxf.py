@@ -6,6 +6,7 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
+from ...model.extras import NamingExtra
 from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ def dxf_file(drawing: Drawing) -> bytes:
 
 def document(drawing: Drawing) -> Document:
     """Return the drawing as a document of ezdxf."""
-    from ezdxf.filemanagement import new
+    with NamingExtra("DXF files need"):
+        from ezdxf.filemanagement import new
 
     found = new(_VERSION, units=_MILLIMETRES)
     left, bottom, right, top = drawing.bounds

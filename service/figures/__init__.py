@@ -7,15 +7,18 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from ...model.extras import NamingExtra
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
-from .front import front_figures
-from .robustness import robustness_figure
-from .sheet import design_sheet
-from .style import save
+
+with NamingExtra("figures need"):
+    from .front import front_figures
+    from .robustness import robustness_figure
+    from .sheet import design_sheet
+    from .style import save
 
 __all__ = ["draw_design", "draw_front"]
 

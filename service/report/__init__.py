@@ -1,1 +1,5 @@
 """The report of a design for a review: job, front, design, evidence, as HTML and as PDF."""
+
+from ...model.extras import required
+
+required("matplotlib", "reports need")

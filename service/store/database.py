@@ -22,6 +22,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, Invalidate
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import InputError, StoreError
+from ...model.extras import NamingExtra
 from ..resources.disk import LEAST, free, room
 
 _PATIENCE = 30.0  # s to wait for other writers
@@ -276,12 +277,8 @@ def _postgresql(url: URL) -> Engine:
         "application_name": "slidercrank",
     }
     kept = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
-    try:
+    with NamingExtra("a store on PostgreSQL needs"):
         engine = create_engine(url.difference_update_query(["options"]), connect_args=kept, **_POOL)
-    except ModuleNotFoundError as error:
-        raise InputError(
-            'a store on PostgreSQL needs the package psycopg; it is not installed; pip install "slidercrank[postgres]"'
-        ) from error
 
     @event.listens_for(engine, "checkin")
     def rest(_connection: Any, record: Any) -> None:

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ...model.errors import InputError
+from ...model.extras import required
 from ...objectives.kinds import System
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
+
+
+def drawable(folder: Path | None) -> Path | None:
+    """Refuse to draw before anything is computed, where figures cannot be drawn."""
+    if folder is not None:
+        required("matplotlib", "figures need")
+    return folder
 
 
 Units = Annotated[

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
+from ...model.extras import required
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -77,6 +78,7 @@ def engine_options(
     options = EngineOptions(cores, scheduler, *files)
     if scheduler is not None:
         _made(options)  # refuses an address that cannot be one
+        required("distributed", "a Dask cluster needs")
     return options
 
 

@@ -10,6 +10,8 @@ from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Literal, TextIO
 
+from ...model.extras import NamingExtra
+
 Format = Literal["text", "json"]
 _SUBJECT: ContextVar[tuple[str | None, int | None]] = ContextVar("subject", default=(None, None))
 
@@ -71,7 +73,8 @@ class _Text(logging.Formatter):
 
 
 def _json() -> logging.Formatter:
-    from pythonjsonlogger.json import JsonFormatter
+    with NamingExtra("logs as JSON need"):
+        from pythonjsonlogger.json import JsonFormatter
 
     class Json(JsonFormatter):
         """Leaves out the subject of a record that has none."""

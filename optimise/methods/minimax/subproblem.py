@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
+from ....model.extras import required
 from ...front.stationarity import Array
 
 _ABSENT = -1e3
@@ -50,7 +50,7 @@ class Subproblem:
 
     def __init__(self, k: int, p: int, q: int) -> None:
         """State the programme."""
-        cp: Any = import_module("cvxpy")  # its stubs leave out most of its names
+        cp = required("cvxpy", "minimax searches need")
 
         self.move, self.top, self.slack = cp.Variable(k), cp.Variable(), cp.Variable(nonneg=True)
         self.pieces, self.slopes = cp.Parameter(p), cp.Parameter((p, k))
@@ -77,7 +77,7 @@ class Subproblem:
         weight: float,
     ) -> Step | None:
         """Return the step for values and gradients of pieces and constraints; None where the solver gives up."""
-        cp: Any = import_module("cvxpy")
+        cp = required("cvxpy", "minimax searches need")
 
         (pieces, slopes), (rows, normals) = _present(*goals), _present(*limits)
         self.pieces.value, self.slopes.value = pieces, slopes

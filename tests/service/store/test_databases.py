@@ -15,7 +15,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import Connection, create_engine, text
 
-from slidercrank.model.errors import InputError, LeaseLost, StoreError
+from slidercrank.model.errors import InputError, LeaseLost, MissingExtra, StoreError
 from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.claiming import claim_next
@@ -137,7 +137,7 @@ def test_a_server_out_of_reach_says_so_without_telling_passwords(tmp_path: Path)
 
 def test_without_psycopg_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "psycopg", None)
-    with pytest.raises(InputError, match=r'pip install "slidercrank\[postgres\]"'):
+    with pytest.raises(MissingExtra, match=r'pip install "slidercrank\[postgres\]"'):
         Store("postgresql://me@there/jobs")
 
 

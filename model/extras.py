@@ -1,0 +1,66 @@
+"""Optional parts of the software: packages that come with an extra, `pip install "slidercrank[EXTRA]"`.
+
+Which extra brings a package is read from the metadata of the installation, hence from pyproject.toml.
+"""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, requires
+from importlib.util import find_spec
+from types import TracebackType
+from typing import Any
+
+from .errors import MissingExtra
+
+_REQUIREMENT = re.compile(r"""(?P<name>[\w.-]+).*;.*\bextra\s*==\s*["'](?P<extra>[\w-]+)["'].*""")
+_SEPARATORS = re.compile(r"[-_.]")  # python-json-logger is imported as pythonjsonlogger
+
+
+class NamingExtra:
+    """Context of an import that needs an extra; without it the import raises `MissingExtra`, which names the extra."""
+
+    def __init__(self, use: str) -> None:
+        """Take the beginning of the message: "figures need"."""
+        self._use = use
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        if not isinstance(error, ModuleNotFoundError) or error.name is None:
+            return
+        extra = extra_of(error.name)
+        if extra is not None:
+            raise MissingExtra(
+                f'{self._use} the extra "{extra}", which is not installed; add it: pip install "slidercrank[{extra}]"',
+                name=error.name,
+            ) from None
+
+
+def required(module: str, use: str) -> Any:
+    """Import a module that comes with an extra, and return it untyped. use: as of `NamingExtra`."""
+    with NamingExtra(use):
+        return import_module(module)
+
+
+def is_installed(package: str) -> bool:
+    """Whether a package can be imported."""
+    try:
+        return find_spec(package) is not None
+    except (ModuleNotFoundError, ValueError):  # the latter where an import of it is under way or forbidden
+        return False
+
+
+def extra_of(package: str) -> str | None:
+    """Return the extra that brings a package, by the name it is imported under; None if none does."""
+    try:
+        lines = requires("slidercrank") or []
+    except PackageNotFoundError:  # the sources are used where they are, without an installation
+        return None
+    for line in lines:
+        found = _REQUIREMENT.fullmatch(line)
+        if found is not None and _SEPARATORS.sub("", found["name"]) == _SEPARATORS.sub("", package):
+            return found["extra"]
+    return None
