@@ -58,7 +58,7 @@ faults: $(VENV)/.installed-test
 	$(BIN)/python -m tests.faults
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .package/typing build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.created:
@@ -71,12 +71,13 @@ $(VENV)/.created:
 # Editable: the folders are used where they are, so that a change needs no new installation.
 define install
 	@echo 'Installing into $(VENV) (about a minute) ...'
+	@$(BIN)/python .package/links.py
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)'
 	@touch $(VENV)/.installed $@
 endef
 
 $(VENV)/.installed: $(VENV)/.created pyproject.toml constraints.txt
-	$(call install)
+	$(call install,[all])
 
 $(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import socket
 import subprocess
 import sys
@@ -61,6 +60,8 @@ class Api:
     def _prepare(self) -> None:
         die_with_parent()
         if self._files is not None:
+            import resource  # not on Windows
+
             resource.setrlimit(resource.RLIMIT_NOFILE, (self._files, self._files))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import random
-import resource
 import socket
 import threading
 import time
@@ -75,6 +74,8 @@ def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
 @contextlib.contextmanager
 def _many_files() -> Iterator[None]:
     """Let this process open as many files as it may."""
+    import resource  # not on Windows
+
     before = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (before[1], before[1]))
     try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import resource
 import sqlite3
 import time
 from pathlib import Path
@@ -40,7 +39,7 @@ def full(count: int, seed: int) -> Verdict:
                 most = max(log.stat().st_size + chance.randrange(_ROOM), _JOURNAL)
                 _limit(workers.pids(), most)
                 time.sleep(chance.uniform(*_LASTS))
-                _limit(workers.pids(), resource.RLIM_INFINITY)
+                _limit(workers.pids(), None)
                 damaged += not whole(where.address)
             feed.fill()
             finish(feed, workers)
@@ -61,6 +60,9 @@ def whole(file: str) -> bool:
         connection.close()
 
 
-def _limit(pids: list[int], size: int) -> None:
+def _limit(pids: list[int], size: int | None) -> None:
+    import resource  # not on Windows
+
+    soft = resource.RLIM_INFINITY if size is None else size
     for pid in pids:
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (soft, resource.RLIM_INFINITY))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 
 from slidercrank.model.kernel import folder as kernel_folder
 from slidercrank.model.kernel.folder import choose_folder
+
+pytestmark = pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="caches are where Linux keeps them")
 
 
 @pytest.fixture

@@ -34,6 +34,7 @@ def test_a_directory_is_refused(tmp_path: Path) -> None:
     assert "got a directory; name the file in it" in refusal(folder)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
 def test_a_pipe_is_refused_without_waiting_for_it(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)

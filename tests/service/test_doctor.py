@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import sqlite3
+import sys
 from collections import namedtuple
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import workers
 from tests.service.conftest import Command
 from tests.service.store.contents import add, end_lease, result, taken
+
+needs_proc = pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder of Linux")
 
 
 @pytest.fixture
@@ -141,12 +144,14 @@ def test_a_full_disk_is_a_problem(
     assert (got, found["disk of runs"][0]) == (code, grade)
 
 
+@needs_proc
 def test_a_place_that_cannot_be_written_is_a_problem(command: Command) -> None:
     code, found = looked_at(command, "--runs", "/proc/none")
     assert (code, found["runs"][0]) == (1, "problem")
     assert "/proc/none cannot be written" in found["runs"][1]
 
 
+@needs_proc
 def test_a_model_that_would_be_compiled_anew_every_time_is_a_problem(
     command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

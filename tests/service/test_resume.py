@@ -203,6 +203,7 @@ def test_a_cancelled_job_of_a_worker_goes_on_at_the_command_line(
     assert designs(only(runs)) == whole
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_a_command_that_was_killed_can_be_resumed_at_once(job: Path, runs: Path, whole: str, command: Command) -> None:
     script = (
         "import os, sys\n"

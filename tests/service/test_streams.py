@@ -10,12 +10,15 @@ import pytest
 
 from tests.service.conftest import Command
 
+needs_full = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a device of Linux")
+
 
 def run(command: str) -> subprocess.CompletedProcess[str]:
     script = f"'{sys.executable}' -m slidercrank {command}"
     return subprocess.run(["bash", "-c", script], capture_output=True, text=True)
 
 
+@needs_full
 @pytest.mark.parametrize("command", ["--version > /dev/full", "--version >&-", "--help > /dev/full"])
 def test_output_that_cannot_be_written_is_one_sentence(command: str) -> None:
     done = run(command)
@@ -43,6 +46,7 @@ def test_a_reader_that_leaves_changes_neither_exit_code_nor_messages(
     assert messages.count("\n") == (1 if said else 0)
 
 
+@needs_full
 @pytest.mark.parametrize("errors", ["2> /dev/full", "2>&-"])
 def test_messages_that_cannot_be_written_leave_the_exit_code(errors: str) -> None:
     assert run(f"check nowhere.toml {errors}").returncode == 2

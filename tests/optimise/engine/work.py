@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import secrets
-import signal
 import time
 from pathlib import Path
 
 import numpy as np
+import psutil
 from numpy.typing import NDArray
 
 from slidercrank.model.errors import InputError
@@ -47,13 +47,13 @@ def end_once(item: tuple[int, str]) -> int:
     number, path = item
     if number == 2 and not Path(path).exists():
         Path(path).touch()
-        os.kill(os.getpid(), signal.SIGKILL)
+        psutil.Process().kill()
     return number
 
 
 def end_always(item: int) -> int:
     if item == 2:
-        os.kill(os.getpid(), signal.SIGKILL)
+        psutil.Process().kill()
     return item
 
 

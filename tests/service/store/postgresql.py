@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pwd
 import shutil
 import subprocess
 import tempfile
@@ -26,6 +25,8 @@ class Cluster:
         # PostgreSQL refuses to run as root.
         self._user = _unprivileged() if os.geteuid() == 0 else None
         if self._user is not None:
+            import pwd
+
             os.chown(folder, pwd.getpwnam(self._user).pw_uid, -1)
         self._run("initdb", "--auth=trust", "--username=tests", "--encoding=UTF8", "--no-sync", "--locale=C")
         self.start()
@@ -96,5 +97,7 @@ def programs() -> Path | None:
 
 
 def _unprivileged() -> str | None:
+    import pwd  # not on Windows
+
     names = {user.pw_name for user in pwd.getpwall()}
     return next((name for name in ("postgres", "nobody") if name in names), None)

@@ -1,1 +1,0 @@
-../../slidercrank/__init__.py

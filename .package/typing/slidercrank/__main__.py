@@ -1,1 +1,0 @@
-../../slidercrank/__main__.py
