@@ -1,0 +1,80 @@
+"""Hooks of the documentation site: pages that are generated, links that lead out of docs/, formulas as MathML."""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from latex2mathml.converter import convert
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+
+from docs.site.api_reference import api_reference
+from docs.site.job_reference import job_reference
+from docs.site.python_reference import folder_reference, front_door_reference
+
+ROOT = Path(__file__).resolve().parents[2]
+_MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
+"""Pages that lie at the top of the repository, by where they are in the site."""
+_FOLDERS = ("model", "objectives", "optimise")
+_LINK = re.compile(r"\]\((?!https?://|#)([^)\s#]+)(#[^)\s]*)?\)")
+_FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
+
+
+def pages() -> dict[str, Callable[[], str]]:
+    """Return what makes each page that is not in docs/, by its place in the site."""
+    return {
+        **{place: partial(_at_the_top, name) for name, place in _MOVED.items()},
+        "reference/job-file.md": job_reference,
+        "reference/http-api.md": api_reference,
+        "reference/python.md": front_door_reference,
+        **{f"reference/{top}.md": partial(folder_reference, top) for top in _FOLDERS},
+    }
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages that are generated."""
+    for place, made in pages().items():
+        files.append(File.generated(config, place, content=made()))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Return the text of a page with links into the sources turned into links to the reference of their modules."""
+    return _LINK.sub(_inside, markdown)
+
+
+def on_page_content(content: str, **_: object) -> str:
+    """Return the HTML of a page with its formulas as MathML, which browsers show without a script."""
+
+    def formula(found: re.Match[str]) -> str:
+        return convert(html.unescape(found[3]).strip(), "inline" if found[2] == "(" else "block")
+
+    return _FORMULA.sub(formula, content)
+
+
+def _at_the_top(name: str) -> str:
+    """Return a page of the top of the repository with its links as from docs/."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    return _LINK.sub(lambda found: f"]({_from_docs(found[1])}{found[2] or ''})", text)
+
+
+def _from_docs(target: str) -> str:
+    return target.removeprefix("docs/") if target.startswith("docs/") else _MOVED.get(target, f"../{target}")
+
+
+def _inside(found: re.Match[str]) -> str:
+    """Return a link that leads out of docs/ as one within the site, or without a target where there is none."""
+    target = found[1]
+    if not target.startswith("../"):
+        return found[0]
+    name = target.removeprefix("../")
+    if name in _MOVED:
+        return f"]({_MOVED[name]}{found[2] or ''})"
+    if name.endswith(".py") and name.split("/")[0] in _FOLDERS:
+        module = name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        return f"][slidercrank.{module}]"
+    return "]"
