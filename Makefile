@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test test-slow test-rounding lint check benchmark pictures requests faults clean
+.PHONY: run test test-slow test-rounding lint check docs benchmark pictures requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed
@@ -42,6 +42,10 @@ check: $(VENV)/.installed-test lint
 	if test -z "$$files"; then echo 'no test belongs to what differs from $(BASE)'; \
 	else $(BIN)/python -m pytest -q -m 'not slow' $$files; code=$$?; test $$code -eq 5 || exit $$code; fi
 
+# The documentation site, into site/. A warning is an error.
+docs: $(VENV)/.installed-test
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
+
 benchmark: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks
 
@@ -58,7 +62,7 @@ faults: $(VENV)/.installed-test
 	$(BIN)/python -m tests.faults
 
 clean:
-	rm -rf $(VENV) .package/typing build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .package/typing build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.created:

@@ -60,7 +60,7 @@ def _operation(method: str, path: str, operation: Mapping[str, Any]) -> Iterator
     if body:
         yield f"Body: {_content(body)}.\n"
     yield "| status | answer |\n|---|---|"
-    for status, answer in operation["responses"].items():
+    for status, answer in sorted(operation["responses"].items()):
         shown = _content(answer.get("content", {}))
         yield f"| {status} | {cell(answer['description'])}{f': {cell(shown)}' if shown else ''} |"
     yield ""

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 _MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 """Pages that lie at the top of the repository, by where they are in the site."""
 _FOLDERS = ("model", "objectives", "optimise")
-_LINK = re.compile(r"\]\((?!https?://|#)([^)\s#]+)(#[^)\s]*)?\)")
+_LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s#]+)(#[^)\s]*)?\)")
 _FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
 
@@ -51,7 +51,7 @@ def on_page_content(content: str, **_: object) -> str:
     """Return the HTML of a page with its formulas as MathML, which browsers show without a script."""
 
     def formula(found: re.Match[str]) -> str:
-        return convert(html.unescape(found[3]).strip(), "inline" if found[2] == "(" else "block")
+        return convert(html.unescape(found[3]).strip(), display="inline" if found[2] == "(" else "block")
 
     return _FORMULA.sub(formula, content)
 
@@ -59,7 +59,7 @@ def on_page_content(content: str, **_: object) -> str:
 def _at_the_top(name: str) -> str:
     """Return a page of the top of the repository with its links as from docs/."""
     text = (ROOT / name).read_text(encoding="utf-8")
-    return _LINK.sub(lambda found: f"]({_from_docs(found[1])}{found[2] or ''})", text)
+    return _LINK.sub(lambda found: f"[{found[1]}]({_from_docs(found[2])}{found[3] or ''})", text)
 
 
 def _from_docs(target: str) -> str:
@@ -67,14 +67,14 @@ def _from_docs(target: str) -> str:
 
 
 def _inside(found: re.Match[str]) -> str:
-    """Return a link that leads out of docs/ as one within the site, or without a target where there is none."""
-    target = found[1]
+    """Return a link that leads out of docs/ as one within the site, or its text where there is no page for it."""
+    text, target, place = found.groups()
     if not target.startswith("../"):
         return found[0]
     name = target.removeprefix("../")
     if name in _MOVED:
-        return f"]({_MOVED[name]}{found[2] or ''})"
+        return f"[{text}]({_MOVED[name]}{place or ''})"
     if name.endswith(".py") and name.split("/")[0] in _FOLDERS:
         module = name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
-        return f"][slidercrank.{module}]"
-    return "]"
+        return f"[{text}][slidercrank.{module}]"
+    return str(text)

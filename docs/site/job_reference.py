@@ -13,7 +13,8 @@ def job_reference() -> str:
     lines = [
         "# Job file\n",
         "Every table and key of a job file, from the schema that `slidercrank schema` prints. "
-        "[Jobs](../jobs.md) explains them with examples. A quantity is a number with its unit in a string, or a plain number in SI.\n",
+        "[Jobs](../jobs.md) explains them with examples. A quantity is a number with its unit in a string, or a plain "
+        "number in SI.\n",
         "| table or key | value | meaning | |\n|---|---|---|---|",
     ]
     for name, field in schema["properties"].items():

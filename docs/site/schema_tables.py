@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 Schema = Mapping[str, Any]
+_LONGEST = 80  # characters of an example
 
 
 def definitions(shapes: Mapping[str, Schema], level: int) -> Iterator[str]:
@@ -33,12 +34,12 @@ def described(schema: Schema) -> Iterator[str]:
 
 
 def meaning(field: Schema) -> str:
-    """Return the description of a field with its first example."""
-    example = next(iter(field.get("examples", ())), None)
-    said = field.get("description", "")
-    return (
-        said if example is None else f"{said}; such as `{json.dumps(example, ensure_ascii=False)}`".removeprefix("; ")
-    )
+    """Return the description of a field with its first example, unless that is long."""
+    said = str(field.get("description", ""))
+    example = json.dumps(next(iter(field.get("examples", ())), None), ensure_ascii=False)
+    if example == "null" or len(example) > _LONGEST:
+        return said
+    return f"{said}; such as `{example}`".removeprefix("; ")
 
 
 def kind(schema: Schema) -> str:

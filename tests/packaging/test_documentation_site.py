@@ -1,0 +1,84 @@
+"""The documentation site: every page has its place, and what is generated tells all that it is made of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from mkdocs.config import load_config
+
+import slidercrank
+from docs.site import hooks
+from docs.site.api_reference import api_reference
+from docs.site.job_reference import job_reference
+from docs.site.python_reference import folder_reference, front_door_reference
+from docs.site.schema_tables import kind
+from slidercrank.optimise.job import job_schema
+
+
+def places(nav: Any) -> list[str]:
+    """Return the pages of a navigation, at any depth."""
+    if isinstance(nav, str):
+        return [nav]
+    return [page for part in (nav.values() if isinstance(nav, dict) else nav) for page in places(part)]
+
+
+def test_every_page_has_one_place_in_the_navigation(pytestconfig: pytest.Config) -> None:
+    root = pytestconfig.rootpath
+    site = load_config(str(root / "mkdocs.yml"))
+    assert site.theme["font"] is False  # nothing comes from other sites
+    written = [str(file.relative_to(root / "docs")) for file in (root / "docs").rglob("*.md")]
+    assert sorted(places(site.nav)) == sorted([*written, *hooks.pages()])
+
+
+def test_reference_of_jobs_names_every_table_and_key() -> None:
+    schema, page = job_schema(), job_reference()
+    names = {*schema["properties"], *(key for part in schema["$defs"].values() for key in part.get("properties", ()))}
+    assert [name for name in sorted(names) if f"| `{name}` |" not in page] == []
+
+
+def test_reference_of_the_api_names_every_operation() -> None:
+    page = api_reference()
+    for operation in ("GET /api/v1/health/live", "POST /api/v1/jobs", "GET /api/v1/jobs/{number}/export.parquet"):
+        assert f"### {operation}\n" in page
+    assert "| `idempotency-key` | header |" in page
+    assert "](#submission)" in page
+    assert "### Submission\n" in page
+
+
+def test_reference_of_python_has_the_public_names_and_every_module(pytestconfig: pytest.Config) -> None:
+    front_door = front_door_reference()
+    functions = [name for name in slidercrank.__all__ if callable(getattr(slidercrank, name))]
+    assert [name for name in functions if f"heading: {name}\n" not in front_door] == []
+    page = folder_reference("objectives")
+    modules = [file for file in (pytestconfig.rootpath / "objectives").rglob("*.py") if file.name != "__init__.py"]
+    assert page.count("\n::: slidercrank.objectives.") == len(modules)
+
+
+@pytest.mark.parametrize(
+    ("schema", "words"),
+    [
+        ({"$ref": "#/$defs/LengthBounds"}, "[LengthBounds](#lengthbounds)"),
+        ({"anyOf": [{"type": "number"}, {"type": "null"}, {"type": "number"}]}, "number or null"),
+        ({"type": "array", "items": {"enum": ["a", 1]}}, 'list of `"a"`, `1`'),
+        ({"type": "object", "additionalProperties": {"type": "boolean"}}, "table of true or false"),
+        ({}, "anything"),
+    ],
+)
+def test_kinds_of_values_are_told_in_words(schema: dict[str, Any], words: str) -> None:
+    assert kind(schema) == words
+
+
+def test_links_stay_within_the_site_or_lose_their_target() -> None:
+    text = (
+        "[a](../model/linkage/linkage.py), [b](../README.md#start), [c](../Makefile), [d](jobs.md), [e](https://e.org)"
+    )
+    assert hooks.on_page_markdown(text) == (
+        "[a][slidercrank.model.linkage.linkage], [b](index.md#start), c, [d](jobs.md), [e](https://e.org)"
+    )
+
+
+def test_formulas_become_mathml() -> None:
+    made = hooks.on_page_content('<p><span class="arithmatex">\\(l &gt; r\\)</span></p>')
+    assert made.startswith('<p><math xmlns="http://www.w3.org/1998/Math/MathML" display="inline">')
+    assert "<mo>&#x0003E;</mo>" in made
