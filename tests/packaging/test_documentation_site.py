@@ -10,6 +10,7 @@ from mkdocs.config import load_config
 import slidercrank
 from docs.site import hooks
 from docs.site.api_reference import api_reference
+from docs.site.doctests import with_code
 from docs.site.job_reference import job_reference
 from docs.site.python_reference import folder_reference, front_door_reference
 from docs.site.schema_tables import kind
@@ -76,6 +77,11 @@ def test_links_stay_within_the_site_or_lose_their_target() -> None:
     assert hooks.on_page_markdown(text) == (
         "[a][slidercrank.model.linkage.linkage], [b](index.md#start), c, [d](jobs.md), [e](https://e.org)"
     )
+
+
+def test_examples_of_docstrings_are_code() -> None:
+    text = "Length.\n\n>>> a = 1\n>>> a + 1\n2\n\nThe end."
+    assert with_code(text) == "Length.\n\n```pycon\n>>> a = 1\n>>> a + 1\n2\n```\n\nThe end."
 
 
 def test_formulas_become_mathml() -> None:
