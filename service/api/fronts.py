@@ -136,6 +136,6 @@ def column_model(column: Column) -> ColumnModel:
         key=column.key,
         title=column.title,
         unit=column.unit,
-        group=column.group.value,
-        group_place=list(type(column.group)).index(column.group),
+        group="" if column.group is None else column.group.value,
+        group_place=0 if column.group is None else list(type(column.group)).index(column.group),
     )

@@ -5,8 +5,6 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from ...objectives.proportions import STROKE
-
 router = APIRouter(tags=["designs"])
 
 
@@ -17,18 +15,18 @@ class QuantityModel(BaseModel):
     linkage points out for it. section: of docs/theory.md, where it is derived. source: of the equations.
     """
 
-    name: str = Field(examples=[STROKE.name])
-    column: str = Field(examples=[STROKE.field])
-    title: str = Field(examples=[STROKE.name])
+    name: str = Field(examples=["stroke"])
+    column: str = Field(examples=["stroke_mm"])
+    title: str = Field(examples=["stroke"])
     unit: str = Field(examples=["mm"])
     kind: str = Field(description="of value", examples=["length"])
     group: str = Field(description="that it is shown in", examples=["Motion"])
-    sentence: str = Field(examples=[STROKE.sentence])
+    sentence: str = Field(examples=["The stroke is the way of the slider from one dead centre to the other."])
     advice: str = Field(description='what is usual; "" if there is nothing to say')
-    formula: str = Field(examples=[STROKE.formula])
+    formula: str = Field(examples=["S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)"])
     section: str = Field(examples=["2. Closed forms"])
     source: str
-    picture: str = Field(examples=[STROKE.name])
+    picture: str = Field(examples=["stroke"])
     better: str = Field(description='the usual direction, low or high; "" for a dimension', examples=["low"])
     offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
 

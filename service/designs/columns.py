@@ -6,10 +6,13 @@ import functools
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...objectives.kinds import SHOWN, Face, System
-from ...objectives.quantity import Group
+
+if TYPE_CHECKING:
+    from ...objectives.quantity import Group
 
 # How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
 _FACES = sorted(
@@ -40,7 +43,7 @@ class Column:
     factor: float
     own_unit: bool
     plain: float = 1.0
-    group: Group = Group.FURTHER
+    group: Group | None = None
 
 
 def find_column(name: str, keys: Collection[str]) -> Column:
@@ -73,6 +76,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
 def _group(key: str) -> Group:
     """Return the group that a metric column is shown in."""
     from ...objectives.peak_torque import PEAK_TORQUE
+    from ...objectives.quantity import Group
     from ...objectives.registry import FACTS
 
     others = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}

@@ -1,8 +1,8 @@
 """A quantity is named in its own file: nowhere else is its name a string, in Python, in the page or in a job file.
 
-Counted are string literals of Python that are the name, and strings of the page and keys of its objects. Not counted are
-examples, in `examples=` and `EXAMPLE =`; attributes, arguments and prose, where the names are terms of the field; and data:
-shipped job files and published cases.
+Counted are string literals of Python that are the name, and strings of the page and keys of its objects. Not counted
+are examples, in `examples=` and `EXAMPLE =`; attributes, arguments and prose, where the names are terms of the field;
+and data: shipped job files and published cases.
 """
 
 from __future__ import annotations
