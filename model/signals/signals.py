@@ -7,7 +7,7 @@ from typing import Any
 
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
-from ..kernel.arithmetic import analytic, inverse, magnitude, root
+from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion
 from ..machine.parameters import Design
 from .position_error import influences, root_sum_square, worst_case
@@ -17,8 +17,7 @@ class Signal(IntEnum):
     """What is watched over the cycle, each by its size.
 
     Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
-    shaking force (N), shaking moment (N m), slider jerk, and the sine of the angle between the force in the slider pin
-    and the slider line, zero where there is no force.
+    shaking force (N) and shaking moment (N m).
     """
 
     TORQUE = 0
@@ -34,25 +33,15 @@ class Signal(IntEnum):
     REFLECTED_INERTIA = 10
     SHAKING_FORCE = 11
     SHAKING_MOMENT = 12
-    SLIDER_JERK = 13
-    SLIDER_PIN_SINE = 14
 
     @property
     def needs_forces(self) -> bool:
         """Whether it follows from the joint forces, and with them from loads and friction."""
-        return self <= Signal.GUIDE_FORCE or self in (Signal.POWER, Signal.SLIDER_PIN_SINE)
+        return self <= Signal.GUIDE_FORCE or self == Signal.POWER
 
 
 _TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST, _RSS = range(9)
-_POWER, _INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _JERK, _PIN_SINE = range(9, 15)
-_TINY = 1e-300  # N, so that no force has no direction
-
-
-@analytic
-def _third(sine: Any, cosine: Any, m: Any, r: Any) -> Any:
-    """Return the third derivative of the slider position, m/rad^3: the loop equations differentiated once more."""
-    rod_3 = (r * cosine + 3.0 * m.across * m.rod_1 * m.rod_2) * m.per_along + m.rod_1 * m.rod_1 * m.rod_1
-    return r * sine + (m.across * m.rod_1 * m.rod_1 - 3.0 * m.along * m.rod_2) * m.rod_1 - m.across * rod_3
+_POWER, _INERTIA, _SHAKING_FORCE = range(9, 12)
 
 
 @analytic
@@ -61,7 +50,7 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, side
 
     sides: signs of the sliding where there is friction (`rubbing.Sides`).
     """
-    if kind <= _GUIDE or kind in (_POWER, _PIN_SINE):
+    if kind <= _GUIDE or kind == _POWER:
         f = joint_forces(sine, cosine, m, d, load, sides)
         if kind == _TORQUE:
             return magnitude(f.torque)
@@ -73,9 +62,6 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, side
             return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
         if kind == _SLIDER_PIN:
             return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
-        if kind == _PIN_SINE:
-            pin = root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
-            return magnitude(f.slider_pin_y) * inverse(pin + _TINY)
         return magnitude(f.guide)
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
@@ -83,9 +69,7 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, side
         return magnitude(m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration)
     if kind == _INERTIA:
         return reflected_inertia(sine, cosine, m, d)
-    if kind == _JERK:
-        return magnitude((_third(sine, cosine, m, d.r) * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
-    if kind in (_SHAKING_FORCE, _SHAKING_MOMENT):
+    if kind > _INERTIA:
         x, y, moment = shaking(sine, cosine, m, d)
         return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
     i = influences(sine, cosine, m, d.l)

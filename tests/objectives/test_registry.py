@@ -13,7 +13,7 @@ NAMES = {
     *("peak_torque_outward", "peak_torque_inward", "rms_torque", "mean_torque", "position_error_rss"),
     *("stroke", "rod_to_offset", "rod_to_crank", "footprint"),
     *("peak_pivot_force", "peak_crank_pin_force", "peak_slider_pin_force", "peak_guide_force"),
-    *("peak_slider_speed", "peak_slider_acceleration", "peak_slider_jerk", "force_transmission"),
+    *("peak_slider_speed", "peak_slider_acceleration"),
     *("self_locking_margin", "peak_power", "mean_power", "peak_reflected_inertia"),
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "rms_shaking_moment"),
 }
