@@ -1,0 +1,45 @@
+"""Topics declare themselves: a folder with numbers, text and figure is found, and shown in its place."""
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.service import topics
+from slidercrank.service.topics.discovery import ALL, TOPICS, chosen_topics
+
+
+def test_every_topic_has_numbers_text_and_figure_in_its_folder() -> None:
+    assert len(TOPICS) >= 11
+    for name, topic in TOPICS.items():
+        assert callable(import_module(f"{topic.package}.numbers").numbers)
+        assert callable(import_module(f"{topic.package}.text").show)
+        assert callable(getattr(import_module(f"{topic.package}.figure"), f"draw_{name}"))
+        assert topic.prepares == hasattr(import_module(f"{topic.package}.numbers"), "prepare")
+
+
+def test_topics_are_shown_in_the_order_of_their_places() -> None:
+    places = [topic.place for topic in TOPICS.values()]
+    assert places == sorted(set(places))
+
+
+def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from slidercrank.service.topics import discovery
+
+    folder = tmp_path / "weather"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(
+        "from slidercrank.service.topics.topic import Topic\nTOPIC = Topic(__name__, 35, 'rain')\n"
+    )
+    monkeypatch.setattr(topics, "__path__", [*topics.__path__, str(tmp_path)])
+    found = list(discovery._found())
+    assert found.index("weather") == list(TOPICS).index("motor") + 1
+    assert [name for name in found if name != "weather"] == list(TOPICS)
+
+
+def test_without_a_job_all_topics_are_those_that_need_none() -> None:
+    assert chosen_topics([ALL], job=False) == ("polygons",)
+    assert chosen_topics([ALL], job=True) == tuple(TOPICS)
+    with pytest.raises(InputError, match="--show motor needs masses, loads or tolerances; got no job file"):
+        chosen_topics(["motor"], job=False)
