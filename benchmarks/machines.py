@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 
 Array = NDArray[np.float64]

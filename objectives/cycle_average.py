@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..model.machine.loads import require_word
+from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
 from ..model.machine.parameters import Raw

@@ -187,6 +187,15 @@ DAMPING = Kind(
     inch=Face("lbf s/in", "_lbf_s_per_in", _INCH / _LBF),
     typed=("N s/m", "N s/mm", "lbf s/in"),
 )
+QUADRATIC_DAMPING = Kind(
+    name="a coefficient of drag",
+    unit="N s^2/m^2",
+    example="20 N s^2/m^2",
+    limit=1e15,
+    metric=Face("N s^2/m^2", "_Ns2_per_m2"),
+    inch=Face("lbf s^2/in^2", "_lbf_s2_per_in2", _INCH**2 / _LBF),
+    typed=("N s^2/m^2", "N s^2/mm^2", "lbf s^2/in^2"),
+)
 PRESSURE = Kind(
     name="a pressure",
     unit="Pa",
@@ -209,7 +218,7 @@ JERK = Kind(
 
 KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, PRESSURE, RATIO, JERK),
+    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, QUADRATIC_DAMPING, PRESSURE, RATIO, JERK),
 )
 TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9, metric=Face("s", "_s"), typed=("s", "min"))
 _PER_ANGLE = Kind(

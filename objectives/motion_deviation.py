@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit
 from ..model.kinematics.target_pieces import fit_pieces
-from ..model.machine.loads import require_word
+from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from .kinds import ANGLE, LENGTH
 from .quantity import Array, Group, Pieces, Quantity, Values

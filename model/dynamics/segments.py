@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 from ..kernel.arithmetic import analytic, inlined
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
-from ..machine.parameters import DESIGN, Design, LoadKind, Loads
+from ..machine.loads.load import Enters
+from ..machine.loads.registry import force_of
+from ..machine.parameters import DESIGN, Design, Loads
 from .torque import smooth_load
 
-_POSITION_TABLE, _ANGLE_TABLE = int(LoadKind.POSITION_TABLE), int(LoadKind.ANGLE_TABLE)
+_ANGLE_TABLE, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.FORMULA)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
@@ -192,11 +194,24 @@ def enter(
 
 
 @inlined
+def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
+    """Return a force, N outward, with all loads added that have a formula of their own."""
+    way = 1.0 if outward else -1.0
+    for k in range(loads.kind.shape[0]):
+        if loads.kind[k] >= _FORMULA:
+            first, second = block[DESIGN + 2 * k, j], block[DESIGN + 2 * k + 1, j]
+            velocity = d.branch * m.x_1 * d.speed
+            force = force + force_of(loads.kind[k], d.branch * m.x, velocity, way, first, second)
+    return force
+
+
+@inlined
 def load_on_slider(
     m: Any, d: Any, block: Any, j: int, theta: Any, outward: bool, loads: Loads, piece: Any, shift: Any
 ) -> Any:
     """Return the load on the slider, N outward, in a segment entered before."""
     force = smooth_load(m, d, d.outward_force if outward else d.inward_force)
+    force = with_formulas(force, m, d, block, j, outward, loads)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if first == last:

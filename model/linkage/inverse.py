@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
-from ..machine.loads import require_word
+from ..machine.loads.load import require_word
 from .linkage import Linkage
 
 Array = NDArray[np.float64]

@@ -14,7 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..machine.loads import AngleTable, Load, PositionTable, StrokeForce
+from ..machine.loads.angle_table import AngleTable
+from ..machine.loads.load import Load
+from ..machine.loads.position_table import PositionTable
+from ..machine.loads.stroke_force import StrokeForce
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 

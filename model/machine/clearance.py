@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..errors import InputError
-from .loads import require_word
+from .loads.load import require_word
 
 Joint = Literal["crank pivot", "crank pin", "slider pin"]
 Law = Literal["flores", "lankarani-nikravesh"]

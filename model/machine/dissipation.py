@@ -9,7 +9,11 @@ from __future__ import annotations
 import math
 
 from .links import Bar, Link
-from .loads import AngleTable, PositionTable, StrokeForce, Viscous
+from .loads.angle_table import AngleTable
+from .loads.load import Enters
+from .loads.position_table import PositionTable
+from .loads.stroke_force import StrokeForce
+from .loads.viscous import Viscous
 from .mechanism import Mechanism
 
 _ROUNDING = 1e-12
@@ -19,7 +23,8 @@ _ROUNDING = 1e-12
 def works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may differ from zero for some design.
 
-    It does not without friction of what is loaded, acceleration of the crank, viscous loads, loads that differ between
+    It does not without friction of what is loaded, acceleration of the crank, loads that change with the speed or have
+    a formula of their own, loads that differ between
     the strokes and loads over crank angle. Of numbers that vary two values each are tried, neither of them special.
     """
     if not mechanism.varying:
@@ -31,9 +36,7 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
 def linkage_loaded(machine: Mechanism) -> bool:
     """Return whether forces act on rod or slider: loads, or weight and inertia of what moves."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
-    return (moves(machine) and driven) or any(
-        machine.speed != 0.0 or not isinstance(load, Viscous) for load in machine.loads
-    )
+    return (moves(machine) and driven) or any(machine.speed != 0.0 or not load.speed_power for load in machine.loads)
 
 
 def pivot_loaded(machine: Mechanism) -> bool:
@@ -76,6 +79,10 @@ def _works(machine: Mechanism) -> bool:
         or _rubs(machine)
         or _adds_up(pushes)
         or _adds_up(drags)
+        or any(
+            load.enters == Enters.FORMULA and not load.by_position and (machine.speed != 0.0 or not load.speed_power)
+            for load in loads
+        )
         or outward != inward
         or any(isinstance(load, AngleTable) and not _constant(load) for load in loads)
     )

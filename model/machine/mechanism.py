@@ -12,7 +12,7 @@ from .clearance import Clearance
 from .drive import Drive
 from .friction import Friction
 from .links import Counterweight, Link, RigidLink
-from .loads import During, Load, require_word
+from .loads.load import During, Load, require_word
 from .varying import Varying, put, require_possible
 
 Branch = Literal["open", "crossed"]

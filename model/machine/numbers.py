@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
+from .loads.registry import kinds
 from .mechanism import Mechanism
 from .parameters import LOAD_SLOTS, Raw
 
@@ -31,13 +32,7 @@ _LINK = {
     "centre_across": (6, "m"),
     "inertia": (7, "kg m^2"),
 }
-_LOAD = {
-    "outward": (0, "N"),
-    "inward": (1, "N"),
-    "stiffness": (2, "N/m"),
-    "free_position": (3, "m"),
-    "coefficient": (2, "N s/m"),
-}
+_LOAD = {name: place for kind in kinds() for name, place in kind.slots.items()}
 _SLOTS: dict[str, tuple[int, str]] = {
     "speed": (Raw.SPEED, "rad/s"),
     "acceleration": (Raw.ACCELERATION, "rad/s^2"),

@@ -19,7 +19,8 @@ from ..errors import InputError
 from ..kernel.arithmetic import analytic, inlined, magnitude, root
 from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
 from .links import Bar, Link
-from .loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from .loads.load import Enters
+from .loads.registry import code_of
 from .mechanism import Mechanism
 
 Raw = IntEnum(
@@ -45,25 +46,16 @@ _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _END = int(Raw.END)
 
 
-class LoadKind(IntEnum):
-    """What kind of load a slot describes."""
-
-    STROKE_FORCE = 0
-    SPRING = 1
-    VISCOUS = 2
-    POSITION_TABLE = 3
-    ANGLE_TABLE = 4
-
-
-_STROKE_FORCE, _SPRING, _VISCOUS = int(LoadKind.STROKE_FORCE), int(LoadKind.SPRING), int(LoadKind.VISCOUS)
+_STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
+_FORMULA = int(Enters.FORMULA)
 _DATUMS = {"crank pivot": 0, "inner dead centre": 1, "outer dead centre": 2}
 
 
 class Loads(NamedTuple):
     """The loads' fixed structure.
 
-    kind, datum: (k,). factor: (k, 2), whether a table acts in the outward and in the inward stroke.
-    start: (k + 1,), where a load's table begins. at, force: its knots.
+    kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 2), whether a table acts in the outward and in
+    the inward stroke. start: (k + 1,), where a load's table begins. at, force: its knots.
     """
 
     kind: NDArray[np.int64]
@@ -123,7 +115,8 @@ class Design(NamedTuple):
 
 
 DESIGN = len(Design._fields)
-"""Rows of a derived block before those of the loads (two each: sign and origin of a table's own coordinate)."""
+"""Rows of a derived block before those of the loads, two each: sign and origin of a table's own coordinate, or the two
+numbers of a formula."""
 _OUTWARD = Design._fields.index("outward_force")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
@@ -165,7 +158,7 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
         raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
     for index, load in enumerate(mechanism.loads):
-        raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = _load_numbers(load)
+        raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = load.numbers()
     return raw
 
 
@@ -177,44 +170,20 @@ def _link_numbers(link: Link) -> tuple[float, ...]:
     return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
 
 
-def _load_numbers(load: object) -> tuple[float, float, float, float]:
-    match load:
-        case StrokeForce():
-            return (load.outward, load.inward, 0.0, 0.0)
-        case Spring():
-            return (1.0, 1.0, load.stiffness, load.free_position)
-        case Viscous():
-            return (1.0, 1.0, load.coefficient, 0.0)
-        case PositionTable() | AngleTable():
-            return (float(load.during != "inward stroke"), float(load.during != "outward stroke"), 0.0, 0.0)
-    raise TypeError(f"not a load: {load!r}")
-
-
 def load_structure(mechanism: Mechanism) -> Loads:
     """Return kinds, datums and tables of a mechanism's loads."""
-    kinds = {
-        StrokeForce: LoadKind.STROKE_FORCE,
-        Spring: LoadKind.SPRING,
-        Viscous: LoadKind.VISCOUS,
-        PositionTable: LoadKind.POSITION_TABLE,
-        AngleTable: LoadKind.ANGLE_TABLE,
-    }
     at: list[float] = []
     force: list[float] = []
     start = [0]
     for load in mechanism.loads:
-        if isinstance(load, PositionTable):
-            at.extend(load.positions)
-            force.extend(load.forces)
-        elif isinstance(load, AngleTable):
-            # The periodic table is closed here: its first knot comes again one turn later.
-            at.extend((*load.angles, load.angles[0] + 2.0 * math.pi))
-            force.extend((*load.forces, load.forces[0]))
+        places, forces = load.knots()
+        at.extend(places)
+        force.extend(forces)
         start.append(len(at))
     return Loads(
-        np.array([kinds[type(load)] for load in mechanism.loads], dtype=np.int64),
+        np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),
         np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
-        np.array([_load_numbers(load)[:2] for load in mechanism.loads], dtype=np.float64).reshape(-1, 2),
+        np.array([load.numbers()[:2] for load in mechanism.loads], dtype=np.float64).reshape(-1, 2),
         np.array(start, dtype=np.int64),
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),
@@ -378,3 +347,5 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
                 out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
             elif kind[k] == _VISCOUS:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
+            elif kind[k] >= _FORMULA:
+                out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]

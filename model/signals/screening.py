@@ -4,7 +4,8 @@ The innermost loop is over designs, so that every operation is a vector instruct
 angles, at which `locate` samples the curves and finds the cells of the two highest local maxima; these are refined by
 the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
 load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles: good
-for choosing designs, while what is delivered is evaluated by `peaks`. Tables and partial strokes are not handled here.
+for choosing designs, while what is delivered is evaluated by `peaks`. Tables, loads with a
+formula of their own and partial strokes are not handled here.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ..dynamics.segments import crowding
 from ..dynamics.torque import smooth_load
 from ..kernel.arithmetic import STEP, analytic, inlined, inverse, kernel, root
 from ..kernel.batches import in_chunks, turning
-from ..machine.loads import AngleTable, PositionTable
+from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
@@ -59,11 +60,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `locate` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
-        return (
-            whole
-            and not mechanism.friction.acts
-            and not any(isinstance(load, PositionTable | AngleTable) for load in mechanism.loads)
-        )
+        return whole and not mechanism.friction.acts and all(load.enters <= Enters.VISCOUS for load in mechanism.loads)
     return whole
 
 

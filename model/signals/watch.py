@@ -35,8 +35,7 @@ def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
 
 def stroke_dependent(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
-    structure = load_structure(mechanism.fullest)
-    if np.any(structure.factor[:, 0] != structure.factor[:, 1]):
+    if any(load.by_stroke for load in mechanism.fullest.loads):
         return True
     # Forces of the two strokes that vary apart from each other may agree at one value only.
     forces: dict[str, list[tuple[str, float]]] = {}

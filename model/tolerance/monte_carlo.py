@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
-from ..machine.loads import require_word
+from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .sources import Array, counted_angles, limits, source_influences
 from .spreads import Draw, Spreads

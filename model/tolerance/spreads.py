@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..errors import InputError
-from ..machine.loads import require_word
+from ..machine.loads.load import require_word
 from .sources import GUIDE, PINS, Array
 
 Shape = Literal["normal", "truncated normal", "uniform", "triangular"]

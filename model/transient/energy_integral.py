@@ -9,7 +9,7 @@ One unknown is left for the mean speed: K_least > 0. No load jumps over the cran
 least value, and the period grows without bound as K_least falls to 0: every mean speed has its running, however closely
 the crank comes to stopping.
 
-Viscous loads D w are taken along the speed found last, from a constant one on: then the result is a first guess.
+Loads D w and E w^2 are taken along the speed found last, from a constant one on: then the result is a first guess.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
 
     No energy below zero may hide between nodes: see `cut_where_least`.
     """
-    pace, viscous = np.full(turn.angle.shape, speed), bool(turn.terms.drag.any())
+    pace, viscous = np.full(turn.angle.shape, speed), turn.terms.speed_dependent
     for _ in range(_ROUNDS):
-        load = turn.terms.static + turn.way * turn.terms.drag * pace
+        load = turn.terms.static + (turn.way * turn.terms.drag + turn.terms.square * pace) * pace
         guess, stops = _running(turn, load, inertia, speed)
         if stops or not viscous:
             return Coasting(load, guess, stops)

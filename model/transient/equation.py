@@ -2,9 +2,10 @@
 
 The drive torque is affine in the crank's acceleration, and quadratic in its speed:
 
-    T = J(theta) a + J'(theta) w^2 / 2 + C(theta) + D(theta) w,
+    T = J(theta) a + (J'(theta) / 2 + E(theta)) w^2 + C(theta) + D(theta) w,
 
-J the moving inertia, C gravity and every load that does not depend on speed, D the viscous loads. Each term is the
+J the moving inertia, C gravity and every load that does not depend on speed, D the viscous loads,
+E loads that grow with the square of the speed. Each term is the
 torque of `dynamics.forces` for a motion and a load that leave only this term: nothing is derived a second time, and
 no term is a difference of great numbers.
 
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.segments import Cuts, cut_cycle, enter, load_on_slider, within
+from ..dynamics.segments import Cuts, cut_cycle, enter, load_on_slider, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
 from ..kernel.arithmetic import kernel
@@ -29,7 +30,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, LOAD_SLOTS, LoadKind, Raw, derive, design_at, load_structure, raw_vector
+from ..machine.parameters import DESIGN, LOAD_SLOTS, Raw, derive, design_at, load_structure, raw_vector
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
@@ -39,7 +40,8 @@ Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 NEAREST = 1e-12
 """rad; breakpoints closer together are one."""
-_STILL, _SPIN, _PUSH, _BARE = range(4)
+_STILL, _SPIN, _PUSH, _BARE, _SQUARE = range(5)
+_KEPT = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that a column keeps
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,8 @@ class Terms:
     """The terms of the equation of motion at crank angles (n,).
 
     inertia: J, kg m^2. spin: J'/2, kg m^2. static: C, N m. drag: D, N m s.
-    load: torque that the loads without the viscous ones do on the crank, N m; it is part of -C.
+    square: E, N m s^2.
+    load: torque that the loads that do not depend on speed do on the crank, N m; it is part of -C.
     """
 
     inertia: Array
@@ -55,10 +58,16 @@ class Terms:
     static: Array
     drag: Array
     load: Array
+    square: Array
+
+    @property
+    def speed_dependent(self) -> bool:
+        """Whether a load depends on the speed."""
+        return bool(self.drag.any() or self.square.any())
 
     def torque(self, speed: Any, acceleration: Any) -> Any:
         """Return the torque, N m, that the motion needs."""
-        return self.inertia * acceleration + self.spin * speed**2 + self.static + self.drag * speed
+        return self.inertia * acceleration + (self.spin + self.square) * speed**2 + self.static + self.drag * speed
 
 
 @kernel
@@ -80,6 +89,7 @@ def _enter(block: Any, loads: Any, watch: Any, inside: Any, piece: Any, shift: A
 @kernel
 def _terms(block: Any, loads: Any, outward: Any, piece: Any, shift: Any, angles: Any, out: Any) -> Any:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
+    square = design_at(block, 4)
     for i in range(angles.shape[0]):
         theta = angles[i]
         sine, cosine = math.sin(theta), math.cos(theta)
@@ -88,8 +98,11 @@ def _terms(block: Any, loads: Any, outward: Any, piece: Any, shift: Any, angles:
         out[0, i] = forces(sine, cosine, m, push, 0.0).torque
         out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
         out[2, i] = forces(sine, cosine, m, still, load).torque
-        out[3, i] = forces(sine, cosine, m, bare, smooth_load(m, spin, 0.0)).torque
+        dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
+        out[3, i] = forces(sine, cosine, m, bare, dragged).torque
         out[4, i] = still.branch * load * m.x_1
+        squared = with_formulas(0.0, m, square, block, 4, outward, loads)
+        out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
 
 class Stretch:
@@ -107,7 +120,7 @@ class Stretch:
 
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
-        out = np.empty((5, len(crank_angle)))
+        out = np.empty((6, len(crank_angle)))
         _terms(self._block, self._loads, self._outward, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
@@ -125,15 +138,16 @@ class CrankEquation:
         require_frictionless(mechanism.friction, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
-        raw = np.repeat(raw_vector(mechanism)[:, None], 4, axis=1)
+        raw = np.repeat(raw_vector(mechanism)[:, None], 5, axis=1)
         raw[:3] = np.array([[float(linkage.crank)], [float(linkage.rod)], [float(linkage.offset)]])
         raw[Raw.SPEED] = raw[Raw.ACCELERATION] = 0.0
-        raw[Raw.SPEED, _SPIN] = raw[Raw.ACCELERATION, _PUSH] = 1.0
+        raw[Raw.SPEED, [_SPIN, _SQUARE]] = raw[Raw.ACCELERATION, _PUSH] = 1.0
         raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y], _SPIN:] = 0.0
-        for index, kind in enumerate(self.loads.kind):
-            if kind != LoadKind.VISCOUS:
-                raw[Raw.END + LOAD_SLOTS * index :, _SPIN:][:LOAD_SLOTS] = 0.0
-        self.block = np.empty((DESIGN + 2 * len(mechanism.loads), 4))
+        for index, load in enumerate(mechanism.loads):
+            for column, power in _KEPT.items():
+                if load.speed_power != power:
+                    raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
+        self.block = np.empty((DESIGN + 2 * len(mechanism.loads), 5))
         _derive(raw, self.loads, self.block)
         self.dead_centres = linkage.dead_centre_angles
         self.breakpoints = self._breakpoints(marks)

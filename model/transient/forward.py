@@ -240,7 +240,7 @@ class _Run:
             terms = stretch.at(angle)
             # Beyond its table the motor goes on as at the end, until the event below has found the end.
             torque = float(motor(min(max(speed, slowest), fastest), direction))
-            drag = terms.drag[0] * speed
+            drag = (terms.drag[0] + terms.square[0] * speed) * speed
             surplus = torque - terms.spin[0] * speed * speed - terms.static[0] - drag
             acceleration = surplus / (terms.inertia[0] + added)
             return np.array([speed, acceleration, torque * speed, (drag - terms.load[0]) * speed])

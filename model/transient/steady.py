@@ -57,7 +57,7 @@ class Runner:
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
-        self.viscous = bool(self.turn.terms.drag.any())
+        self.viscous = self.turn.terms.speed_dependent
         self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def under(self, drive: Drive) -> SteadyRunning:
@@ -136,17 +136,18 @@ class Runner:
 
         way, motor = self.turn.way, self._motor(drive)
         static, drag = way * self.turn.mean(self.turn.terms.static), self.turn.mean(self.turn.terms.drag)
+        square = way * self.turn.mean(self.turn.terms.square)
 
         def surplus(speed: float) -> float:
-            return way * float(motor(np.array(way * speed))[0]) - static - drag * speed
+            return way * float(motor(np.array(way * speed))[0]) - static - (drag + square * speed) * speed
 
-        if isinstance(drive.motor, ConstantTorque) and drag <= 0.0:
+        if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
             raise InputError(
                 "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
                 f"{drive.gear_ratio * drive.motor.torque:g} N m on the crank against {static:.6g} N m on average at "
-                "every speed; give the motor a no-load speed, or add a viscous load"
+                "every speed; give the motor a no-load speed, or add a viscous load or drag"
             )
-        if isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line: beyond its zero
+        if isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
             top = max(1.0, 1.01 * surplus(0.0) / (surplus(0.0) - surplus(1.0)))
         else:
             top = speed_range(drive)[1]
@@ -162,7 +163,7 @@ class Runner:
                     if weak
                     else "stronger than the loads where its table ends"
                 )
-                + f" ({static:.6g} N m on the crank besides viscous loads); "
+                + f" ({static:.6g} N m on the crank besides loads that change with speed); "
                 + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
             )
         found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]

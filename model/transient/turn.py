@@ -86,7 +86,7 @@ class PeriodicTurn:
             angle.append(at)
             terms.append(stretch.at(at.ravel()))
         self.low, self.width, self.angle = np.concatenate(low), np.concatenate(width), np.concatenate(angle)
-        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load) for t in terms), strict=True)
+        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in terms), strict=True)
         self.terms = Terms(*(np.concatenate(column).reshape(self.angle.shape) for column in columns))
 
     def mean(self, values: Array) -> float:
@@ -110,7 +110,7 @@ class PeriodicTurn:
         t, speed = self.terms, self.way * np.sqrt(2.0 * energy)
         torque, slope = motor(speed)
         total = t.inertia + inertia
-        return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * t.spin) / total
+        return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
 
     def even(self, speed: float) -> Guess:
         """Return the first guess of a constant speed, rad/s, of its size."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.machine.loads import require_word
+from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ..kinds import Kind

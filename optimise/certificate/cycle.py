@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 from ...model.dynamics.torque import Forces, forces, smooth_load
 from ...model.kernel.arithmetic import magnitude, root
 from ...model.kinematics.position import motion
+from ...model.machine.loads.load import Enters
+from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.parameters import DESIGN, Design, LoadKind, Loads, derive, design_at
+from ...model.machine.parameters import DESIGN, Design, Loads, derive, design_at
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
 from ...model.signals.signals import Signal, design_motion, signal
@@ -93,7 +95,12 @@ class Curve:
     ) -> Enclosure:
         if self.kind.needs_forces:
             load = smooth_load(m, d, _by_stroke(outward, d.outward_force, d.inward_force))
-            for k in range(len(self.loads.kind)):
+            way = _by_stroke(outward, 1.0, -1.0)
+            for k, code in enumerate(self.loads.kind.tolist()):
+                if code >= Enters.FORMULA:
+                    first, second = block[DESIGN + 2 * k : DESIGN + 2 * k + 2, 0]
+                    velocity = m.x_1 * d.branch * d.speed
+                    load = load + force_of(code, m.x * d.branch, velocity, way, first, second)
                 if self.loads.start[k] < self.loads.start[k + 1]:
                     load = load + self._table(k, m, d, block, theta, outward)
             return _of_forces(self.kind, forces(sine, cosine, m, d, load), d)
@@ -104,7 +111,7 @@ class Curve:
         part = slice(loads.start[k], loads.start[k + 1])
         at, force = loads.at[part], loads.force[part]
         factor = _by_stroke(outward, *loads.factor[k].tolist())
-        if loads.kind[k] == LoadKind.ANGLE_TABLE:
+        if loads.kind[k] == Enters.ANGLE_TABLE:
             turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
             return cast(Enclosure, factor * np.interp(turned, at, force))
         at_x = (m.x * d.branch - block[DESIGN + 2 * k + 1, 0]) * block[DESIGN + 2 * k, 0]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
-from ...model.machine.loads import require_word
+from ...model.machine.loads.load import require_word
 from .constant import spread
 from .stationarity import Array
 

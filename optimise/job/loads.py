@@ -1,10 +1,11 @@
-"""The loads on the slider in a job file, [[load]], and how each becomes a load of the model. Several add up."""
+"""The loads on the slider in a job file, [[load]]: each a table as its kind of load declares it. Several add up."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from functools import cached_property
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -13,29 +14,17 @@ from pydantic import (
     Tag,
     ValidatorFunctionWrapHandler,
     WrapValidator,
+    create_model,
     model_validator,
 )
 
 from ...model.errors import InputError
-from ...model.machine import loads as model
-from ...model.machine.loads import Datum, During
+from ...model.machine.loads import load as model
+from ...model.machine.loads.registry import kinds
+from . import values
 from .kinds import Kinds
 from .units import shown
-from .values import Angle, Damping, Force, Length, Part, Resistance, Stiffness
-
-_DURING: Any = Field("cycle", description="when the load acts", examples=["outward stroke"])
-_DATUM: Any = Field(
-    "crank pivot",
-    description="what the positions are counted from: the crank pivot or the inner dead centre "
-    "(both outward), or the outer dead centre (inward)",
-    examples=["outer dead centre"],
-)
-_FORCES: Any = Field(
-    min_length=2,
-    max_length=1000,
-    description="force on the slider at each point, positive outward, away from the crank pivot",
-    examples=[["-600 N", "0 N"]],
-)
+from .values import Part
 
 
 def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
@@ -47,78 +36,13 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     return points
 
 
-class OpposingForce(Part):
-    """A force of constant size that opposes a stroke, or every motion (Coulomb friction of known size)."""
+class LoadPart(Part):
+    """A load."""
 
-    force: Resistance = Field(description="its size", examples=["200 N"])
-    opposes: Literal["outward stroke", "inward stroke", "motion"] = Field(
-        description="what it resists", examples=["outward stroke"]
-    )
-
-    def build(self) -> model.Load:
-        """Return the load as the model has it."""
-        return model.StrokeForce(
-            outward=0.0 if self.opposes == "inward stroke" else -self.force,
-            inward=0.0 if self.opposes == "outward stroke" else self.force,
-        )
-
-
-class DirectedForce(Part):
-    """A force of constant size and direction, throughout or during one stroke."""
-
-    force: Resistance = Field(description="its size", examples=["200 N"])
-    direction: Literal["outward", "inward"] = Field(
-        description="where it pushes the slider: outward is away from the crank pivot",
-        examples=["inward"],
-    )
-    during: During = _DURING
-
-    def build(self) -> model.Load:
-        """Return the load as the model has it."""
-        force = self.force if self.direction == "outward" else -self.force
-        return model.StrokeForce(
-            outward=0.0 if self.during == "inward stroke" else force,
-            inward=0.0 if self.during == "outward stroke" else force,
-        )
-
-
-class SpringLoad(Part):
-    """A linear spring between slider and frame."""
-
-    stiffness: Stiffness = Field(description="of the spring", examples=["20 N/mm"])
-    free_position: Length = Field(description="slider position where the spring is free of force", examples=["25 mm"])
-    measured_from: Datum = _DATUM
-
-    def build(self) -> model.Load:
-        """Return the load as the model has it."""
-        return model.Spring(stiffness=self.stiffness, free_position=self.free_position, datum=self.measured_from)
-
-
-class ViscousLoad(Part):
-    """A resistance proportional to the slider speed."""
-
-    viscous: Damping = Field(description="force per speed", examples=["50 N s/m"])
-
-    def build(self) -> model.Load:
-        """Return the load as the model has it."""
-        return model.Viscous(coefficient=self.viscous)
-
-
-class PositionLoad(Part):
-    """A force tabulated over the slider position: linear between the points, constant beyond them."""
-
-    positions: Annotated[tuple[Length, ...], WrapValidator(increasing)] = Field(
-        min_length=2,
-        max_length=1000,
-        description="slider positions, increasing",
-        examples=[["0 mm", "20 mm"]],
-    )
-    forces: tuple[Force, ...] = _FORCES
-    measured_from: Datum = _DATUM
-    during: During = _DURING
+    builds: ClassVar[Callable[..., model.Load]]
 
     @model_validator(mode="after")
-    def _possible(self) -> PositionLoad:
+    def _possible(self) -> LoadPart:
         self.build()
         return self
 
@@ -129,63 +53,53 @@ class PositionLoad(Part):
     @cached_property
     def built(self) -> model.Load:
         """The load as the model has it, which takes a time where a table is long."""
-        return model.PositionTable(
-            positions=self.positions,
-            forces=self.forces,
-            datum=self.measured_from,
-            during=self.during,
-        )
+        return type(self).builds(**{name: getattr(self, name) for name in type(self).model_fields})
 
 
-class AngleLoad(Part):
-    """A force tabulated over the crank angle: linear between the points, periodic."""
-
-    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] = Field(
-        min_length=2,
-        max_length=1000,
-        description="crank angles, increasing, spanning less than 360 deg",
-        examples=[["0 deg", "90 deg"]],
-    )
-    forces: tuple[Force, ...] = _FORCES
-    during: During = _DURING
-
-    @model_validator(mode="after")
-    def _possible(self) -> AngleLoad:
-        self.build()
-        return self
-
-    def build(self) -> model.Load:
-        """Return the load as the model has it."""
-        return self.built
-
-    @cached_property
-    def built(self) -> model.Load:
-        """The load as the model has it, which takes a time where a table is long."""
-        return model.AngleTable(angles=self.crank_angles, forces=self.forces, during=self.during)
+def _part(table: model.Table) -> type[LoadPart]:
+    """Return the table of a job file that a kind of load declares."""
+    fields: dict[str, Any] = {entry.name: (_type(entry), _field(entry)) for entry in table.entries}
+    part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
+    part.model_config["json_schema_extra"] = {
+        "x-load": {"key": table.key, "title": table.title, "first": dict(table.first)}
+    }
+    part.model_rebuild(force=True)
+    part.builds = staticmethod(table.build)
+    return part
 
 
-# The key that tells a kind of load, in the order in which kinds are told apart.
-_KINDS = Kinds(
-    {
-        "opposes": OpposingForce,
-        "direction": DirectedForce,
-        "stiffness": SpringLoad,
-        "viscous": ViscousLoad,
-        "positions": PositionLoad,
-        "crank_angles": AngleLoad,
-    },
-    "{ force, opposes }, { force, direction }, { stiffness, free_position }, { viscous }, "
-    "{ positions, forces } or { crank_angles, forces }",
-    "give each its own [[load]], loads add up",
-)
+def _type(entry: model.Entry) -> Any:
+    one = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
+    several = tuple[one, ...] if entry.several else one
+    return Annotated[several, WrapValidator(increasing)] if entry.increasing else several
 
-Load = Annotated[
-    Annotated[OpposingForce, Tag("(opposes)")]
-    | Annotated[DirectedForce, Tag("(direction)")]
-    | Annotated[SpringLoad, Tag("(stiffness)")]
-    | Annotated[ViscousLoad, Tag("(viscous)")]
-    | Annotated[PositionLoad, Tag("(positions)")]
-    | Annotated[AngleLoad, Tag("(crank_angles)")],
-    Discriminator(_KINDS.tag),
-    BeforeValidator(_KINDS.one),
-]
+
+def _field(entry: model.Entry) -> Any:
+    shape: Any = {"min_length": 2, "max_length": 1000} if entry.several else {}
+    default = ... if entry.default is None else entry.default
+    return Field(default, description=entry.description, examples=[entry.example], **shape)
+
+
+PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables}
+"""By the key that tells a kind of load, in the order in which kinds are told apart."""
+
+
+def _choice() -> str:
+    """Return the kinds of load for messages, each by its required keys."""
+    required = [
+        [entry.name for entry in table.entries if entry.default is None] for kind in kinds() for table in kind.tables
+    ]
+    shapes = [f"{{ {', '.join(names)} }}" for names in required]
+    return f"{', '.join(shapes[:-1])} or {shapes[-1]}"
+
+
+_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]], loads add up")
+
+if TYPE_CHECKING:
+    Load = LoadPart
+else:
+    Load = Annotated[
+        tuple(Annotated[part, Tag(f"({key})")] for key, part in PARTS.items()),
+        Discriminator(_KINDS.tag),
+        BeforeValidator(_KINDS.one),
+    ]

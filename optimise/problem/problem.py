@@ -10,7 +10,7 @@ from typing import Literal
 
 from ...model.errors import InputError
 from ...model.linkage.linkage import SlowStroke
-from ...model.machine.loads import require_word
+from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.quantity import Quantity

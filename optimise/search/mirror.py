@@ -12,7 +12,6 @@ from collections.abc import Hashable
 
 import numpy as np
 
-from ...model.machine.loads import Load, PositionTable, Spring, StrokeForce
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from .elimination import Sheet
@@ -62,7 +61,7 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
     machine = part.mechanism.fullest
     if part.own or machine.gravity[1] or machine.acceleration or machine.friction.acts:
         return True
-    if not all(_by_position(load) for load in machine.loads):
+    if not all(load.by_position for load in machine.loads):
         return True  # what differs at some crank angles only would be seen in some designs only
     designs = np.concatenate([_random(part, sheet) for sheet in sheets])
     if not len(designs):
@@ -79,13 +78,6 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
         )
         for name in sorted(names)
     )
-
-
-def _by_position(load: Load) -> bool:
-    """Whether a load is the same wherever the slider is at the same place."""
-    if isinstance(load, StrokeForce):
-        return load.outward == load.inward
-    return isinstance(load, Spring) or (isinstance(load, PositionTable) and load.during == "cycle")
 
 
 def _random(part: Problem, sheet: Sheet) -> Array:

@@ -34,7 +34,7 @@ from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
-from ...model.machine.loads import require_word
+from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.averages import average
 from ...model.signals.peaks import find_peaks

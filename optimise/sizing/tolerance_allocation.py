@@ -36,7 +36,7 @@ from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
-from ...model.machine.loads import require_word
+from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ..problem.costs import Costs
 from .error_rows import Array, ErrorRows, Kind

@@ -91,9 +91,7 @@ def _turning(part: object) -> Mechanism:
 
 
 def _points(machine: Mechanism) -> int:
-    from ...model.machine.loads import AngleTable, PositionTable
-
-    return sum(len(load.forces) for load in machine.loads if isinstance(load, AngleTable | PositionTable))
+    return sum(len(load.knots()[0]) for load in machine.loads)
 
 
 def _ranges(part: object) -> dict[str, Range] | None:

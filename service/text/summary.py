@@ -7,7 +7,6 @@ from typing import Any
 
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
-from ...model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.varying import Varying
 from ...objectives.motion_deviation import MotionDeviation
@@ -83,7 +82,7 @@ def _given(mechanism: Mechanism) -> list[str]:
     if any(mechanism.gravity):
         x, y = mechanism.gravity
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")
-    lines += [f"load: {_load(load)}" for load in mechanism.loads]
+    lines += [f"load: {load.text}" for load in mechanism.loads]
     lines += _friction(mechanism.friction)
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
@@ -108,21 +107,6 @@ def _link(link: Link) -> str:
     inertia = "of a slender rod" if link.inertia is None else f"{link.inertia:.6g} kg m^2"
     across = f" and {1e3 * link.centre_across:.6g} mm across" if link.centre_across else ""
     return f"{link.mass:.6g} kg, mass centre {centre}{across}, inertia {inertia}"
-
-
-def _load(load: Load) -> str:
-    if isinstance(load, StrokeForce):
-        if load.outward == load.inward:
-            return f"{load.outward:.6g} N, positive outward"
-        return f"{load.outward:.6g} N in the outward and {load.inward:.6g} N in the inward stroke, positive outward"
-    if isinstance(load, Spring):
-        return f"spring {load.stiffness:.6g} N/m, free at {1e3 * load.free_position:.6g} mm from the {load.datum}"
-    if isinstance(load, Viscous):
-        return f"viscous, {load.coefficient:.6g} N s/m"
-    if isinstance(load, PositionTable):
-        return f"table of {len(load.positions)} positions from the {load.datum}, {load.during}"
-    assert isinstance(load, AngleTable)
-    return f"table of {len(load.angles)} crank angles, {load.during}"
 
 
 def _friction(friction: Friction) -> list[str]:

@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.drag import Drag
+from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 
 Array = NDArray[np.float64]
@@ -153,7 +159,7 @@ def random_machine(random: np.random.Generator, *, loads: bool = True) -> Mechan
 
 def random_loads(
     random: np.random.Generator,
-) -> tuple[StrokeForce | Spring | Viscous | PositionTable | AngleTable, ...]:
+) -> tuple[Load, ...]:
     """Return one load of every kind, springs and tables at every datum."""
     size = random.uniform(-300.0, 300.0, 12)
     knots = np.sort(random.uniform(0.0, 0.1, 4))
@@ -173,6 +179,7 @@ def random_loads(
             during="outward stroke",
         ),
         AngleTable(angles=tuple(angles), forces=tuple(size[8:12]), during="outward stroke"),
+        Drag(drag=random.uniform(0.0, 20.0)),
     )
 
 

@@ -13,7 +13,10 @@ from scipy.integrate import quad
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.signals import Signal

@@ -14,7 +14,8 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.loads import StrokeForce, Viscous
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 
 RPM = 2.0 * math.pi / 60.0

@@ -9,7 +9,12 @@ import pytest
 
 from slidercrank.model.machine.dissipation import works_over_a_turn
 from slidercrank.model.machine.friction import Friction, Pin
-from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.averages import average_torque

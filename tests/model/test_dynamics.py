@@ -12,7 +12,8 @@ import pytest
 from slidercrank.model.cycle.cycle import Cycle, cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks

@@ -18,7 +18,8 @@ from slidercrank.model.cycle.efficiency import energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
-from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks

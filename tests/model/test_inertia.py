@@ -12,7 +12,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.shaking import ShakingCurves, shaking_curves
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks

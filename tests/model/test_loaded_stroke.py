@@ -10,7 +10,12 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import MORE, loaded_stroke
-from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying import Varying
 from tests.model.virtual_work import path, slider_load

@@ -11,7 +11,12 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.loads import AngleTable, Load, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)

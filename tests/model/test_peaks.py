@@ -13,7 +13,10 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import KEPT, find_peaks

@@ -7,7 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.loads import Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerances, Window
 from slidercrank.model.signals import screening
 from slidercrank.model.signals.peaks import find_peaks

@@ -8,7 +8,11 @@ import numpy as np
 
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Clearances, Mechanism
 from slidercrank.model.machine.varying import Varying
 from tests.model.cases import TOLERANCES, Array, random_designs

@@ -15,7 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.machine.links import Bar, Link
-from slidercrank.model.machine.loads import AngleTable, During, Load, PositionTable, Spring, StrokeForce
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.drag import Drag
+from slidercrank.model.machine.loads.load import During, Load
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -103,8 +109,11 @@ def load_force(load: Load, position: Any, velocity: Any, outward: Any, theta: An
     if isinstance(load, AngleTable):
         force = np.interp(theta, load.angles, load.forces, period=2.0 * math.pi)
         return np.where(acts(load.during, outward), force, 0.0)
-    if not isinstance(load, Spring | PositionTable):
+    if isinstance(load, Drag):
+        return -load.drag * velocity * np.abs(velocity)
+    if isinstance(load, Viscous):
         return -load.coefficient * velocity
+    assert isinstance(load, Spring | PositionTable)
     counted = {
         "crank pivot": position,
         "inner dead centre": position - ends[0],

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job

@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import Viscous
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.friction import Friction
-from slidercrank.model.machine.loads import AngleTable, StrokeForce
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem

@@ -14,7 +14,11 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job

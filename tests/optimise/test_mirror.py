@@ -9,7 +9,11 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.friction import Friction
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.search.candidates import Pile

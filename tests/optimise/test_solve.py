@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress

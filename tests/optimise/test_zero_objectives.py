@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.kinematics.in_line import without_rounding
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity

@@ -19,7 +19,7 @@ from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.service.topics.balance import numbers as balance

@@ -16,7 +16,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running

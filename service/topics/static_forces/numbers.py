@@ -20,7 +20,7 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
     """
     from ....model.machine.friction import Friction
     from ....model.machine.links import Counterweight, RigidLink
-    from ....model.machine.loads import StrokeForce
+    from ....model.machine.loads.stroke_force import StrokeForce
 
     constant = -1.0 if load is None and not mechanism.loads else load
     return replace(

@@ -11,7 +11,7 @@ from slidercrank.model.classical.static_forces import static_forces
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from tests.model.cases import linkage_of, random_designs
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import constant_torque_running

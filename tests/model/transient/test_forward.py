@@ -17,7 +17,8 @@ from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
-from slidercrank.model.machine.loads import Spring, StrokeForce
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.forward import Progress, State, simulate
 from tests.model.cases import MACHINES, SMOOTH, STROKES, TABLES

@@ -13,7 +13,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads import Viscous
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import State, simulate

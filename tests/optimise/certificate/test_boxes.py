@@ -11,7 +11,11 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
-from slidercrank.model.machine.loads import AngleTable, PositionTable, Spring, StrokeForce, Viscous
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.loads.spring import Spring
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes

@@ -16,7 +16,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal

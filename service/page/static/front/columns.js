@@ -7,7 +7,7 @@ import { unitOf, withUnit } from "../lib/numbers.js";
 /** @type {[string, string][]} */
 const ENDINGS = [
   ["_m_s3", "m/s^3"], ["_m_s2", "m/s^2"], ["_m_s", "m/s"], ["_kg_m2", "kg m^2"], ["_kg_m3", "kg/m^3"], ["_kg", "kg"],
-  ["_rad_s2", "rad/s^2"], ["_rpm", "rpm"], ["_Ns_per_m", "N s/m"], ["_N_per_m", "N/m"], ["_m2", "m^2"], ["_Nm", "N m"],
+  ["_rad_s2", "rad/s^2"], ["_rpm", "rpm"], ["_Ns2_per_m2", "N s^2/m^2"], ["_Ns_per_m", "N s/m"], ["_N_per_m", "N/m"], ["_m2", "m^2"], ["_Nm", "N m"],
   ["_mm", "mm"], ["_deg", "deg"], ["_N", "N"], ["_W", "W"], ["_MPa", "MPa"],
 ];
 

@@ -1,0 +1,59 @@
+"""A resistance that grows with the square of the slider speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from ...kernel.arithmetic import analytic
+from .load import Enters, Entry, Load, Table, require_finite
+
+
+@analytic
+def _force(position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
+    return -first * way * velocity * velocity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drag(Load):
+    """A resistance of turbulent flow: force = -drag v |v|, v the slider's velocity, N. drag: N s^2/m^2.
+
+    Within a stroke it is -drag v^2 or +drag v^2, which is smooth; at the dead centres its second derivative jumps.
+    """
+
+    drag: float
+
+    enters: ClassVar = Enters.FORMULA
+    formula: ClassVar = _force
+    speed_power: ClassVar = 2
+    slots: ClassVar = {"drag": (2, "N s^2/m^2")}
+
+    def __post_init__(self) -> None:
+        require_finite(self, "drag")
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return the coefficient after factors of one."""
+        return (1.0, 1.0, self.drag, 0.0)
+
+    @property
+    def by_stroke(self) -> bool:
+        """True: the formula of one stroke is the negative of that of the other."""
+        return True
+
+    @property
+    def text(self) -> str:
+        """The coefficient."""
+        return f"drag, {self.drag:.6g} N s^2/m^2"
+
+
+Drag.tables = (
+    Table(
+        "drag",
+        "DragLoad",
+        "resistance with the square of the speed",
+        "A resistance that grows with the square of the slider speed, as that of a fluid.",
+        (Entry("drag", "QuadraticDamping", "force per square of the speed", "20 N s^2/m^2"),),
+        {"drag": "10 N s^2/m^2"},
+        lambda drag: Drag(drag=drag),
+    ),
+)

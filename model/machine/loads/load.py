@@ -1,0 +1,155 @@
+"""A load on the slider: all that the kernels, job files, the page and summaries ask of one.
+
+A kind of load is a module of this package with a frozen dataclass that derives from `Load`. It declares how it enters
+the kernels: as one of the shapes that these add up before a sweep (`Enters`), or by a `formula` of its own.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, ClassVar, Literal, get_args
+
+from ...errors import InputError
+
+Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
+During = Literal["cycle", "outward stroke", "inward stroke"]
+Formula = Callable[[Any, Any, Any, Any, Any], Any]
+
+
+class Enters(IntEnum):
+    """The way by which a kind of load enters the kernels; the order in which lists name kinds.
+
+    Stroke forces, springs and viscous loads are summed for each design before a sweep, so that any number of them
+    costs what one does. Tables make breakpoints. All others are evaluated one by one.
+    """
+
+    STROKE_FORCE = 0
+    SPRING = 1
+    VISCOUS = 2
+    POSITION_TABLE = 3
+    ANGLE_TABLE = 4
+    FORMULA = 5
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A key of a load's table in a job file.
+
+    kind: of its value, a name of `optimise.job.values`, or the words to choose from. increasing: of a table's points.
+    optional: has the default.
+    """
+
+    name: str
+    kind: str | tuple[str, ...]
+    description: str
+    example: Any
+    several: bool = False
+    increasing: bool = False
+    default: Any = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table [[load]] of a job file, told from others by its key.
+
+    title: of the form's list. help: a sentence. first: the form's first values. build: from values in SI, by name.
+    """
+
+    key: str
+    name: str
+    title: str
+    help: str
+    entries: tuple[Entry, ...]
+    first: Mapping[str, Any]
+    build: Callable[..., Load]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load:
+    """A load on the slider along its line; forces are positive outward.
+
+    enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1 in
+    the outward stroke, -1 in the inward one) and the two numbers of the load's own, zero where both are zero;
+    `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
+    proportional to. slots: place in the numbers of a load and SI unit of each field that designs can vary. tables: of
+    job files.
+    """
+
+    enters: ClassVar[Enters]
+    formula: ClassVar[Formula | None] = None
+    speed_power: ClassVar[Literal[0, 1, 2]] = 0
+    slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
+    tables: ClassVar[tuple[Table, ...]]
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return factors in the outward and the inward stroke, and two numbers of the load's own."""
+        raise NotImplementedError
+
+    def knots(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Return where the load's table has knots, and the forces there; none if it has no table."""
+        return (), ()
+
+    @property
+    def by_position(self) -> bool:
+        """Whether the force is the same wherever the slider is at the same place."""
+        return False
+
+    @property
+    def by_stroke(self) -> bool:
+        """Whether the force has different formulas in the two strokes."""
+        first, second = self.numbers()[:2]
+        return first != second
+
+    @property
+    def text(self) -> str:
+        """The load in a few words."""
+        raise NotImplementedError
+
+
+def require_finite(load: Load, *names: str) -> None:
+    """Refuse fields that are infinite or not a number."""
+    for name in names:
+        value = getattr(load, name)
+        if not math.isfinite(value):
+            raise InputError(f"{name} of a {type(load).__name__} must be finite; got {value}")
+
+
+def require_word(name: str, value: object, words: object) -> None:
+    """Refuse a value that is none of the words of a `Literal`."""
+    if value not in get_args(words):
+        raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
+
+
+def require_table(what: str, at: Sequence[float], forces: Sequence[float]) -> None:
+    """Refuse a table that does not increase, is not finite or has fewer than two points."""
+    if len(at) != len(forces) or len(at) < 2:
+        raise InputError(
+            f"a table needs as many forces as {what}, two at least; got {len(at)} {what} and {len(forces)} forces"
+        )
+    if not all(math.isfinite(value) for value in (*at, *forces)):
+        raise InputError(f"a table of {what} and forces must be finite throughout")
+    for before, after in itertools.pairwise(at):
+        if after <= before:
+            raise InputError(f"{what} of a table must increase; got {after:g} after {before:g}; sort the table")
+
+
+DURING = Entry("during", get_args(During), "when the load acts", "outward stroke", default="cycle")
+DATUM = Entry(
+    "measured_from",
+    get_args(Datum),
+    "what the positions are counted from: the crank pivot or the inner dead centre (both outward), or the outer dead "
+    "centre (inward)",
+    "outer dead centre",
+    default="crank pivot",
+)
+FORCES = Entry(
+    "forces",
+    "Force",
+    "force on the slider at each point, positive outward, away from the crank pivot",
+    ["-600 N", "0 N"],
+    several=True,
+)

@@ -1,0 +1,78 @@
+"""A force tabulated over the slider position."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Table, require_table, require_word
+
+
+@dataclass(frozen=True, kw_only=True)
+class PositionTable(Load):
+    """A force tabulated over slider position, interpolated linearly, constant beyond the ends of the table.
+
+    positions: increasing, m, from the datum. forces: N, positive outward. during: the force acts in these strokes.
+    """
+
+    positions: tuple[float, ...]
+    forces: tuple[float, ...]
+    datum: Datum = "crank pivot"
+    during: During = "cycle"
+
+    enters: ClassVar = Enters.POSITION_TABLE
+
+    def __post_init__(self) -> None:
+        require_table("positions", self.positions, self.forces)
+        require_word("datum", self.datum, Datum)
+        require_word("during", self.during, During)
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return factors of one in the strokes in which the force acts."""
+        return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
+
+    def knots(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Return positions and forces."""
+        return self.positions, self.forces
+
+    @property
+    def by_position(self) -> bool:
+        """Whether the force acts in both strokes."""
+        return self.during == "cycle"
+
+    @property
+    def text(self) -> str:
+        """The size of the table."""
+        return f"table of {len(self.positions)} positions from the {self.datum}, {self.during}"
+
+
+def _built(
+    positions: tuple[float, ...], forces: tuple[float, ...], measured_from: Datum, during: During
+) -> PositionTable:
+    return PositionTable(positions=positions, forces=forces, datum=measured_from, during=during)
+
+
+PositionTable.tables = (
+    Table(
+        "positions",
+        "PositionLoad",
+        "table of forces over the slider position",
+        "A force tabulated over the slider position: linear between the points, constant beyond them.",
+        (
+            Entry(
+                "positions",
+                "Length",
+                "slider positions, increasing",
+                ["0 mm", "20 mm"],
+                several=True,
+                increasing=True,
+            ),
+            FORCES,
+            DATUM,
+            DURING,
+        ),
+        {"positions": ["0 mm", "50 mm"], "forces": ["0 N", "-100 N"], "measured_from": "inner dead centre"},
+        _built,
+    ),
+)

@@ -1,0 +1,59 @@
+"""Every kind of load that a module of this package declares, and the compiled choice among their formulas."""
+
+from __future__ import annotations
+
+import pkgutil
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from ...kernel.arithmetic import analytic
+from .load import Enters, Formula, Load
+
+
+@cache
+def kinds() -> tuple[type[Load], ...]:
+    """Return all kinds of load in the order of `Enters`; those with a formula by the name of their module."""
+    package = import_module(__package__)
+    modules = sorted(found.name for found in pkgutil.iter_modules(package.__path__, f"{__package__}."))
+    declared = [
+        value
+        for name in modules
+        for value in vars(import_module(name)).values()
+        if isinstance(value, type) and issubclass(value, Load) and value is not Load
+    ]
+    return tuple(sorted(dict.fromkeys(declared), key=lambda kind: kind.enters))
+
+
+def code_of(kind: type[Load]) -> int:
+    """Return the number by which kernels know a kind of load."""
+    return kinds().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
+
+
+def _choice() -> Formula:
+    """Return the formula of all kinds that have one: of their code first, then as `Load.formula`.
+
+    Composed when kernels are compiled, which inline it: there is no call at run time.
+    """
+
+    @analytic
+    def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
+        return 0.0 * velocity
+
+    for kind in kinds():
+        if kind.formula is not None:
+            chosen = _either(code_of(kind), kind.formula, chosen)
+    return chosen
+
+
+def _either(own: int, formula: Any, otherwise: Any) -> Any:
+    @analytic
+    def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
+        if code == own:
+            return formula(position, velocity, way, first, second)
+        return otherwise(code, position, velocity, way, first, second)
+
+    return chosen
+
+
+force_of: Any = _choice()

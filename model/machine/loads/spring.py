@@ -1,0 +1,63 @@
+"""A linear spring between slider and frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .load import DATUM, Datum, Enters, Entry, Load, Table, require_finite, require_word
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring(Load):
+    """A linear spring: force = -stiffness (position - free_position), N, position counted outward from the datum.
+
+    stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre the
+    position counts inward and so does the force that pulls it back: the spring is the same, only its rest point moves.
+    """
+
+    stiffness: float
+    free_position: float = 0.0
+    datum: Datum = "crank pivot"
+
+    enters: ClassVar = Enters.SPRING
+    slots: ClassVar = {"stiffness": (2, "N/m"), "free_position": (3, "m")}
+
+    def __post_init__(self) -> None:
+        require_finite(self, "stiffness", "free_position")
+        require_word("datum", self.datum, Datum)
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return stiffness and free position after factors of one."""
+        return (1.0, 1.0, self.stiffness, self.free_position)
+
+    @property
+    def by_position(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def text(self) -> str:
+        """Stiffness and free position."""
+        return f"spring {self.stiffness:.6g} N/m, free at {1e3 * self.free_position:.6g} mm from the {self.datum}"
+
+
+def _built(stiffness: float, free_position: float, measured_from: Datum) -> Spring:
+    return Spring(stiffness=stiffness, free_position=free_position, datum=measured_from)
+
+
+Spring.tables = (
+    Table(
+        "stiffness",
+        "SpringLoad",
+        "spring",
+        "A linear spring between slider and frame.",
+        (
+            Entry("stiffness", "Stiffness", "of the spring", "20 N/mm"),
+            Entry("free_position", "Length", "slider position where the spring is free of force", "25 mm"),
+            DATUM,
+        ),
+        {"stiffness": "1 N/mm", "free_position": "0 mm", "measured_from": "inner dead centre"},
+        _built,
+    ),
+)

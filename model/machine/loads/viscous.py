@@ -1,0 +1,48 @@
+"""A resistance proportional to the slider speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .load import Enters, Entry, Load, Table, require_finite
+
+
+@dataclass(frozen=True, kw_only=True)
+class Viscous(Load):
+    """A viscous resistance: force = -coefficient velocity. coefficient: N s/m."""
+
+    coefficient: float
+
+    enters: ClassVar = Enters.VISCOUS
+    speed_power: ClassVar = 1
+    slots: ClassVar = {"coefficient": (2, "N s/m")}
+
+    def __post_init__(self) -> None:
+        require_finite(self, "coefficient")
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return the coefficient after factors of one."""
+        return (1.0, 1.0, self.coefficient, 0.0)
+
+    @property
+    def text(self) -> str:
+        """The coefficient."""
+        return f"viscous, {self.coefficient:.6g} N s/m"
+
+
+def _built(viscous: float) -> Viscous:
+    return Viscous(coefficient=viscous)
+
+
+Viscous.tables = (
+    Table(
+        "viscous",
+        "ViscousLoad",
+        "damper",
+        "A resistance proportional to the slider speed.",
+        (Entry("viscous", "Damping", "force per speed", "50 N s/m"),),
+        {"viscous": "10 N s/m"},
+        _built,
+    ),
+)
