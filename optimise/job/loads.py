@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
@@ -99,7 +100,7 @@ if TYPE_CHECKING:
     Load = LoadPart
 else:
     Load = Annotated[
-        tuple(Annotated[part, Tag(f"({key})")] for key, part in PARTS.items()),
+        reduce(or_, (Annotated[part, Tag(f"({key})")] for key, part in PARTS.items())),
         Discriminator(_KINDS.tag),
         BeforeValidator(_KINDS.one),
     ]

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from ...kernel.arithmetic import analytic
-from .load import Enters, Formula, Load
+from .load import Enters, Load
 
 
 @cache
@@ -30,7 +30,7 @@ def code_of(kind: type[Load]) -> int:
     return kinds().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
 
 
-def _choice() -> Formula:
+def _choice() -> Any:
     """Return the formula of all kinds that have one: of their code first, then as `Load.formula`.
 
     Composed when kernels are compiled, which inline it: there is no call at run time.
