@@ -70,8 +70,8 @@ def _part(table: model.Table) -> type[LoadPart]:
 
 
 def _type(entry: model.Entry) -> Any:
-    one = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
-    several = tuple[one, ...] if entry.several else one
+    one: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
+    several: Any = tuple.__class_getitem__((one, ...)) if entry.several else one
     return Annotated[several, WrapValidator(increasing)] if entry.increasing else several
 
 

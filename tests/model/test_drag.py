@@ -59,7 +59,7 @@ def test_peaks_with_drag_are_those_of_a_dense_sweep(machine: Mechanism, signal: 
     """200,000 angles miss a peak by f'' h^2 / 8, some 1e-9 of it near locking."""
     found = find_peaks(machine, signal, DESIGNS[[0, 1, 3]]).values[:, 0]
     for value, design in zip(found, DESIGNS[[0, 1, 3]], strict=True):
-        curve = cycle(machine, Linkage(*design, machine.branch), DENSE)
+        curve = cycle(machine, Linkage(design[0], design[1], design[2], machine.branch), DENSE)
         swept = np.abs(curve.torque if signal == Signal.TORQUE else curve.guide).max()
         assert swept * (1.0 - 1e-13) <= value <= swept * (1.0 + 1e-7)
 

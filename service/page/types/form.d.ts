@@ -36,6 +36,8 @@ declare namespace Form {
     items?: Schema;
     anyOf?: Schema[];
     oneOf?: Schema[];
+    /** Of a load's table: the key that tells it from others, its name in lists, and its first values. */
+    "x-load"?: { key: string; title: string; first: Record<string, unknown> };
   }
   /** What control a part of the schema needs. */
   interface Described {
