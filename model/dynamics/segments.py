@@ -199,8 +199,8 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
     way = 1.0 if outward else -1.0
     for k in range(loads.kind.shape[0]):
         if loads.kind[k] >= _FORMULA:
-            # Chosen, not multiplied by the branch: of a product shared with `smooth_load` the compiler groups the factors
-            # anew, which changes the last digits of machines without such a load.
+            # Chosen, not multiplied by the branch: of a product shared with `smooth_load` the compiler groups the
+            # factors anew, which changes the last digits of machines without such a load.
             position, pace = (m.x, m.x_1) if d.branch.real > 0.0 else (-m.x, -m.x_1)
             first, second = block[DESIGN + 2 * k, j], block[DESIGN + 2 * k + 1, j]
             force = force + force_of(loads.kind[k], position, pace * d.speed, way, first, second)
