@@ -1,34 +1,130 @@
 """Sizes offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs.
 
-`Linkage` is one linkage or an array of them, `load_job` reads a job file, `solve` finds its Pareto
-front. Each is imported when it is first used, so that `slidercrank --help` does not wait for numba
-and pandas.
+State a problem
+    problem              the tables of a job file as a dict: values with units, or numbers in SI
+    load_job             a job file, .toml or .json
+    job_schema           JSON Schema of a job: every key, with its meaning
+    Problem              what is given, what may vary, what must hold, what is wanted
+    Constraint           a quantity within bounds
+    Objective            a quantity to minimise, to maximise or to bring to a target
+    quantities           table of the quantities that both may name
 
->>> from slidercrank import Linkage, load_job, solve
+Solve it
+    solve                the Pareto front of a problem
+    ParetoFront          designs as a table, picks, trade-offs
+    Priority             one step of a pick by priorities
+    like                 the design nearest to one of a front that meets further requirements
+
+Evaluate designs
+    evaluate             quantities of many designs of a machine, with derivatives (`Problem.evaluate` of a problem)
+    analyse              everything about one design of a machine (`Problem.analyse` of a problem)
+    Analysis             its quantities, reasons for undefined ones, its cycle as a table
+    Mechanism            speed, masses, loads and tolerances of a machine
+    Linkage              crank, rod, offset: closed forms and motion, also for arrays and complex numbers
+    crank_from_stroke    the crank that gives a stroke
+
+Use other optimisers
+    standard_form        bounds, objectives and requirements as arrays, with derivatives; `.scipy()` for scipy.optimize
+    StandardForm         what it returns
+    jax_function, torch_function, openmdao_component, pymoo_problem, optuna_objective
+                         a problem within these frameworks, each an extra of the installation
+
+Errors
+    SlidercrankError     any of this software; `InputError`, `AssemblyError` and `JobError` among them
+
+Every name is imported when it is first used. Values are in SI and radians unless a name or a column carries a unit.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-__all__ = ["Linkage", "__version__", "load_job", "solve"]
+__all__ = [
+    "Analysis",
+    "AssemblyError",
+    "Constraint",
+    "InputError",
+    "JobError",
+    "Linkage",
+    "Mechanism",
+    "Objective",
+    "ParetoFront",
+    "Priority",
+    "Problem",
+    "SlidercrankError",
+    "StandardForm",
+    "__version__",
+    "analyse",
+    "crank_from_stroke",
+    "evaluate",
+    "jax_function",
+    "job_schema",
+    "like",
+    "load_job",
+    "openmdao_component",
+    "optuna_objective",
+    "problem",
+    "pymoo_problem",
+    "quantities",
+    "solve",
+    "standard_form",
+    "torch_function",
+]
 
 if TYPE_CHECKING:
-    from slidercrank.model.linkage.linkage import Linkage
-    from slidercrank.optimise.job import load_job
+    from slidercrank.model.errors import AssemblyError, InputError, JobError, SlidercrankError
+    from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+    from slidercrank.model.machine.mechanism import Mechanism
+    from slidercrank.optimise.adapters.jax import jax_function
+    from slidercrank.optimise.adapters.openmdao import openmdao_component
+    from slidercrank.optimise.adapters.optuna import optuna_objective
+    from slidercrank.optimise.adapters.pymoo import pymoo_problem
+    from slidercrank.optimise.adapters.standard_form import StandardForm, standard_form
+    from slidercrank.optimise.adapters.torch import torch_function
+    from slidercrank.optimise.front.front import ParetoFront
+    from slidercrank.optimise.front.picking import Priority
+    from slidercrank.optimise.job import job_schema, load_job
+    from slidercrank.optimise.job.tables import problem
+    from slidercrank.optimise.problem.design_analysis import Analysis, analyse
+    from slidercrank.optimise.problem.design_values import evaluate
+    from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+    from slidercrank.optimise.questions.like import like_design as like
+    from slidercrank.optimise.questions.quantities import quantities
     from slidercrank.optimise.solve import solve
 
     __version__: str
 else:
     # Not shown to type checkers: they would take every misspelt name for a known one.
-    _HOMES = {"Linkage": "model.linkage.linkage", "load_job": "optimise.job", "solve": "optimise.solve"}
+    _HOMES = {
+        "model.errors": ("AssemblyError", "InputError", "JobError", "SlidercrankError"),
+        "model.linkage.linkage": ("Linkage", "crank_from_stroke"),
+        "model.machine.mechanism": ("Mechanism",),
+        "optimise.adapters.jax": ("jax_function",),
+        "optimise.adapters.openmdao": ("openmdao_component",),
+        "optimise.adapters.optuna": ("optuna_objective",),
+        "optimise.adapters.pymoo": ("pymoo_problem",),
+        "optimise.adapters.standard_form": ("StandardForm", "standard_form"),
+        "optimise.adapters.torch": ("torch_function",),
+        "optimise.front.front": ("ParetoFront",),
+        "optimise.front.picking": ("Priority",),
+        "optimise.job": ("job_schema", "load_job"),
+        "optimise.job.tables": ("problem",),
+        "optimise.problem.design_analysis": ("Analysis", "analyse"),
+        "optimise.problem.design_values": ("evaluate",),
+        "optimise.problem.problem": ("Constraint", "Objective", "Problem"),
+        "optimise.questions.like": ("like",),
+        "optimise.questions.quantities": ("quantities",),
+        "optimise.solve": ("solve",),
+    }
+    _INSIDE = {"like": "like_design"}  # where a name is another one inside
 
     def __getattr__(name):
+        home = next((home for home, names in _HOMES.items() if name in names), None)
         if name == "__version__":
             from importlib.metadata import version
 
             value = version(__name__)
-        elif name in _HOMES:
-            value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+        elif home is not None:
+            value = getattr(import_module(f".{home}", __name__), _INSIDE.get(name, name))
         else:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         globals()[name] = value

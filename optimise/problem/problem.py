@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Integral, Real
-from typing import Literal
+from typing import Literal, overload
+
+from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...model.linkage.linkage import SlowStroke
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.quantity import Quantity
+from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from .causes import undefined_because
 from .costs import Costs
+from .design_analysis import Analysis, analyse
+from .design_values import evaluate
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {
@@ -217,6 +222,44 @@ class Problem:
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
         return quantity(name, self.own)
+
+    @overload
+    def evaluate(
+        self, designs: ArrayLike, quantities: Sequence[str] | None = None, *, gradients: Literal[False] = False
+    ) -> Array: ...
+    @overload
+    def evaluate(
+        self, designs: ArrayLike, quantities: Sequence[str] | None = None, *, gradients: Literal[True]
+    ) -> tuple[Array, Array]: ...
+    def evaluate(
+        self, designs: ArrayLike, quantities: Sequence[str] | None = None, *, gradients: bool = False
+    ) -> Array | tuple[Array, Array]:
+        """Return quantities (n, q) of designs (n, 3 + k), and with `gradients` their Jacobian (n, q, 3 + k); SI.
+
+        quantities: names; the objectives if None. Values are those of the quantities, not yet turned into what is
+        minimised. Rows of designs that do not turn fully are NaN. See `design_values.evaluate`. Raises `InputError` for
+        a problem with choices: ask its `parts`.
+        """
+        self._require_chosen()
+        names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
+        if gradients:
+            return evaluate(self.mechanism, designs, names, gradients=True, own=self.own)
+        return evaluate(self.mechanism, designs, names, own=self.own)
+
+    def analyse(self, design: ArrayLike) -> Analysis:
+        """Return everything about one design (3 + k,), crank, rod, offset, m, and the varying numbers, SI.
+
+        Raises `AssemblyError` for a design that does not turn fully, `InputError` for a problem with choices.
+        """
+        self._require_chosen()
+        return analyse(self.mechanism, design, own=self.own, title=self.name)
+
+    def _require_chosen(self) -> None:
+        if self.variants:
+            raise InputError(
+                f"a design of a problem with choices ({', '.join(self.choices)}) is one of an option; got the problem "
+                f"of all {len(self.variants)}; take one of problem.parts()"
+            )
 
     def slow_side(self) -> float | None:
         """Sign that the offset must have for the slow stroke that is asked, +1 or -1; None where none is asked.

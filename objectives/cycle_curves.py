@@ -1,0 +1,123 @@
+"""Curves of one design over a turn of the crank, with their names, titles and units: for tables, CSV and the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from ..model.cycle.cycle import Cycle, cycle
+from ..model.errors import InputError
+from ..model.kinematics.position import motion
+from ..model.linkage.linkage import Linkage
+from ..model.machine.mechanism import Mechanism
+from ..model.signals.follow import third_derivative
+from .kinds import Face
+from .quantity import Array
+
+LEAST, MOST = 4, 100_000
+_ANGLE = Face("rad", "_rad"), Face("deg", "_deg", 57.29577951308232)
+_LENGTH = Face("m", "_m"), Face("mm", "_mm", 1e3)
+_FORCE, _TORQUE, _POWER = ((face, face) for face in (Face("N", "_N"), Face("N m", "_Nm"), Face("W", "_W")))
+_RATES = tuple((face, face) for face in (Face("m/s", "_m_s"), Face("m/s^2", "_m_s2"), Face("m/s^3", "_m_s3")))
+_PER_ANGLE = tuple(
+    (Face(f"m/rad{power}", f"_m_per_rad{digit}"), Face(f"mm/rad{power}", f"_mm_per_rad{digit}", 1e3))
+    for power, digit in (("", ""), ("^2", "2"), ("^3", "3"))
+)
+_FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve over crank angle.
+
+    name: without a unit. values: (n,), SI; NaN where it is not defined. si: its unit. shown: its unit in metric tables.
+    """
+
+    name: str
+    title: str
+    values: Array
+    si: Face
+    shown: Face
+
+    @property
+    def field(self) -> str:
+        """Key of the curve in metric tables and JSON."""
+        return self.name + self.shown.suffix
+
+
+def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> list[Curve]:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad; the angle comes first.
+
+    Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
+    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive. Without a crank
+    speed, velocity, acceleration and jerk are those of one radian per second: derivatives by the crank angle; there is
+    no power (NaN). Position errors are NaN without tolerances. What is given where a load jumps, and what is raised:
+    see `model.cycle.cycle`.
+    """
+    acting = cycle(mechanism, linkage, crank_angle)
+    moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)
+    nothing = np.full(len(acting.crank_angle), np.nan)
+    if not mechanism.tolerances.given:
+        acting = replace(acting, position_error=nothing, position_error_rss=nothing)
+    speed = mechanism.speed
+    rates, per = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
+    theta = acting.crank_angle
+    jerk = _jerk(replace(mechanism, speed=speed or 1.0), linkage, theta)
+    velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
+    return [
+        Curve("crank_angle", "crank angle", theta, *_ANGLE),
+        Curve("slider_position", "slider position", moving.slider_position, *_LENGTH),
+        Curve("slider_velocity", f"slider velocity{per}", velocity, *rates[0]),
+        Curve("slider_acceleration", f"slider acceleration{per}", acceleration, *rates[1]),
+        Curve("slider_jerk", f"slider jerk{per}", jerk, *rates[2]),
+        Curve("rod_angle", "rod angle", linkage.at(theta).rod_angle, *_ANGLE),
+        Curve("transmission_angle", "transmission angle", moving.transmission_angle, *_ANGLE),
+        Curve("torque", "drive torque", acting.torque, *_TORQUE),
+        Curve("power", "drive power", speed * acting.torque if speed else nothing, *_POWER),
+        Curve("load", "load on the slider", acting.load, *_FORCE),
+        *(Curve(name, _force_title(name), _of(acting, name), *_FORCE) for name in _FORCES),
+        Curve("guide", "guide force", acting.guide, *_FORCE),
+        Curve("position_error", "position error, worst case", acting.position_error, *_LENGTH),
+        Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, *_LENGTH),
+    ]
+
+
+def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike = 360) -> pd.DataFrame:
+    """Return the curves of one fully turning linkage as a table in SI, a row for each crank angle.
+
+    angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns: the names of `cycle_curves` with the
+    unit, such as torque_Nm. Raises `InputError` for too few or too many angles, and for ones that are not finite.
+    """
+    theta = even_angles(angles) if isinstance(angles, int) else np.asarray(angles, dtype=np.float64)
+    if theta.ndim != 1:
+        raise InputError(f"crank angles are a list of numbers, rad; got an array of shape {theta.shape}")
+    return pd.DataFrame(
+        {curve.name + curve.si.suffix: curve.values for curve in cycle_curves(mechanism, linkage, theta)}
+    )
+
+
+def even_angles(count: int, most: int = MOST) -> Array:
+    """Return crank angles (n,), rad, evenly spaced over a turn from 0. Raises `InputError` for too few or too many."""
+    if not LEAST <= count <= most:
+        raise InputError(f"curves have {LEAST} to {most} crank angles; got {count}; ask for as many")
+    return np.arange(count) * (2.0 * np.pi / count)
+
+
+def _jerk(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Array:
+    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a, the crank's acceleration a being the same at every angle."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    third = third_derivative(sine, cosine, m, linkage.crank)
+    return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
+
+
+def _force_title(name: str) -> str:
+    return f"{name[:-2].replace('_', ' ')} force along {name[-1]}"
+
+
+def _of(curves: Cycle, name: str) -> Array:
+    values: Array = getattr(curves, name)
+    return values

@@ -1,0 +1,58 @@
+"""Quantities of a problem as a function that JAX differentiates (reverse mode) and maps over designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...model.errors import InputError
+from ..problem.problem import Problem
+from .missing import require
+
+if TYPE_CHECKING:
+    import jax
+
+    JaxFunction = Callable[[jax.Array], jax.Array]
+
+
+def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> JaxFunction:
+    """Return a function from designs (..., 3 + k) to quantities (..., q), SI, for `jax.grad`, `jax.vmap`, `jax.jit`.
+
+    quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate` (`jax.custom_vjp`), of
+    first order and in reverse mode. Raises `InputError` without JAX, and unless JAX counts in double precision.
+    """
+    try:
+        import jax
+    except ImportError as error:
+        raise require("jax", error) from None
+    if not jax.config.jax_enable_x64:
+        raise InputError(
+            'designs need double precision; got JAX in single; call jax.config.update("jax_enable_x64", True) first'
+        )
+    width, names = 3 + len(problem.mechanism.varying), _names(problem, quantities)
+    problem.evaluate(np.zeros((1, width)), names)  # refuses what it must before anything is traced
+
+    def outside(x: jax.Array) -> jax.Array:
+        shape = jax.ShapeDtypeStruct((*x.shape[:-1], len(names)), np.float64)
+        return jax.pure_callback(
+            lambda y: problem.evaluate(np.asarray(y), names), shape, x, vmap_method="broadcast_all"
+        )
+
+    def slopes(x: jax.Array) -> jax.Array:
+        shape = jax.ShapeDtypeStruct((*x.shape[:-1], len(names), width), np.float64)
+        return jax.pure_callback(
+            lambda y: problem.evaluate(np.asarray(y), names, gradients=True)[1], shape, x, vmap_method="broadcast_all"
+        )
+
+    found = jax.custom_vjp(outside)
+    found.defvjp(
+        lambda x: (outside(x), slopes(x)),
+        lambda jacobian, pushed: (jax.numpy.einsum("...q,...qd->...d", pushed, jacobian),),
+    )
+    return found
+
+
+def _names(problem: Problem, quantities: Sequence[str] | None) -> list[str]:
+    return [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)

@@ -1,0 +1,76 @@
+"""Quantities of a problem as a component of an OpenMDAO model."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...model.machine.numbers import unit_of
+from ...objectives.kinds import KINDS
+from ..problem.problem import Problem
+from .missing import require
+
+if TYPE_CHECKING:
+    from openmdao.api import ExplicitComponent
+    from openmdao.core.constants import _ReprClass
+    from openmdao.vectors.default_vector import DefaultVector
+
+
+def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None) -> ExplicitComponent:
+    """Return an `ExplicitComponent` from the numbers of one design to quantities, each with its SI unit.
+
+    Inputs: crank, rod, offset, and the varying numbers with underscores in place of dots (mechanism_slider_mass).
+    Outputs: quantities by name; None stands for the objectives and the constrained ones. Partials are exact. A design
+    that does not turn fully has NaN outputs, which an optimiser's line search has to survive: bound the model so that
+    rod exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
+    """
+    try:
+        from openmdao.api import ExplicitComponent
+    except ImportError as error:
+        raise require("openmdao", error) from None
+    if quantities is None:
+        asked = [*(o.quantity for o in problem.objectives), *(c.quantity for c in problem.constraints)]
+        quantities = list(dict.fromkeys(asked))
+    names = list(quantities)
+    varying = problem.mechanism.varying
+    inputs = {name: "m" for name in ("crank", "rod", "offset")}
+    inputs |= {re.sub(r"[^A-Za-z0-9]+", "_", item.name).strip("_"): unit_of(item.paths[0]) for item in varying}
+    starts = [problem.crank, problem.rod, problem.offset, *varying]
+    problem.evaluate(np.zeros((1, len(starts))), names)  # refuses what it must
+
+    class SliderCrank(ExplicitComponent):
+        def setup(self) -> None:
+            for (name, unit), ends in zip(inputs.items(), starts, strict=True):
+                self.add_input(name, val=0.5 * (ends.lower + ends.upper), units=_unit(unit))
+            for name in names:
+                self.add_output(name, units=_unit(_si(problem, name)))
+            self.declare_partials("*", "*")
+
+        def compute(self, inputs_: DefaultVector, outputs: DefaultVector) -> None:
+            values = problem.evaluate(_design(inputs_), names)
+            for name, value in zip(names, values, strict=True):
+                outputs[name] = value
+
+        def compute_partials(self, inputs_: DefaultVector, partials: dict[tuple[str, str], _ReprClass]) -> None:
+            _, jacobian = problem.evaluate(_design(inputs_), names, gradients=True)
+            for row, name in enumerate(names):
+                for column, of in enumerate(inputs):
+                    partials[name, of] = jacobian[row, column]
+
+    def _design(given: DefaultVector) -> list[float]:
+        return [np.asarray(given[name]).item() for name in inputs]
+
+    return SliderCrank()
+
+
+def _si(problem: Problem, name: str) -> str:
+    """Return the SI unit of a quantity; "" for a ratio and for a unit that no kind has."""
+    symbol = problem.quantity(name).unit.symbol
+    return next((kind.unit for kind in KINDS if kind.metric is not None and kind.metric.symbol == symbol), "")
+
+
+def _unit(symbol: str) -> str | None:
+    return symbol.replace("^", "**").replace(" ", "*") or None

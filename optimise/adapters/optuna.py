@@ -1,0 +1,49 @@
+"""A problem as the objective of an Optuna study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..problem.problem import Problem
+from .standard_form import standard_form
+
+if TYPE_CHECKING:
+    from optuna.trial import Trial
+
+_FAR = 1e30
+"""Stands for infinite, which a study of several objectives does not take."""
+
+
+def optuna_objective(problem: Problem, *, eliminate: bool = True) -> Callable[[Trial], tuple[float, ...]]:
+    """Return what `study.optimize` takes: the objectives of a trial as minimised, its requirements as constraints.
+
+    Create the study with a direction "minimize" for each objective. eliminate: equality constraints are eliminated, see
+    `standard_form`; the parameters then run from 0 to 1. Each trial has its design as user attribute "design", crank,
+    rod, offset, m, and the varying numbers, SI. Raises `InputError` as `standard_form` does.
+    """
+    form = standard_form(problem, eliminate=eliminate)
+
+    def objective(trial: Trial) -> tuple[float, ...]:
+        x = np.array(
+            [
+                trial.suggest_float(name, low, high)
+                for name, low, high in zip(form.names, form.lower.tolist(), form.upper.tolist(), strict=True)
+            ]
+        )
+        found = form.arrays(x)
+        for place, (name, value) in enumerate(zip(form.inequalities, found.G.tolist(), strict=True)):
+            trial.set_constraint(f"{place} {name}", min(value, _FAR))
+        for name, value in zip(form.equalities, found.H.tolist(), strict=True):
+            trial.set_constraint(name, min(abs(value) - _TOLERANCE, _FAR))
+        design = form.designs(x)
+        trial.set_user_attr("design", design.tolist() if np.isfinite(design).all() else None)
+        return tuple(min(value, _FAR) for value in found.F.tolist())
+
+    return objective
+
+
+_TOLERANCE = 1e-4
+"""Relative distance from the value of an equality that counts as met, where equalities are not eliminated."""

@@ -1,0 +1,49 @@
+"""A problem for the algorithms of pymoo."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...objectives.quantity import Array
+from ..problem.problem import Problem
+from .missing import require
+from .standard_form import standard_form
+
+if TYPE_CHECKING:
+    from pymoo.core.problem import Problem as PymooProblem
+
+_FAR = 1e30
+"""Stands for infinite: pymoo scales by the greatest value."""
+
+
+def pymoo_problem(problem: Problem, *, eliminate: bool = True) -> PymooProblem:
+    """Return a pymoo `Problem` that evaluates whole populations: F as minimised, G <= 0, H = 0.
+
+    eliminate: equality constraints are eliminated, see `standard_form`; genetic algorithms meet them hardly otherwise.
+    The variables then run from 0 to 1; `found.form.designs(X)` gives the designs. Raises `InputError` without pymoo.
+    """
+    try:
+        from pymoo.core.problem import Problem as PymooProblem
+    except ImportError as error:
+        raise require("pymoo", error) from None
+    form = standard_form(problem, eliminate=eliminate)
+
+    class SliderCrank(PymooProblem):
+        def __init__(self) -> None:
+            super().__init__(
+                n_var=len(form.names),
+                n_obj=len(form.objectives),
+                n_ieq_constr=len(form.inequalities),
+                n_eq_constr=len(form.equalities),
+                xl=form.lower,
+                xu=form.upper,
+            )
+            self.form = form
+
+        def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
+            found = form.arrays(x)
+            out["F"], out["G"], out["H"] = (np.minimum(part, _FAR) for part in (found.F, found.G, found.H))
+
+    return SliderCrank()

@@ -1,0 +1,326 @@
+"""A problem as other optimisers take it: bounds, objectives to be minimised, requirements as G <= 0 and H = 0."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...model.errors import InputError
+from ...objectives.quantity import Array
+from ..problem.gradients import without_gradient
+from ..problem.problem import Constraint, Objective, Problem
+from ..search.elimination import Sheet, sheets
+from ..search.evaluation import FEASIBLE, constraints_of
+
+if TYPE_CHECKING:
+    from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
+
+Row = tuple[Array, Array]
+_KEPT = 0.02
+"""Share of the rod by which it exceeds crank + |offset| where no transmission angle is asked: that of 11.5 deg."""
+
+
+class Arrays(NamedTuple):
+    """Values of n designs as minimised, F (n, m), G (n, g) <= 0 and H (n, h) = 0, and their Jacobians (n, ., 3 + k).
+
+    The Jacobians are empty, (n, ., 0), unless asked for.
+    """
+
+    F: Array
+    G: Array
+    H: Array
+    dF: Array
+    dG: Array
+    dH: Array
+
+
+class ScipyForm(NamedTuple):
+    """Arguments of `scipy.optimize.minimize` and its like: bounds, constraints, and a start in the middle of the box."""
+
+    fun: Callable[[Array], float]
+    jac: Callable[[Array], Array]
+    x0: Array
+    bounds: Bounds
+    constraints: list[LinearConstraint | NonlinearConstraint]
+
+
+@dataclass(frozen=True)
+class StandardForm:
+    """A problem in standard form, over designs x = (crank, rod, offset, then the varying numbers), SI.
+
+    names: of the numbers of a design. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: what
+    each column of F, G and H is of. Objectives to be maximised are negated; for one with a target it is the distance.
+    Each requirement is divided by the size of its bound. The first two inequalities keep the crank turning:
+    crank + offset and crank - offset below the rod.
+    With eliminated equalities x is what these leave free, each from 0 to 1; `designs` gives the designs of it, and the
+    ranges of the dimensions that follow come last among the inequalities.
+    """
+
+    problem: Problem
+    names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    objectives: tuple[str, ...]
+    inequalities: tuple[str, ...]
+    equalities: tuple[str, ...]
+    _asked: tuple[Constraint, ...]
+    _sheet: Sheet | None = None
+
+    def designs(self, x: ArrayLike) -> Array:
+        """Return the designs (..., 3 + k) of points x; NaN where the eliminated equalities have no solution."""
+        points = np.asarray(x, dtype=np.float64)
+        if self._sheet is None:
+            return points
+        found: Array = self._sheet.dimensions(points.reshape(-1, len(self.names)))
+        return found.reshape(*points.shape[:-1], found.shape[1])
+
+    def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
+        """Return F, G and H of points x (n, 3 + k), and with `gradients` their Jacobians.
+
+        F, G and H of a design that does not turn fully are infinite but for the first two of G, which say by how much
+        it fails; its Jacobians are NaN but for these two rows. Raises `InputError` as `Problem.evaluate` does.
+        """
+        points, x = np.asarray(x, dtype=np.float64), self.designs(x)
+        names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._asked)]))
+        slopes = np.zeros((*x.shape[:-1], len(names), 0))
+        if gradients:
+            values, slopes = self.problem.evaluate(x, names, gradients=True)
+        else:
+            values = self.problem.evaluate(x, names)
+        at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
+        f = [_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
+        g, h = _turning(x, self._asked, slopes.shape[-1]), []
+        for asked in self._asked:
+            value, slope = at[asked.quantity]
+            if asked.equality:
+                h.append(_scaled(value, slope, asked.lower, 1.0))
+                continue
+            if asked.upper is not None:
+                g.append(_scaled(value, slope, asked.upper, 1.0))
+            if asked.lower is not None:
+                g.append(_scaled(value, slope, asked.lower, -1.0))
+        if self._sheet is not None:
+            g += _ranges(x, self._sheet, slopes.shape[-1])
+            f, g, h = (_without_spurious(rows, x, self.problem, self._sheet) for rows in (f, g, h))
+            if gradients:
+                chain = self._sheet.jacobian(points.reshape(-1, len(self.names)))
+                chain = chain.reshape(*points.shape[:-1], *chain.shape[1:])
+                f, g, h = ([(v, (d[..., None, :] @ chain)[..., 0, :]) for v, d in rows] for rows in (f, g, h))
+                slopes = slopes[..., : len(self.names)] if slopes.shape[-1] else slopes
+        shape, width = x.shape[:-1], slopes.shape[-1]
+        (F, dF), (G, dG), (H, dH) = (_joined(rows, shape, width) for rows in (f, g, h))
+        return Arrays(F, G, H, dF, dG, dH)
+
+    def scipy(self, objective: str | None = None, *, keep_feasible: bool = False) -> ScipyForm:
+        """Return what `scipy.optimize` takes: `minimize(**form.scipy()._asdict(), method="SLSQP")`.
+
+        objective: which one, where the problem has several. keep_feasible: have every iterate turn fully; needed by
+        trust-constr, not known to SLSQP. Raises `InputError` if the objective is not said, or not one of them, and for
+        quantities without a gradient.
+        """
+        from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
+
+        column = self._column(objective)
+        lacking = without_gradient(self.problem)
+        if lacking:
+            raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
+        constraints: list[LinearConstraint | NonlinearConstraint] = []
+        if self._sheet is None:
+            share, rest = _share(self._asked), np.zeros((2, len(self.names) - 3))
+            turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
+            constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
+        first = 0 if constraints == [] else 2
+        if len(self.inequalities) > first:
+            constraints.append(
+                NonlinearConstraint(
+                    lambda x: self.arrays(x).G[first:],
+                    -np.inf,
+                    0.0,
+                    jac=lambda x: self.arrays(x, gradients=True).dG[first:],
+                )
+            )
+        if self.equalities:
+            constraints.append(
+                NonlinearConstraint(
+                    lambda x: self.arrays(x).H, 0.0, 0.0, jac=lambda x: self.arrays(x, gradients=True).dH
+                )
+            )
+        return ScipyForm(
+            lambda x: float(self.arrays(x).F[column]),
+            lambda x: self.arrays(x, gradients=True).dF[column],
+            self.start(),
+            Bounds(self.lower, self.upper, keep_feasible=keep_feasible),
+            constraints,
+        )
+
+    def start(self) -> Array:
+        """Return a design (3 + k,) that turns fully, near the middle of the bounds. Raises `InputError` if none does."""
+        if self._sheet is not None:
+            grid = np.random.default_rng(1).random((4096, len(self.names)))
+            found = self.arrays(grid)
+            worst = np.concatenate([found.G, np.abs(found.H)], axis=1).max(axis=1)
+            if not np.isfinite(worst).any():
+                raise InputError("no design of the ranges meets the equalities; got none of 4,096; widen the ranges")
+            return np.asarray(grid[np.argmin(worst)])
+        middle = 0.5 * (self.lower + self.upper)
+        far = 0.5 * (self.lower[2] + self.upper[2])
+        near = min(max(0.0, self.lower[2]), self.upper[2])
+        for share in np.linspace(0.0, 1.0, 33):
+            start = middle.copy()
+            start[0] += share * (self.lower[0] - start[0])
+            start[1] += share * (self.upper[1] - start[1])
+            start[2] = far + share * (near - far)
+            if self.arrays(start).G[:2].max() <= 0.0:
+                return start
+        raise InputError(
+            "no design of the ranges turns fully; got a rod of at most "
+            f"{1e3 * self.upper[1]:g} mm; allow a longer rod or a shorter crank"
+        )
+
+    def _column(self, objective: str | None) -> int:
+        if objective is None and len(self.objectives) == 1:
+            return 0
+        if objective not in self.objectives:
+            raise InputError(
+                f"one objective is needed; got {objective!r} of {', '.join(self.objectives)}; name one of them"
+            )
+        return self.objectives.index(objective)
+
+
+def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
+    """Return a problem in the form of other optimisers.
+
+    eliminate: whether equality constraints are eliminated as `solve` does it, exactly: fewer unknowns, and no equality
+    for a method that meets none, such as most genetic algorithms.
+
+    The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
+    and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
+    and with `eliminate` for an offset of both signs.
+    """
+    if problem.variants:
+        raise InputError(
+            f"other optimisers take no choices ({', '.join(problem.choices)}); got {len(problem.variants)} variants; "
+            "take one of problem.parts()"
+        )
+    asked = constraints_of(problem)
+    ranges = [problem.crank, problem.rod, problem.offset, *problem.mechanism.varying]
+    lower, upper = (np.array([getattr(item, end) for item in ranges], dtype=np.float64) for end in ("lower", "upper"))
+    side = problem.slow_side()
+    if side is not None:
+        lower[2], upper[2] = (max(lower[2], 0.0), upper[2]) if side > 0.0 else (lower[2], min(upper[2], 0.0))
+    if eliminate:
+        return _eliminated(problem, asked)
+    return StandardForm(
+        problem,
+        ("crank", "rod", "offset", *(item.name for item in problem.mechanism.varying)),
+        lower,
+        upper,
+        tuple(objective.quantity for objective in problem.objectives),
+        ("turning", "turning", *(name for c in asked if not c.equality for name in _sides(c))),
+        tuple(c.quantity for c in asked if c.equality),
+        asked,
+    )
+
+
+def _eliminated(problem: Problem, asked: tuple[Constraint, ...]) -> StandardForm:
+    found = sheets(problem)
+    if len(found) > 1:
+        raise InputError(
+            "equalities are eliminated for one sign of the offset; got a range on both sides of 0; keep it on one side"
+        )
+    sheet = found[0]
+    if not sheet.free:
+        raise InputError(
+            "the equalities and ranges leave nothing free; got none to search; widen a range, or use solve"
+        )
+    left = tuple(c for c in asked if c.quantity not in sheet.eliminated)
+    inequalities = ["turning", "turning", *(name for c in left if not c.equality for name in _sides(c))]
+    return StandardForm(
+        problem,
+        sheet.free,
+        np.zeros(len(sheet.free)),
+        np.ones(len(sheet.free)),
+        tuple(objective.quantity for objective in problem.objectives),
+        (*inequalities, *(name for name in _computed(sheet) for _ in range(2))),
+        tuple(c.quantity for c in left if c.equality),
+        left,
+        sheet,
+    )
+
+
+def _computed(sheet: Sheet) -> list[str]:
+    return [name for name in sheet.names[:3] if any(step.target == name for step in sheet.steps)]
+
+
+def _ranges(x: Array, sheet: Sheet, width: int) -> list[Row]:
+    """Rows of G for the ranges of computed dimensions, an offset by its size."""
+    rows = []
+    for name in _computed(sheet):
+        column, ends = sheet.names.index(name), sheet.bounds[name]
+        sign = sheet.sign if name == "offset" else 1.0
+        slope = np.zeros((*x.shape[:-1], width))
+        slope[..., column : column + 1] = sign if width else 0.0
+        value = sign * x[..., column]
+        rows += [_scaled(value, slope, ends.upper, 1.0), _scaled(value, slope, ends.lower, -1.0)]
+    return rows
+
+
+def _without_spurious(rows: list[Row], x: Array, problem: Problem, sheet: Sheet) -> list[Row]:
+    """Return rows that are infinite where an eliminated equality does not hold: its formula gave another root."""
+    wanted = [c for c in problem.constraints if c.quantity in sheet.eliminated]
+    if not wanted:
+        return rows
+    values = problem.evaluate(x, [c.quantity for c in wanted])
+    target = np.array([c.lower for c in wanted], dtype=np.float64)
+    holds = (np.abs(values - target) <= FEASIBLE * np.maximum(np.abs(target), 1e-9)).all(axis=-1)
+    return [(np.where(holds, value, np.inf), slope) for value, slope in rows]
+
+
+def _sides(constraint: Constraint) -> list[str]:
+    return [constraint.quantity] * sum(bound is not None for bound in (constraint.upper, constraint.lower))
+
+
+def _share(asked: tuple[Constraint, ...]) -> float:
+    """Share of the rod that crank + |offset| may take."""
+    floor = next((c.lower for c in asked if c.quantity == "transmission_angle" and c.lower is not None), None)
+    return 1.0 - _KEPT if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
+
+
+def _turning(x: Array, asked: tuple[Constraint, ...], width: int) -> list[Row]:
+    """Rows of G that keep the crank turning: the floor on the transmission angle, linear in the dimensions."""
+    share, rows = _share(asked), []
+    for sign in (1.0, -1.0):
+        size = np.abs(x[..., 1])
+        value = (x[..., 0] + sign * x[..., 2] - share * x[..., 1]) / size
+        slope = np.zeros((*x.shape[:-1], width))
+        if width:
+            slope[..., 0], slope[..., 2] = 1.0 / size, sign / size
+            slope[..., 1] = -(x[..., 0] + sign * x[..., 2]) / (size * x[..., 1])
+        rows.append((value, slope))
+    return rows
+
+
+def _minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
+    if objective.sense == "maximise":
+        value, slope = -value, -slope
+    elif objective.target is not None:
+        off = value - objective.target
+        value, slope = np.abs(off), np.sign(off)[..., None] * slope
+    return np.where(np.isnan(value), np.inf, value), slope
+
+
+def _scaled(value: Array, slope: Array, bound: float | None, sign: float) -> tuple[Array, Array]:
+    assert bound is not None
+    scale = sign / (abs(bound) or 1.0)
+    found = scale * (value - bound)
+    return np.where(np.isnan(found), np.inf, found), scale * slope
+
+
+def _joined(rows: list[Row], shape: tuple[int, ...], width: int) -> tuple[Array, Array]:
+    if not rows:
+        return np.zeros((*shape, 0)), np.zeros((*shape, 0, width))
+    return np.stack([value for value, _ in rows], axis=-1), np.stack([slope for _, slope in rows], axis=-2)

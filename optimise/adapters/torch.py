@@ -1,0 +1,59 @@
+"""Quantities of a problem as a function that PyTorch differentiates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...model.errors import InputError
+from ..problem.problem import Problem
+from .missing import require
+
+if TYPE_CHECKING:
+    import torch
+    from torch.autograd.function import FunctionCtx
+
+    TorchFunction = Callable[[torch.Tensor], torch.Tensor]
+
+
+def torch_function(problem: Problem, quantities: Sequence[str] | None = None) -> TorchFunction:
+    """Return a function from a tensor of designs (..., 3 + k) to quantities (..., q), SI, for `backward`.
+
+    quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate`, of first order. Tensors
+    have double precision and lie on the processor. Raises `InputError` without PyTorch, and for other tensors.
+    """
+    try:
+        import torch
+    except ImportError as error:
+        raise require("torch", error) from None
+    names = [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)
+    problem.evaluate(np.zeros((1, 3 + len(problem.mechanism.varying))), names)  # refuses what it must
+
+    class Quantities(torch.autograd.Function):
+        @staticmethod
+        def forward(ctx: FunctionCtx, x: torch.Tensor) -> torch.Tensor:
+            designs = x.detach().numpy()
+            if not ctx.needs_input_grad[0]:
+                return torch.from_numpy(problem.evaluate(designs, names))
+            values, jacobian = problem.evaluate(designs, names, gradients=True)
+            ctx.save_for_backward(torch.from_numpy(jacobian))
+            return torch.from_numpy(values)
+
+        @staticmethod
+        @torch.autograd.function.once_differentiable
+        def backward(ctx: FunctionCtx, pushed: torch.Tensor) -> torch.Tensor:
+            (jacobian,) = ctx.saved_tensors
+            return torch.einsum("...q,...qd->...d", pushed, jacobian)
+
+    def apply(x: torch.Tensor) -> torch.Tensor:
+        if x.dtype != torch.float64 or x.device.type != "cpu":
+            raise InputError(
+                f"designs are double-precision tensors on the processor; got {x.dtype} on {x.device}; "
+                "write x.double().cpu()"
+            )
+        found: torch.Tensor = Quantities.apply(x)
+        return found
+
+    return apply

@@ -1,0 +1,65 @@
+"""Problems stated in Python: the tables of a job file as a dict, own functions as objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from ...objectives.own.apply import Function
+from ...objectives.own.quantity import OwnQuantity
+from ...objectives.quantity import Quantity
+from ...objectives.robust.quantity import RobustQuantity
+from ..problem.problem import Problem
+from . import parse_job
+
+
+def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None = None) -> Problem:
+    """Return the problem that the tables of a job file state, given as a dict.
+
+    Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays will do. The function of
+    a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this process,
+    without a time limit. folder: where modules named by text lie, besides the working directory. Raises `JobError`,
+    naming key, rule, value and remedy, like `load_job`.
+
+    >>> from slidercrank import problem
+    >>> found = problem(
+    ...     {
+    ...         "name": "Feeder",
+    ...         "mechanism": {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}},
+    ...         "variables": {"crank": ["20 mm", "60 mm"], "rod": [0.05, 0.25], "offset": [0.0, 0.08]},
+    ...         "objectives": {"peak_torque": "minimise", "transmission_angle": "maximise"},
+    ...     }
+    ... )
+    >>> found.rod
+    Range(lower=0.05, upper=0.25)
+    """
+    given: dict[str, Function] = {}
+    data = _plain(tables)
+    if isinstance(data, dict) and isinstance(data.get("quantity"), dict):
+        for name, part in data["quantity"].items():
+            if isinstance(part, dict) and callable(part.get("function")):
+                given[name] = part["function"]
+                part["function"] = "given:function"  # in the place of a name, for the validation
+    found = parse_job(data, folder=None if folder is None else Path(folder))
+    return replace(found, own=tuple(_with(item, given) for item in found.own)) if given else found
+
+
+def _with(item: Quantity, given: Mapping[str, Function]) -> Quantity:
+    if isinstance(item, RobustQuantity):
+        return replace(item, inner=_with(item.inner, given))
+    if isinstance(item, OwnQuantity) and item.name in given:
+        return replace(item, function=given[item.name])
+    return item
+
+
+def _plain(value: object) -> object:
+    """Return tables and lists as dicts and lists of Python's own numbers, so that the caller's are left as they are."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

@@ -1,0 +1,114 @@
+"""Everything about one design: its quantities, why some are not defined, and its cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single import single
+from ...model.machine.mechanism import Mechanism
+from ...objectives.cycle_curves import cycle_table
+from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES, quantity
+from .causes import undefined_because, zero_because
+
+
+@dataclass(frozen=True)
+class Analysis(Mapping[str, float]):
+    """One design with all its quantities: `analysis["peak_torque"]` is a number in SI.
+
+    A mapping from the names of job files. Quantities that the machine does not define are no part of it: asking for one
+    raises `InputError` with the reason, and `undefined` has the reasons of all. mechanism: the machine of this design.
+    linkage: its dimensions. found: the mapping itself. title: of the problem that it is a design of, "" without one.
+    """
+
+    mechanism: Mechanism
+    linkage: Linkage
+    found: Mapping[str, float]
+    undefined: Mapping[str, str]
+    quantities: tuple[Quantity, ...]
+    title: str = ""
+
+    def __getitem__(self, name: str) -> float:
+        """Return a quantity, SI. Raises `InputError` for one that is not defined, or not known."""
+        if name in self.found:
+            return self.found[name]
+        if name in self.undefined:
+            raise InputError(f"{name} is not defined here: {self.undefined[name]}")
+        return self.found[quantity(name, self.quantities).name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.found)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def table(self) -> pd.DataFrame:
+        """Return a table with a row for each quantity, by name: title, value and unit as shown, reason if undefined."""
+        rows = {
+            item.name: {
+                "title": item.title,
+                "value": item.unit.factor * self.found.get(item.name, np.nan),
+                "unit": item.unit.symbol,
+                "undefined_because": self.undefined.get(item.name, ""),
+            }
+            for item in self.quantities
+        }
+        return pd.DataFrame.from_dict(rows, orient="index")
+
+    def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:
+        """Return the curves over the cycle, a row for each crank angle, in SI.
+
+        angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns carry their unit: crank_angle_rad,
+        slider_position_m, slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad,
+        transmission_angle_rad, torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
+        """
+        return cycle_table(self.mechanism, self.linkage, angles)
+
+    def __repr__(self) -> str:
+        linkage, shown = self.linkage, [item for item in self.quantities if item.name in self.found][:4]
+        sizes = ", ".join(f"{name} {1e3 * float(getattr(linkage, name)):.6g} mm" for name in ("crank", "rod", "offset"))
+        numbers = ", ".join(
+            f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip() for item in shown
+        )
+        return f"Analysis({sizes}: {numbers}; {len(self.found)} quantities, {len(self.undefined)} undefined)"
+
+
+def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] = (), title: str = "") -> Analysis:
+    """Return everything about one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
+
+    own: quantities besides those of the product. Raises `AssemblyError` for a design that does not turn fully, and
+    `InputError` for one that is not 3 + k finite numbers.
+
+    >>> from slidercrank import Mechanism, analyse
+    >>> analysis = analyse(Mechanism(slider_mass=0.8, speed=30.0), [0.04, 0.1, 0.02])
+    >>> round(analysis["peak_torque"], 6)
+    1.05063
+    """
+    width = 3 + len(mechanism.varying)
+    sizes = np.asarray(design, dtype=np.float64)
+    if sizes.shape != (width,) or not np.isfinite(sizes).all():
+        names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
+        raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")
+    machine = mechanism.at(sizes[3:].tolist())
+    linkage = single(machine, Linkage(*sizes[:3], machine.branch))
+    values: dict[str, float] = {}
+    undefined: dict[str, str] = {}
+    chosen = (*QUANTITIES.values(), *own)
+    row = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset), *sizes[3:]]])
+    for item in chosen:
+        reason = undefined_because(item, [mechanism]) or zero_because(item, [mechanism])
+        if reason:
+            undefined[item.name] = reason
+        else:
+            values[item.name] = float(item.evaluate(mechanism, row).values[0])
+    return Analysis(machine, linkage, values, undefined, chosen, title)

@@ -1,0 +1,148 @@
+"""Everything about one design: the numbers of the table of designs, reasons for what is not defined, the cycle."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import slidercrank as sc
+from slidercrank.model.errors import AssemblyError, InputError
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.analysis import analyse as table_of
+from slidercrank.objectives.cycle_curves import cycle_curves
+from slidercrank.objectives.registry import QUANTITIES
+
+DESIGN = [0.04, 0.1, 0.02]
+
+
+@pytest.fixture(scope="module")
+def problem(pytestconfig: pytest.Config) -> sc.Problem:
+    return sc.load_job(pytestconfig.rootpath / "runs/feeder.toml")
+
+
+def test_analysis_has_the_numbers_of_the_table_of_designs(problem: sc.Problem) -> None:
+    analysis = problem.analyse(DESIGN)
+    row = table_of(problem.mechanism, np.array([DESIGN])).iloc[0]
+    assert {*analysis, *analysis.undefined} == set(QUANTITIES)
+    for name, value in analysis.items():
+        quantity = QUANTITIES[name]
+        assert quantity.unit.factor * value == pytest.approx(float(row[quantity.field]), rel=1e-12), name
+    table = analysis.table()
+    assert table.loc["stroke", "value"] == pytest.approx(1e3 * analysis["stroke"], rel=1e-14)
+    assert table.loc["peak_torque", "unit"] == "N m"
+    assert "comes from friction" in str(table.loc["self_locking_margin", "undefined_because"])
+    assert np.isnan(table.loc["self_locking_margin", "value"])
+
+
+def test_undefined_quantities_say_why_instead_of_a_number() -> None:
+    still = sc.analyse(Mechanism(slider_mass=0.8), DESIGN)
+    for name, words in (
+        ("position_error", "tolerances"),
+        ("peak_slider_speed", "speed 0"),
+        ("peak_power", "speed 0"),
+        ("peak_torque", "masses and loads|speed"),
+    ):
+        assert name not in still or name == "peak_torque"
+        if name not in still:
+            with pytest.raises(InputError, match=words):
+                still[name]
+    with pytest.raises(InputError, match="did you mean stroke"):
+        still["strok"]
+    assert still.get("stroke") == pytest.approx(float(sc.Linkage(*DESIGN).stroke), rel=1e-14)
+
+
+def test_cycle_is_consistent_with_itself(problem: sc.Problem) -> None:
+    # Derivatives of periodic curves by the Fourier series are exact to rounding.
+    table = problem.analyse(DESIGN).cycle(512)
+    speed = problem.mechanism.speed
+    waves = np.fft.fftfreq(512, 1.0 / 512.0)
+
+    def rate(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        found = np.fft.ifft(1j * waves * np.fft.fft(table[name].to_numpy())).real
+        return np.asarray(speed * found)
+
+    for name, of in (
+        ("slider_velocity_m_s", "slider_position_m"),
+        ("slider_acceleration_m_s2", "slider_velocity_m_s"),
+        ("slider_jerk_m_s3", "slider_acceleration_m_s2"),
+    ):
+        size = float(table[name].abs().max())
+        np.testing.assert_allclose(table[name], rate(of), atol=1e-9 * size, rtol=0.0)
+    np.testing.assert_allclose(table["power_W"], speed * table["torque_Nm"], rtol=1e-14)
+    np.testing.assert_allclose(
+        table["transmission_angle_rad"], np.pi / 2 - np.abs(table["rod_angle_rad"]), rtol=0.0, atol=1e-12
+    )
+    closing = 0.04 * np.cos(table["crank_angle_rad"]) + 0.1 * np.cos(table["rod_angle_rad"])
+    np.testing.assert_allclose(table["slider_position_m"], closing, rtol=1e-13)
+
+
+def test_jerk_counts_the_acceleration_of_the_crank() -> None:
+    of, at = Mechanism(speed=3.0, acceleration=40.0), 1.1
+    analysis, h = sc.analyse(of, DESIGN), 1e-6
+    # A crank that accelerates evenly: angle and speed a moment before and after.
+    times = np.array([-h, h])
+    linkage = analysis.linkage
+    found = linkage.at(at + 3.0 * times + 20.0 * times**2, speed=3.0 + 40.0 * times, acceleration=40.0)
+    slope = np.diff(found.slider_acceleration)[0] / (2.0 * h)
+    assert analysis.cycle([at])["slider_jerk_m_s3"].iloc[0] == pytest.approx(slope, rel=1e-7)
+
+
+def test_cycle_of_a_crank_without_speed_is_by_crank_angle() -> None:
+    still = sc.analyse(Mechanism(slider_mass=0.8, gravity=(0.0, -9.81)), DESIGN).cycle(8)
+    moving = sc.analyse(Mechanism(slider_mass=0.8, gravity=(0.0, -9.81), speed=1.0), DESIGN).cycle(8)
+    for per, name in (
+        ("slider_velocity_m_per_rad", "slider_velocity_m_s"),
+        ("slider_acceleration_m_per_rad2", "slider_acceleration_m_s2"),
+        ("slider_jerk_m_per_rad3", "slider_jerk_m_s3"),
+    ):
+        np.testing.assert_allclose(still[per], moving[name], rtol=1e-14)
+    assert still["power_W"].isna().all()
+    assert still["position_error_m"].isna().all()
+    assert not still["torque_Nm"].isna().any()
+
+
+def test_columns_of_the_cycle_are_the_names_and_units_of_the_curves(problem: sc.Problem) -> None:
+    analysis = problem.analyse(DESIGN)
+    table = analysis.cycle(4)
+    curves = cycle_curves(analysis.mechanism, analysis.linkage, table["crank_angle_rad"])
+    assert [*table.columns] == [curve.name + curve.si.suffix for curve in curves]
+    assert isinstance(table, pd.DataFrame)
+    for curve in curves:
+        np.testing.assert_array_equal(table[curve.name + curve.si.suffix], curve.values)
+        if curve.name not in ("slider_jerk", "power"):
+            assert curve.shown.suffix.strip("_") in curve.field
+
+
+def test_crank_angles_may_be_any(problem: sc.Problem) -> None:
+    table = problem.analyse(DESIGN).cycle([0.5, -7.0])
+    assert table["crank_angle_rad"].tolist() == [0.5, -7.0]
+    for angles, words in ((3, "4 to 100000"), ([[0.1]], "a list of numbers"), ([np.nan], "finite")):
+        with pytest.raises(InputError, match=words):
+            problem.analyse(DESIGN).cycle(angles)
+
+
+def test_designs_that_are_none_are_refused(problem: sc.Problem) -> None:
+    with pytest.raises(AssemblyError, match="rod must exceed"):
+        problem.analyse([0.08, 0.1, 0.03])
+    for design in ([0.04, 0.1], [0.04, np.nan, 0.02], [DESIGN]):
+        with pytest.raises(InputError, match="3 finite numbers"):
+            problem.analyse(design)
+
+
+def test_problem_with_choices_is_asked_by_its_parts() -> None:
+    found = sc.problem(
+        {
+            "name": "Catalogue",
+            "mechanism": {"speed": "60 rpm", "slider": {"mass": 1.0}},
+            "variables": {
+                "crank": {"choices": ["40 mm", "50 mm"]},
+                "rod": ["100 mm", "200 mm"],
+                "offset": "10 mm",
+            },
+            "objectives": {"peak_torque": "minimise"},
+        }
+    )
+    with pytest.raises(InputError, match=r"take one of problem.parts\(\)"):
+        found.analyse(DESIGN)
+    with pytest.raises(InputError, match=r"take one of problem.parts\(\)"):
+        found.evaluate([DESIGN])
+    assert found.parts()[0].analyse(DESIGN)["peak_torque"] > 0.0
