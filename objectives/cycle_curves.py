@@ -103,7 +103,8 @@ def even_angles(count: int, most: int = MOST) -> Array:
     """Return crank angles (n,), rad, evenly spaced over a turn from 0. Raises `InputError` for too few or too many."""
     if not LEAST <= count <= most:
         raise InputError(f"curves have {LEAST} to {most} crank angles; got {count}; ask for as many")
-    return np.arange(count) * (2.0 * np.pi / count)
+    angles: Array = np.arange(count, dtype=np.float64) * (2.0 * np.pi / count)
+    return angles
 
 
 def _jerk(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Array:

@@ -7,16 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.dynamics.torque import forces
 from ..model.errors import InputError
-from ..model.kernel.batches import in_chunks
-from ..model.kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import numbers_of
-from ..model.machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..model.signals.dead_centres import torque_at_dead_centres
 from ..model.signals.peaks import ANGLES
 from ..model.signals.screening import screen, screens
-from ..model.signals.signals import Signal, design_motion
+from ..model.signals.signals import Signal
 from ..model.signals.watch import stroke_dependent
 from .cycle_peak import CyclePeak
 from .own.quantity import OwnQuantity
@@ -94,37 +90,10 @@ def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array,
             kinks = quantity.signal is Signal.TORQUE and stroke_dependent(mechanism)
             missed = ~np.isfinite(item.values)
             if kinks:
-                missed |= torque_at_dead_centres(mechanism, designs).max(axis=1) >= item.values * (1.0 - _NEAR)
+                missed |= np.abs(torque_at_dead_centres(mechanism, designs)).max(axis=1) >= item.values * (1.0 - _NEAR)
             if missed.any():
                 exact = quantity.evaluate(mechanism, designs[missed], gradients=gradients)
                 item.values[missed] = exact.values
                 if item.gradients is not None:
                     item.gradients[missed] = exact.gradients
     return [found.get(q.name) or q.evaluate(mechanism, designs, gradients=gradients) for q in quantities]
-
-
-def torque_at_dead_centres(mechanism: Mechanism, designs: Array) -> Array:
-    """Return the size of the drive torque, N m, at the inner and the outer dead centre of designs (n, 3 + k): (n, 2).
-
-    The slider stands there, so that loads along the stroke take no torque: a load that changes with the stroke makes a
-    kink of the curve and no jump. Without friction.
-    """
-    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=False)
-    found = np.empty((len(designs), 2))
-
-    def work(begin: int, end: int) -> None:
-        part = np.repeat(raw[:, None], end - begin, axis=1)
-        part[numbers.columns] = numbers.values[begin:end].T
-        block = np.empty((DESIGN + 2 * len(loads.kind), end - begin))
-        derive(part, loads.kind, loads.datum, block)
-        d = design_at(block, slice(None))
-        for column, of in enumerate((inner_crank_angle, outer_crank_angle)):
-            angle = of(d.r, d.l, d.e)
-            if mechanism.branch == "crossed":
-                angle = np.pi - angle
-            sine, cosine = np.sin(angle), np.cos(angle)
-            found[begin:end, column] = np.abs(forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque)
-
-    in_chunks(len(designs), work, size=4096)
-    return found

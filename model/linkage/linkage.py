@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import AssemblyError, InputError
+from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
 from ..kinematics.in_line import in_line
-from ..kinematics.position import motion
+from ..kinematics.position import Motion, motion
 from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
+from .picture import Pose, figure, svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 SlowStroke = Literal["outward", "inward"]
@@ -47,9 +53,13 @@ class PointMotion:
     acceleration: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Linkage:
     """An offset slider-crank: crank, rod and offset in metres (scalars, or arrays that broadcast), and its branch.
+
+    Dimensions, crank angles, speeds and accelerations may be complex: then so are the results, and the imaginary part
+    of one, over that of the number that was stepped, is the derivative, exact to rounding (complex step; a step such as
+    1e-30j, as only its first power is kept). Conditions and limits look at the real parts.
 
     The sketch and the sign conventions are in `slidercrank.model.kinematics.position`. Any linkage that assembles at
     some crank angle is accepted; what needs full rotation says so and raises `AssemblyError` otherwise.
@@ -57,46 +67,51 @@ class Linkage:
     >>> linkage = Linkage(crank=0.04, rod=0.064, offset=0.02)
     >>> round(float(linkage.stroke) * 1000, 6)
     88.792307
+    >>> stepped = Linkage(crank=0.04 + 1e-30j, rod=0.064, offset=0.02)
+    >>> round(float(stepped.stroke.imag) / 1e-30, 6)
+    2.828088
     """
 
-    crank: Any
-    rod: Any
-    offset: Any = 0.0
-    branch: Branch = "open"
+    crank: Array
+    rod: Array
+    offset: Array
+    branch: Branch
 
-    def __post_init__(self) -> None:
+    def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
+        """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible."""
         values = []
-        for name in ("crank", "rod", "offset"):
+        for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
             try:
-                value = np.asarray(getattr(self, name), dtype=np.float64)
+                value = _numbers(given)
             except (TypeError, ValueError):
-                raise InputError(f"{name} must be a length in metres; got {getattr(self, name)!r}") from None
+                raise InputError(f"{name} must be a length in metres; got {given!r}") from None
             if not np.all(np.isfinite(value)):
-                raise InputError(f"{name} must be finite; got {getattr(self, name)!r}")
+                raise InputError(f"{name} must be finite; got {given!r}")
             values.append(value)
         try:
-            crank, rod, offset = np.broadcast_arrays(*values)
+            real = np.broadcast_arrays(*(value.real for value in values))
         except ValueError:
             shapes = ", ".join(str(value.shape) for value in values)
             raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
-        for name, value in (("crank", crank), ("rod", rod)):
-            if np.any(value <= 0.0):
-                raise InputError(f"{name} must be longer than zero; got {_first(value, value <= 0.0):g} m")
-        if self.branch not in ("open", "crossed"):
-            raise InputError(f"branch must be 'open' or 'crossed'; got {self.branch!r}")
-        apart = np.abs(offset) >= crank + rod
+        for name, size in zip(("crank", "rod"), real, strict=False):
+            if np.any(size <= 0.0):
+                raise InputError(f"{name} must be longer than zero; got {_first(size, size <= 0.0):g} m")
+        if branch not in ("open", "crossed"):
+            raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
+        apart = np.abs(real[2]) >= real[0] + real[1]
         if np.any(apart):
             raise AssemblyError(
                 "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
-                f"got {_mm(crank, rod, offset, apart)}; shorten the offset or lengthen a link"
+                f"got {_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
             )
-        rounding = in_line(rod, offset) & (offset != 0.0)
+        rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
         if np.any(rounding):
-            values[2] = np.where(rounding, 0.0, offset)
+            values[2] = np.where(rounding, values[2] - real[2], values[2])
         for name, value in zip(("crank", "rod", "offset"), values, strict=True):
             value = value.copy()
             value.flags.writeable = False
             object.__setattr__(self, name, value[()])
+        object.__setattr__(self, "branch", branch)
 
     @property
     def sign(self) -> float:
@@ -104,22 +119,23 @@ class Linkage:
         return 1.0 if self.branch == "open" else -1.0
 
     @property
-    def rotates_fully(self) -> Any:
+    def rotates_fully(self) -> NDArray[np.bool_]:
         """Whether the crank turns through: rod > crank + |offset|."""
-        return self.rod > self.crank + np.abs(self.offset)
+        turns: NDArray[np.bool_] = self.rod.real > self.crank.real + np.abs(self.offset.real)
+        return turns
 
     def require_full_rotation(self) -> None:
         """Raise `AssemblyError` unless every linkage turns fully."""
         fails = ~np.asarray(self.rotates_fully)
         if np.any(fails):
-            crank, rod, offset = np.broadcast_arrays(self.crank, self.rod, self.offset)
+            crank, rod, offset = np.broadcast_arrays(self.crank.real, self.rod.real, self.offset.real)
             raise AssemblyError(
                 "rod must exceed crank + |offset| for full rotation; "
                 f"got {_mm(crank, rod, offset, fails)}; lengthen the rod or reduce the offset"
             )
 
     @property
-    def dead_centres(self) -> tuple[Any, Any]:
+    def dead_centres(self) -> tuple[Array, Array]:
         """Slider positions (inner, outer), m: signed as x, so negative on the crossed branch."""
         self.require_full_rotation()
         dimensions = (self.crank, self.rod, self.offset)
@@ -129,30 +145,30 @@ class Linkage:
         )
 
     @property
-    def dead_centre_angles(self) -> tuple[Any, Any]:
+    def dead_centre_angles(self) -> tuple[Array, Array]:
         """Crank angles (inner, outer) in [0, 2 pi), rad."""
         self.require_full_rotation()
         dimensions = (self.crank, self.rod, self.offset)
         angles = (geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions))
         if self.branch == "crossed":
             angles = (np.pi - angles[0], np.pi - angles[1])
-        inner, outer = (np.mod(angle, 2.0 * np.pi) for angle in angles)
-        # Rounding takes a tiny negative angle to 2 pi itself.
-        return np.where(inner < 2.0 * np.pi, inner, 0.0)[()], np.where(outer < 2.0 * np.pi, outer, 0.0)[()]
+        return _in_a_turn(angles[0]), _in_a_turn(angles[1])
 
     @property
-    def stroke(self) -> Any:
+    def stroke(self) -> Array:
         """Distance between the dead centres, m: sqrt((l + r)^2 - e^2) - sqrt((l - r)^2 - e^2)."""
         self.require_full_rotation()
-        return geometry.stroke(self.crank, self.rod, self.offset)
+        found: Array = geometry.stroke(self.crank, self.rod, self.offset)
+        return found
 
     @property
-    def time_ratio(self) -> Any:
+    def time_ratio(self) -> Array:
         """Duration of the slower stroke over the faster at constant speed, at least 1."""
         self.require_full_rotation()
-        return geometry.time_ratio(self.crank, self.rod, np.abs(self.offset))
+        found: Array = geometry.time_ratio(self.crank, self.rod, magnitude(self.offset))
+        return found
 
-    def slow_stroke(self, *, direction: float = 1.0) -> Any:
+    def slow_stroke(self, *, direction: float = 1.0) -> NDArray[np.str_]:
         """Return which stroke is the slow one: "outward", "inward" or "equal" (no offset).
 
         direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch the inner dead
@@ -163,24 +179,24 @@ class Linkage:
                 f"direction must be positive (counter-clockwise) or negative (clockwise); got {direction:g}"
             )
         self.require_full_rotation()
-        offset = np.broadcast_to(self.offset, np.shape(self.rotates_fully))
+        offset = np.broadcast_to(self.offset.real, np.shape(self.rotates_fully))
         inward = np.sign(offset) * np.sign(direction) * self.sign
-        return np.where(inward > 0.0, "inward", np.where(inward < 0.0, "outward", "equal"))[()]
+        found: NDArray[np.str_] = np.where(inward > 0.0, "inward", np.where(inward < 0.0, "outward", "equal"))[()]
+        return found
 
     @property
-    def least_transmission_angle(self) -> Any:
+    def least_transmission_angle(self) -> Array:
         """Least transmission angle over the cycle, rad: cos(mu_min) = (r + |e|) / l."""
         self.require_full_rotation()
-        return geometry.least_transmission_angle(self.crank, self.rod, np.abs(self.offset))
+        found: Array = geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset))
+        return found
 
     def at(self, crank_angle: ArrayLike, *, speed: ArrayLike = 0.0, acceleration: ArrayLike = 0.0) -> Kinematics:
         """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2).
 
         All arguments broadcast with the dimensions. Raises `AssemblyError` where the linkage cannot be assembled.
         """
-        theta, speed, acceleration = (
-            np.asarray(value, dtype=np.float64) for value in (crank_angle, speed, acceleration)
-        )
+        theta, speed, acceleration = (_numbers(value) for value in (crank_angle, speed, acceleration))
         if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(acceleration))):
             raise InputError("crank speed and acceleration must be finite")
         m = self._motion(theta)
@@ -191,10 +207,10 @@ class Linkage:
             m.x,
             m.x_1 * speed,
             m.x_2 * w2 + m.x_1 * acceleration,
-            np.arctan2(m.across, m.along),
+            _direction(m.across, m.along),
             m.rod_1 * speed,
             m.rod_2 * w2 + m.rod_1 * acceleration,
-            np.arctan2(np.abs(m.along), np.abs(m.across)),
+            _direction(magnitude(m.along), magnitude(m.across)),
         )
         return Kinematics(*(np.broadcast_to(field, shape) for field in fields))
 
@@ -208,7 +224,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a point on the crank, `along` it from the pivot and `across` to its left, m."""
-        theta = np.asarray(crank_angle, dtype=np.float64)
+        theta = _numbers(crank_angle)
         sine, cosine = np.sin(theta), np.cos(theta)
         arm = np.stack([along * cosine - across * sine, along * sine + across * cosine], axis=-1)
         normal = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
@@ -224,7 +240,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a point on the rod, `along` it from the crank pin and `across` to its left, m."""
-        theta = np.asarray(crank_angle, dtype=np.float64)
+        theta = _numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
         unit = np.stack(np.broadcast_arrays(m.along / self.rod, m.across / self.rod), axis=-1)
@@ -241,16 +257,51 @@ class Linkage:
 
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
         """Return the first-order influence of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
-        theta = np.asarray(crank_angle, dtype=np.float64)
+        theta = _numbers(crank_angle)
         found: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
         return found
 
-    def _motion(self, theta: Array) -> Any:
+    def plot(self, crank_angle: float = 1.0) -> Figure:
+        """Return a matplotlib figure of one linkage at a crank angle, rad.
+
+        Raises `InputError` for an array of linkages, `AssemblyError` where it cannot be assembled.
+        """
+        return figure(self._pose(crank_angle), float(self.crank.real), self.label)
+
+    def _repr_html_(self) -> str | None:
+        """Picture of one linkage for notebooks; none of an array of them."""
+        if np.ndim(self.rotates_fully):
+            return None
+        reach = np.arcsin(np.clip(self.offset.real / self.crank.real, -1.0, 1.0))
+        angle = 1.0 if bool(self.rotates_fully) else float(reach)
+        return f"<div>{svg(self._pose(angle), float(self.crank.real), self.label)}<p>{self.label}</p></div>"
+
+    @property
+    def label(self) -> str:
+        """Dimensions of one linkage in words, mm."""
+        sizes = (f"{name} {1e3 * float(getattr(self, name).real):.6g} mm" for name in ("crank", "rod", "offset"))
+        return ", ".join(sizes) + ("" if self.branch == "open" else ", crossed")
+
+    def _pose(self, crank_angle: float) -> Pose:
+        if np.ndim(self.rotates_fully):
+            raise InputError(
+                f"a picture shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of it"
+            )
+        m, crank = self._motion(np.asarray(float(crank_angle))), float(self.crank.real)
+        ends = self.dead_centres if bool(self.rotates_fully) else (np.asarray(np.nan), np.asarray(np.nan))
+        return Pose(
+            pin=(crank * math.cos(crank_angle), crank * math.sin(crank_angle)),
+            slider=(float(m.x.real), float(self.offset.real)),
+            stroke=(float(ends[0].real), float(ends[1].real)),
+        )
+
+    def _motion(self, theta: Array) -> Motion:
         if not np.all(np.isfinite(theta)):
             raise InputError("crank angles must be finite")
-        reach = np.abs(self.offset - self.crank * np.sin(theta)) - self.rod
+        reach = np.abs(self.offset.real - self.crank.real * np.sin(theta.real)) - self.rod.real
         if np.any(reach >= 0.0):
-            crank, rod, offset, angle = np.broadcast_arrays(self.crank, self.rod, self.offset, theta)
+            parts = (self.crank, self.rod, self.offset, theta)
+            crank, rod, offset, angle = np.broadcast_arrays(*(part.real for part in parts))
             worst = np.unravel_index(np.argmax(np.broadcast_to(reach, angle.shape)), angle.shape)
             raise AssemblyError(
                 "rod must exceed |offset - crank sin(crank angle)|; "
@@ -260,20 +311,46 @@ class Linkage:
         return motion(np.sin(theta), np.cos(theta), self.crank, self.rod, self.offset, self.sign)
 
 
-def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 0.0) -> Any:
+def _numbers(value: ArrayLike) -> Array:
+    """Return real or complex numbers; typed as real, which all but a complex step are."""
+    kind = np.complex128 if np.iscomplexobj(value) else np.float64
+    found: Array = np.asarray(value, dtype=kind)
+    return found
+
+
+def _direction(y: Array, x: Array) -> Array:
+    """Return the angle of (x, y), rad, with its derivative where these are complex."""
+    angle: Array = np.arctan2(y.real, x.real)
+    if np.iscomplexobj(x) or np.iscomplexobj(y):
+        turned = (x.real * y.imag - y.real * x.imag) / (x.real * x.real + y.real * y.real)
+        return np.asarray(angle + 1j * turned)
+    return angle
+
+
+def _in_a_turn(angle: Array) -> Array:
+    """Return an angle in [0, 2 pi), rad."""
+    inside = np.mod(angle.real, 2.0 * np.pi)
+    # Rounding takes a tiny negative angle to 2 pi itself.
+    inside = np.where(inside < 2.0 * np.pi, inside, 0.0)
+    found: Array = (inside + 1j * angle.imag if np.iscomplexobj(angle) else inside)[()]
+    return found
+
+
+def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 0.0) -> Array:
     """Return the crank, m, that gives a stroke with a rod and an offset, m; arrays broadcast.
 
     r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
     """
-    s, l, e = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in (stroke, rod, offset)))
+    s, l, e = np.broadcast_arrays(*(_numbers(value) for value in (stroke, rod, offset)))
     with np.errstate(invalid="ignore", divide="ignore"):
-        r = geometry.crank_from_stroke(s, l, e)
-        wrong = ~((s > 0.0) & (r > 0.0) & (l > r + np.abs(e)) & (4.0 * l * r >= s * s))
+        r: Array = geometry.crank_from_stroke(s, l, e)
+        real, rod_, off, crank = s.real, l.real, e.real, r.real
+        wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
     if np.any(wrong):
         raise AssemblyError(
             "no crank gives this stroke with full rotation; "
-            f"got stroke {1e3 * _first(s, wrong):g} mm, rod {1e3 * _first(l, wrong):g} mm, "
-            f"offset {1e3 * _first(e, wrong):g} mm; lengthen the rod or reduce the offset"
+            f"got stroke {1e3 * _first(s.real, wrong):g} mm, rod {1e3 * _first(l.real, wrong):g} mm, "
+            f"offset {1e3 * _first(e.real, wrong):g} mm; lengthen the rod or reduce the offset"
         )
     return r
 

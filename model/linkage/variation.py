@@ -56,13 +56,14 @@ def vary(
     if np.ndim(linkage.rotates_fully):
         raise InputError(f"one linkage is needed; got an array of shape {np.shape(linkage.rotates_fully)}")
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    dimensions = {"crank": linkage.crank, "rod": linkage.rod, "offset": linkage.offset}
+    dimensions = {"crank": float(linkage.crank), "rod": float(linkage.rod), "offset": float(linkage.offset)}
     varied = []
     for name, value in changes:
         if name not in dimensions:
             raise InputError(f"a dimension is one of {', '.join(get_args(Dimension))}; got {name!r}")
         if not math.isfinite(value):
             raise InputError(f"the other value of the {name} must be finite; got {value}")
-        other = Linkage(**{**dimensions, name: float(value)}, branch=linkage.branch)
+        changed = dimensions | {name: float(value)}
+        other = Linkage(changed["crank"], changed["rod"], changed["offset"], linkage.branch)
         varied.append(Variation(name, float(value), other.at(angles, speed=speed, acceleration=acceleration)))
     return Variations(angles, linkage, linkage.at(angles, speed=speed, acceleration=acceleration), tuple(varied))

@@ -79,7 +79,7 @@ def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLE
     angles; the whole cycle is one part, that ends one turn after it began.
     """
     linkage, window = single(mechanism, linkage), mechanism.tolerances.window
-    r, l, e = linkage.crank, linkage.rod, linkage.offset
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     kappa = crowding(r, l, e)
 
     def part(first: float, last: float) -> Array:

@@ -51,7 +51,8 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         lambda x: (outside(x), slopes(x)),
         lambda jacobian, pushed: (jax.numpy.einsum("...q,...qd->...d", pushed, jacobian),),
     )
-    return found
+    function: JaxFunction = found
+    return function
 
 
 def _names(problem: Problem, quantities: Sequence[str] | None) -> list[str]:

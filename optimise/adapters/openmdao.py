@@ -14,8 +14,8 @@ from ..problem.problem import Problem
 from .missing import require
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from openmdao.api import ExplicitComponent
-    from openmdao.core.constants import _ReprClass
     from openmdao.vectors.default_vector import DefaultVector
 
 
@@ -36,15 +36,17 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
         quantities = list(dict.fromkeys(asked))
     names = list(quantities)
     varying = problem.mechanism.varying
-    inputs = {name: "m" for name in ("crank", "rod", "offset")}
+    inputs = dict.fromkeys(("crank", "rod", "offset"), "m")
     inputs |= {re.sub(r"[^A-Za-z0-9]+", "_", item.name).strip("_"): unit_of(item.paths[0]) for item in varying}
-    starts = [problem.crank, problem.rod, problem.offset, *varying]
+    ranges = [problem.crank, problem.rod, problem.offset]
+    starts = [0.5 * (ends.lower + ends.upper) for ends in ranges]
+    starts += [0.5 * (item.lower + item.upper) for item in varying]
     problem.evaluate(np.zeros((1, len(starts))), names)  # refuses what it must
 
-    class SliderCrank(ExplicitComponent):
+    class SliderCrank(ExplicitComponent):  # type: ignore[misc]
         def setup(self) -> None:
-            for (name, unit), ends in zip(inputs.items(), starts, strict=True):
-                self.add_input(name, val=0.5 * (ends.lower + ends.upper), units=_unit(unit))
+            for (name, unit), start in zip(inputs.items(), starts, strict=True):
+                self.add_input(name, val=start, units=_unit(unit))
             for name in names:
                 self.add_output(name, units=_unit(_si(problem, name)))
             self.declare_partials("*", "*")
@@ -54,7 +56,9 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
             for name, value in zip(names, values, strict=True):
                 outputs[name] = value
 
-        def compute_partials(self, inputs_: DefaultVector, partials: dict[tuple[str, str], _ReprClass]) -> None:
+        def compute_partials(
+            self, inputs_: DefaultVector, partials: dict[tuple[str, str], NDArray[np.float64]]
+        ) -> None:
             _, jacobian = problem.evaluate(_design(inputs_), names, gradients=True)
             for row, name in enumerate(names):
                 for column, of in enumerate(inputs):

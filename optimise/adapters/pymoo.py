@@ -30,7 +30,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True) -> PymooProblem:
         raise require("pymoo", error) from None
     form = standard_form(problem, eliminate=eliminate)
 
-    class SliderCrank(PymooProblem):
+    class SliderCrank(PymooProblem):  # type: ignore[misc]
         def __init__(self) -> None:
             super().__init__(
                 n_var=len(form.names),

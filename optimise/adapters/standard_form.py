@@ -39,7 +39,7 @@ class Arrays(NamedTuple):
 
 
 class ScipyForm(NamedTuple):
-    """Arguments of `scipy.optimize.minimize` and its like: bounds, constraints, and a start in the middle of the box."""
+    """Arguments of `scipy.optimize.minimize` and its like: bounds, constraints, a start near the middle."""
 
     fun: Callable[[Array], float]
     jac: Callable[[Array], Array]
@@ -158,7 +158,7 @@ class StandardForm:
         )
 
     def start(self) -> Array:
-        """Return a design (3 + k,) that turns fully, near the middle of the bounds. Raises `InputError` if none does."""
+        """Return a point that turns fully, near the middle of the bounds. Raises `InputError` if none does."""
         if self._sheet is not None:
             grid = np.random.default_rng(1).random((4096, len(self.names)))
             found = self.arrays(grid)
@@ -234,9 +234,7 @@ def _eliminated(problem: Problem, asked: tuple[Constraint, ...]) -> StandardForm
         )
     sheet = found[0]
     if not sheet.free:
-        raise InputError(
-            "the equalities and ranges leave nothing free; got none to search; widen a range, or use solve"
-        )
+        raise InputError("the equalities and ranges leave nothing free; got no unknown; widen a range, or use solve")
     left = tuple(c for c in asked if c.quantity not in sheet.eliminated)
     inequalities = ["turning", "turning", *(name for c in left if not c.equality for name in _sides(c))]
     return StandardForm(

@@ -31,7 +31,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     names = [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)
     problem.evaluate(np.zeros((1, 3 + len(problem.mechanism.varying))), names)  # refuses what it must
 
-    class Quantities(torch.autograd.Function):
+    class Quantities(torch.autograd.Function):  # type: ignore[misc]
         @staticmethod
         def forward(ctx: FunctionCtx, x: torch.Tensor) -> torch.Tensor:
             designs = x.detach().numpy()
@@ -42,7 +42,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
             return torch.from_numpy(values)
 
         @staticmethod
-        @torch.autograd.function.once_differentiable
+        @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: FunctionCtx, pushed: torch.Tensor) -> torch.Tensor:
             (jacobian,) = ctx.saved_tensors
             return torch.einsum("...q,...qd->...d", pushed, jacobian)

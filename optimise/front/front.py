@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -15,8 +16,12 @@ from ...objectives.kinds import System, shown_in
 from ..problem.problem import Objective, Problem
 from .constant import spread
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
+from .picture import figure, svg
 from .progress import Progress
 from .stationarity import STATIONARY, multipliers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,6 +66,33 @@ class ParetoFront:
 
     def __len__(self) -> int:
         return len(self.designs)
+
+    def __repr__(self) -> str:
+        found = f"{len(self)} design" + ("" if len(self) == 1 else "s")
+        return f"ParetoFront({self.problem.name!r}: {self.status}, {found}; {', '.join(self._labels())})"
+
+    def _repr_html_(self) -> str:
+        """Table of the first designs and a picture, for notebooks."""
+        if not len(self):
+            return f"<p>{escape(self.problem.name)}: {escape(self.message)}</p>"
+        columns = [self.problem.quantity(objective.quantity).field for objective in self.objectives]
+        sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.designs.columns]
+        table = self.designs[list(dict.fromkeys([*columns, *sizes]))].to_html(max_rows=8, float_format="{:.5g}".format)
+        return f"<div><p>{escape(repr(self))}</p>{svg(self._shown(), self._labels())}{table}</div>"
+
+    def plot(self) -> Figure:
+        """Return a matplotlib figure of every objective against the first. Raises `InputError` for an empty front."""
+        if not len(self):
+            raise InputError(f"a figure needs designs; got none: {self.message}")
+        return figure(self._shown(), self._labels(), self.problem.name)
+
+    def _labels(self) -> list[str]:
+        known = [self.problem.quantity(objective.quantity) for objective in self.objectives]
+        return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in known]
+
+    def _shown(self) -> Array:
+        columns = [self.problem.quantity(objective.quantity).field for objective in self.objectives]
+        return self.designs[columns].to_numpy(dtype=np.float64)
 
     @property
     def objectives(self) -> tuple[Objective, ...]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...model.errors import JobError
 from ...objectives.own.apply import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
@@ -21,9 +22,9 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
     """Return the problem that the tables of a job file state, given as a dict.
 
     Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays will do. The function of
-    a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this process,
-    without a time limit. folder: where modules named by text lie, besides the working directory. Raises `JobError`,
-    naming key, rule, value and remedy, like `load_job`.
+    a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this
+    process, without a time limit. folder: where modules named by text lie, besides the working directory.
+    Raises `JobError`, naming key, rule, value and remedy, like `load_job`.
 
     >>> from slidercrank import problem
     >>> found = problem(
@@ -38,9 +39,12 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
     Range(lower=0.05, upper=0.25)
     """
     given: dict[str, Function] = {}
-    data = _plain(tables)
-    if isinstance(data, dict) and isinstance(data.get("quantity"), dict):
-        for name, part in data["quantity"].items():
+    if not isinstance(tables, Mapping):
+        raise JobError(f"a job is a dict of tables; got {type(tables).__name__}; a file is read by load_job")
+    data = {key: _plain(item) for key, item in tables.items()}
+    own = data.get("quantity")
+    if isinstance(own, dict):
+        for name, part in own.items():
             if isinstance(part, dict) and callable(part.get("function")):
                 given[name] = part["function"]
                 part["function"] = "given:function"  # in the place of a name, for the validation

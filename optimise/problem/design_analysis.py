@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -13,10 +15,15 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
-from ...objectives.cycle_curves import cycle_table
+from ...objectives.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from .causes import undefined_because, zero_because
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque")
 
 
 @dataclass(frozen=True)
@@ -74,13 +81,35 @@ class Analysis(Mapping[str, float]):
         """
         return cycle_table(self.mechanism, self.linkage, angles)
 
+    def plot(self) -> Figure:
+        """Return a matplotlib figure of position, velocity, acceleration and torque over the cycle."""
+        from matplotlib.figure import Figure
+
+        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, even_angles(361))}
+        found = Figure(figsize=(6.4, 8.0), layout="constrained")
+        angle = curves["crank_angle"]
+        for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
+            curve = curves[name]
+            axes.plot(angle.shown.factor * angle.values, curve.shown.factor * curve.values)
+            axes.set_ylabel(f"{curve.title},\n{curve.shown.symbol}")
+            axes.set_xlabel("crank angle, deg")
+            axes.label_outer()
+        found.suptitle(self.title or self.linkage.label)
+        return found
+
+    def _repr_html_(self) -> str:
+        """Picture of the linkage and table of its quantities, for notebooks."""
+        table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
+        return f"<div><p>{escape(self.title)}</p>{self.linkage._repr_html_() or ''}{table}</div>"
+
     def __repr__(self) -> str:
-        linkage, shown = self.linkage, [item for item in self.quantities if item.name in self.found][:4]
-        sizes = ", ".join(f"{name} {1e3 * float(getattr(linkage, name)):.6g} mm" for name in ("crank", "rod", "offset"))
+        shown = [item for item in self.quantities if item.name in self.found][:4]
         numbers = ", ".join(
             f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip() for item in shown
         )
-        return f"Analysis({sizes}: {numbers}; {len(self.found)} quantities, {len(self.undefined)} undefined)"
+        return (
+            f"Analysis({self.linkage.label}: {numbers}; {len(self.found)} quantities, {len(self.undefined)} undefined)"
+        )
 
 
 def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] = (), title: str = "") -> Analysis:
@@ -100,7 +129,7 @@ def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] 
         names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
         raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")
     machine = mechanism.at(sizes[3:].tolist())
-    linkage = single(machine, Linkage(*sizes[:3], machine.branch))
+    linkage = single(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch))
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}
     chosen = (*QUANTITIES.values(), *own)

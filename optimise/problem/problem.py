@@ -6,13 +6,14 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from numbers import Integral, Real
 from typing import Literal, overload
 
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
-from ...model.linkage.linkage import SlowStroke
+from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.peak_torque import PEAK_TORQUE
@@ -219,6 +220,23 @@ class Problem:
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
 
+    def __repr__(self) -> str:
+        wanted = ", ".join(f"{objective.sense} {objective.quantity}" for objective in self.objectives)
+        count = f"{len(self.constraints)} constraint" + ("" if len(self.constraints) == 1 else "s")
+        return f"Problem({self.name!r}: {wanted}; {count})"
+
+    def _repr_html_(self) -> str:
+        """Picture of a linkage of the ranges and what is asked of it, for notebooks."""
+        sizes = [0.5 * (ends.lower + ends.upper) for ends in (self.crank, self.rod, self.offset)]
+        try:
+            picture = Linkage(sizes[0], sizes[1], sizes[2], self.mechanism.branch)._repr_html_() or ""
+        except InputError:  # the middle of the ranges need not be a linkage
+            picture = ""
+        rows = [(name, getattr(self, name)) for name in ("crank", "rod", "offset")]
+        ranges = "".join(f"<li>{name}: {1e3 * r.lower:g} to {1e3 * r.upper:g} mm</li>" for name, r in rows)
+        asked = "".join(f"<li>{escape(_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints)
+        return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{asked}</ul></div>"
+
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
         return quantity(name, self.own)
@@ -291,6 +309,15 @@ class Problem:
     def parts(self) -> tuple[Problem, ...]:
         """Return the problem of every variant; itself if there is nothing to choose."""
         return tuple(self.part(index) for index in range(max(1, len(self.variants))))
+
+
+def _in_words(of: Quantity, constraint: Constraint) -> str:
+    ends = [
+        f"{word} {of.unit.factor * bound:.6g} {of.unit.symbol}".rstrip()
+        for word, bound in (("at least", constraint.lower), ("at most", constraint.upper))
+        if bound is not None
+    ]
+    return f"{of.title}: {ends[0].removeprefix('at least ') if constraint.equality else ', '.join(ends)}"
 
 
 def choice_field(name: str) -> str:

@@ -37,7 +37,7 @@ def breakpoints(machine: Mechanism, design: Array) -> list[float]:
     """Return the crank angles at which the torque may have a kink, and those next to which it is steep."""
     linkage = linkage_of(design, machine.branch)
     inner, outer = (abs(float(end)) for end in linkage.dead_centres)
-    found = [0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi, *linkage.dead_centre_angles]
+    found = [0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi, *map(float, linkage.dead_centre_angles)]
     for load in machine.loads:
         if isinstance(load, AngleTable):
             found += load.angles

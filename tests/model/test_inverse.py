@@ -108,7 +108,9 @@ def test_a_dead_centre_is_refused_because_the_crank_motion_is_undetermined() -> 
         with pytest.raises(InputError, match=r"dead centres, where the crank motion is undetermined; got position \d"):
             crank_motion(linkage, position, velocity=0.0, acceleration=1.0, solution="outward")
     with pytest.raises(InputError, match=r"got position 13\.26"):
-        crank_motion(linkage, [0.05, linkage.dead_centres[0]], velocity=0.0, acceleration=1.0, solution="outward")
+        crank_motion(
+            linkage, [0.05, float(linkage.dead_centres[0])], velocity=0.0, acceleration=1.0, solution="outward"
+        )
 
 
 @pytest.mark.parametrize("position", [0.2, 0.013, -0.05])

@@ -38,7 +38,7 @@ def test_linkage_is_immutable() -> None:
     lengths[0] = 0.3
     assert machine.crank[0] == 0.1
     with pytest.raises(dataclasses.FrozenInstanceError):
-        machine.rod = 1.0  # type: ignore[misc]
+        machine.rod = lengths  # type: ignore[misc]
     with pytest.raises(ValueError, match="read-only"):
         machine.crank[0] = 0.3
 

@@ -27,7 +27,7 @@ def shown(machine: Mechanism, design: np.ndarray) -> dict[str, float]:
     values = {name: float(row[quantity.field]) for name, quantity in QUANTITIES.items()}
     linkage = Linkage(design[0], design[1], design[2], machine.branch)
     inner, outer = linkage.dead_centres
-    values |= {"inner_dead_centre_position": 1e3 * inner, "outer_dead_centre_position": 1e3 * outer}
+    values |= {"inner_dead_centre_position": 1e3 * float(inner), "outer_dead_centre_position": 1e3 * float(outer)}
     values |= {name: float(row[f"{name}_deg"]) for name in ("inner_dead_centre", "outer_dead_centre")}
     return values
 

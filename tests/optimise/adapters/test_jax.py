@@ -1,18 +1,22 @@
 """JAX: its own check of derivatives, mapping over designs, and the known optimum by SLSQP on its gradients."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from scipy import optimize
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from tests.optimise.adapters.the_problem import NAMES, NEAR, RATIO, STROKE, best_angle, degrees_of, problem
 
+minimize: Any = optimize.minimize  # its stubs take no such options
 jax = pytest.importorskip("jax", reason='jax is not installed; pip install "slidercrank[jax]"')
 
 
 @pytest.fixture(autouse=True)
-def double():
+def double() -> Iterator[None]:
     before = jax.config.jax_enable_x64
     jax.config.update("jax_enable_x64", True)
     yield

@@ -1,6 +1,7 @@
 """OpenMDAO: check_partials, and the known optimum by its driver."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ om = pytest.importorskip("openmdao.api", reason='openmdao is not installed; pip 
 
 
 @pytest.fixture
-def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.chdir(tmp_path)  # it writes folders of reports
     stated = problem()
     found = om.Problem(reports=False)
@@ -30,7 +31,7 @@ def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     return found
 
 
-def test_partials_pass_the_check_of_openmdao(model) -> None:
+def test_partials_pass_the_check_of_openmdao(model: Any) -> None:
     checked = model.check_partials(out_stream=None, form="central", step=1e-7)
     pairs = [pair for part in checked.values() for pair in part.values()]
     assert len(pairs) == 9
@@ -38,14 +39,14 @@ def test_partials_pass_the_check_of_openmdao(model) -> None:
         assert pair["abs error"].forward < 1e-5 * max(1.0, abs(pair["J_fwd"].item()))
 
 
-def test_values_carry_units(model) -> None:
+def test_values_carry_units(model: Any) -> None:
     assert model.get_val("stroke", units="mm") == pytest.approx(1e3 * model.get_val("stroke"))
     assert model.get_val("transmission_angle", units="deg")[0] == pytest.approx(
         57.29577951308232 * model.get_val("transmission_angle")[0]
     )
 
 
-def test_it_finds_the_known_optimum(model) -> None:
+def test_it_finds_the_known_optimum(model: Any) -> None:
     model.run_driver()
     design = [model.get_val(name).item() for name in ("crank", "rod", "offset")]
     assert degrees_of(design) == pytest.approx(best_angle(), abs=1e-6)

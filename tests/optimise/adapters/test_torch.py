@@ -1,13 +1,16 @@
 """PyTorch: gradcheck, and the known optimum by Newton steps on its gradients."""
 
+from typing import Any
+
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from scipy import optimize
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from tests.optimise.adapters.the_problem import NAMES, NEAR, RATIO, STROKE, best_angle, degrees_of, problem
 
+minimize: Any = optimize.minimize  # its stubs take no such options
 torch = pytest.importorskip("torch", reason='torch is not installed; pip install "slidercrank[torch]"')
 
 

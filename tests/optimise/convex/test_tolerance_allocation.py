@@ -163,7 +163,7 @@ def test_slsqp_on_many_angles_finds_the_same_tolerances(kind: Kind) -> None:
 @pytest.mark.parametrize("window", WINDOWS)
 def test_the_error_reaches_the_limit_and_never_exceeds_it_in_the_working_stroke(kind: Kind, window: Window) -> None:
     for offset in (0.0, -0.02):
-        found = allocate(dataclasses.replace(SIEVE, offset=offset), PLAIN, 1e-4, kind, window)
+        found = allocate(Linkage(SIEVE.crank, SIEVE.rod, offset), PLAIN, 1e-4, kind, window)
         linkage = Linkage(0.14, 0.31, offset)
         assert found.converged
         assert found.residual <= 1e-10

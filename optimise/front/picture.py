@@ -1,0 +1,65 @@
+"""Pictures of a front: its objectives against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+_WIDTH, _HEIGHT, _ROOM = 320.0, 200.0, 30.0  # px of the SVG
+
+
+def svg(values: Array, labels: Sequence[str]) -> str:
+    """Return the first two columns (n, 2) as an SVG element that needs nothing else; the row number of one alone."""
+    x = values[:, 0]
+    y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
+    names = [*labels, "design"][:2]
+    across = _ROOM + (_WIDTH - 2 * _ROOM) * _share(x)
+    down = _ROOM + (_HEIGHT - 2 * _ROOM) * (1.0 - _share(y))
+    spots = "".join(
+        f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="currentColor" fill-opacity="0.6"/>'
+        for a, b in zip(across, down, strict=True)
+    )
+    frame = (
+        f'<path d="M{_ROOM:g} {_ROOM / 2:g} V{_HEIGHT - _ROOM / 2:g} H{_WIDTH - _ROOM / 2:g}" '
+        'fill="none" stroke="#999"/>'
+    )
+    text = 'font-size="11" font-family="sans-serif" fill="currentColor"'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{escape(" against ".join(names))}" '
+        f'width="{_WIDTH:g}" height="{_HEIGHT:g}" viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}">{frame}{spots}'
+        f'<text x="{_WIDTH / 2:g}" y="{_HEIGHT - 2:g}" text-anchor="middle" {text}>{escape(names[0])}</text>'
+        f'<text x="12" y="{_HEIGHT / 2:g}" text-anchor="middle" transform="rotate(-90 12 {_HEIGHT / 2:g})" {text}>'
+        f"{escape(names[1])}</text></svg>"
+    )
+
+
+def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
+    """Return every objective against the first as a matplotlib figure; of one alone its values in turn.
+
+    values: (n, m), as shown.
+    """
+    from matplotlib.figure import Figure
+
+    others = max(1, values.shape[1] - 1)
+    found = Figure(figsize=(6.4, 1.2 + 2.4 * others), layout="constrained")
+    for column, axes in enumerate(np.atleast_1d(found.subplots(others, 1, sharex=True)), start=1):
+        alone = values.shape[1] == 1
+        y = np.arange(len(values), dtype=np.float64) if alone else values[:, column]
+        axes.plot(values[:, 0], y, "o", markersize=4, alpha=0.7)
+        axes.set_ylabel("design" if alone else labels[column])
+        axes.set_xlabel(labels[0])
+    found.suptitle(title)
+    return found
+
+
+def _share(values: Array) -> Array:
+    low, span = values.min(initial=np.inf), np.ptp(values) if len(values) else 0.0
+    return np.full(len(values), 0.5) if not span > 0.0 else (values - low) / span
