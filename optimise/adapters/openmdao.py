@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.machine.numbers import unit_of
-from ...objectives.kinds import KINDS
 from ..problem.problem import Problem
 from .missing import require
 
@@ -48,7 +47,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
             for (name, unit), start in zip(inputs.items(), starts, strict=True):
                 self.add_input(name, val=start, units=_unit(unit))
             for name in names:
-                self.add_output(name, units=_unit(_si(problem, name)))
+                self.add_output(name, units=_unit(problem.quantity(name).kind.unit))
             self.declare_partials("*", "*")
 
         def compute(self, inputs_: DefaultVector, outputs: DefaultVector) -> None:
@@ -68,12 +67,6 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
         return [np.asarray(given[name]).item() for name in inputs]
 
     return SliderCrank()
-
-
-def _si(problem: Problem, name: str) -> str:
-    """Return the SI unit of a quantity; "" for a ratio and for a unit that no kind has."""
-    symbol = problem.quantity(name).unit.symbol
-    return next((kind.unit for kind in KINDS if kind.metric is not None and kind.metric.symbol == symbol), "")
 
 
 def _unit(symbol: str) -> str | None:

@@ -15,9 +15,9 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
-from ...objectives.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES, quantity
+from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from .causes import undefined_because, zero_because
 
 if TYPE_CHECKING:

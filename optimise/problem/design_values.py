@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
-from ...objectives.evaluate import evaluate_quantities
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import quantity
+from ...objectives.tables.evaluate import evaluate_quantities
 from .causes import undefined_because
 
 

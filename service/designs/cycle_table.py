@@ -26,9 +26,9 @@ class CurveColumn:
 def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) -> list[CurveColumn]:
     """Return the curves of one fully turning linkage at evenly spaced crank angles from 0 deg, in metric units.
 
-    They are those of `objectives.cycle_curves`; raises `InputError` for too few or too many angles.
+    They are those of `objectives.tables.cycle_curves`; raises `InputError` for too few or too many angles.
     """
-    from ...objectives.cycle_curves import cycle_curves, even_angles
+    from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     curves = cycle_curves(mechanism, linkage, even_angles(angles, MOST))
     return [

@@ -13,8 +13,8 @@ from slidercrank.model.machine.loads import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.dead_centres import torque_at_dead_centres
+from slidercrank.objectives.kinds import RATIO
 from slidercrank.objectives.own.quantity import OwnQuantity
-from slidercrank.objectives.quantity import RATIO
 from slidercrank.objectives.registry import QUANTITIES
 
 Array = NDArray[np.float64]
@@ -157,7 +157,7 @@ def test_what_cannot_be_evaluated_is_refused(given: object, names: list[str], wo
 
 
 def test_no_gradient_is_made_up_for_a_function_that_has_none() -> None:
-    own = OwnQuantity(name="mine", function=lambda d: d.crank[:, 0], title="mine", unit=RATIO, gradient="none")
+    own = OwnQuantity(name="mine", function=lambda d: d.crank[:, 0], title="mine", kind=RATIO, gradient="none")
     assert sc.evaluate(Mechanism(), designs(3), ["mine"], own=[own]).shape == (3, 1)
     with pytest.raises(InputError, match='gradient = "none"; got gradients=True'):
         sc.evaluate(Mechanism(), designs(3), ["mine"], gradients=True, own=[own])

@@ -8,14 +8,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from ..model.cycle.cycle import Cycle, cycle
-from ..model.errors import InputError
-from ..model.kinematics.position import motion
-from ..model.linkage.linkage import Linkage
-from ..model.machine.mechanism import Mechanism
-from ..model.signals.follow import third_derivative
-from .kinds import Face
-from .quantity import Array
+from ...model.cycle.cycle import Cycle, cycle
+from ...model.errors import InputError
+from ...model.kinematics.position import motion
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.follow import third_derivative
+from ..kinds import Face
+from ..quantity import Array
 
 LEAST, MOST = 4, 100_000
 _ANGLE = Face("rad", "_rad"), Face("deg", "_deg", 57.29577951308232)

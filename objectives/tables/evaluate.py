@@ -7,16 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.errors import InputError
-from ..model.machine.mechanism import Mechanism
-from ..model.signals.dead_centres import torque_at_dead_centres
-from ..model.signals.peaks import ANGLES
-from ..model.signals.screening import screen, screens
-from ..model.signals.signals import Signal
-from ..model.signals.watch import stroke_dependent
-from .cycle_peak import CyclePeak
-from .own.quantity import OwnQuantity
-from .quantity import Array, Quantity, Values
+from ...model.errors import InputError
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.dead_centres import torque_at_dead_centres
+from ...model.signals.peaks import ANGLES
+from ...model.signals.screening import screen, screens
+from ...model.signals.signals import Signal
+from ...model.signals.watch import stroke_dependent
+from ..cycle_peak import CyclePeak
+from ..own.quantity import OwnQuantity
+from ..quantity import Array, Quantity, Values
 
 _NEAR = 0.02
 """Share of the greatest torque within which that of a dead centre calls for the exact search: the peak may be its kink,
