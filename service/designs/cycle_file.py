@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 
 from ...objectives.kinds import System
 from ..runs.result import csv_text, rows_of
-from .cycle_table import cycle_table
 from .shown_units import rows_in
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
 
-
+_ANGLES = 360
 _MOTION = (
     *("crank_angle", "slider_position", "slider_velocity", "slider_acceleration", "slider_jerk"),
     *("rod_angle", "transmission_angle"),
@@ -21,9 +20,16 @@ _MOTION = (
 
 
 def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric", *, machine: bool = True) -> str:
-    """Return a row for each of 360 crank angles, a column for each curve of `cycle_table`; empty where not defined.
+    """Return a row for each of 360 crank angles, a column for each curve of `cycle_curves`; empty where not defined.
 
     machine: whether masses, loads and tolerances are known; else only the motion is given.
     """
-    curves = [curve for curve in cycle_table(mechanism, linkage) if machine or curve.key.startswith(_MOTION)]
-    return csv_text(rows_in(rows_of({curve.key: curve.values for curve in curves}), system))
+    from ...objectives.cycle_curves import cycle_curves, even_angles
+
+    curves = cycle_curves(mechanism, linkage, even_angles(_ANGLES))
+    columns = {
+        curve.field: (curve.shown.factor * curve.values).tolist()
+        for curve in curves
+        if machine or curve.name in _MOTION
+    }
+    return csv_text(rows_in(rows_of(columns), system))

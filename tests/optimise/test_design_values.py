@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.loads import StrokeForce
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.dead_centres import torque_at_dead_centres

@@ -51,9 +51,9 @@ def test_misspelt_names_fail_and_the_others_have_types(tmp_path: Path, pytestcon
     told = [line for line in done.stdout.splitlines() if "script.py" in line]
     types = [found[1] for line in told if (found := re.search(r'Revealed type is "(.*)"', line))]
     assert len(types) == len(SHOWN), done.stdout + done.stderr
-    for found, wanted in zip(types, SHOWN, strict=True):
-        assert wanted in found
-        assert found != "Any"
+    for shown, wanted in zip(types, SHOWN, strict=True):
+        assert wanted in shown
+        assert shown != "Any"
     errors = [line for line in told if " error: " in line]
     assert len(errors) == len(WRONG), "\n".join(errors)
     for line, name in zip(errors, WRONG, strict=True):
