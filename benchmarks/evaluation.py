@@ -1,4 +1,4 @@
-"""How fast four objectives with gradients are evaluated, against NumPy on the same angles; how much memory it takes."""
+"""Speed of evaluating four objectives with gradients, against NumPy on the same angles, and the memory it takes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much hypervolume every method has reached after how much time, on the shipped jobs, beside peers; one figure.
+"""Hypervolume of every method over time, on the shipped jobs, against peers; one figure.
 
 The peers are NSGA-II and NSGA-III of pymoo and MOEA/D of pygmo.
 """
@@ -40,7 +40,7 @@ _PENALTY = 1e3  # of the objectives' range: MOEA/D takes no constraints, so that
 
 @dataclass(frozen=True)
 class Course:
-    """What a method had reached when. seconds, hypervolumes: (rounds,), of the default's front."""
+    """Course of a method over time. seconds, hypervolumes: (rounds,), of the default's front."""
 
     method: str
     seconds: Array

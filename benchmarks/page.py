@@ -1,4 +1,4 @@
-"""How quick the page is with a front of 10,000 designs, and how heavy: `python -m benchmarks.page`.
+"""Speed and size of the page with a front of 10,000 designs: `python -m benchmarks.page`.
 
 First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that
 has read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows

@@ -1,4 +1,4 @@
-"""How smoothly a design moves on the page, and how soon "what if" is answered: `python -m benchmarks.page_design`.
+"""Smoothness of a moving design on the page, and delay of an answer to "what if": `python -m benchmarks.page_design`.
 
 Frames: the times that the browser gives to the frames of three seconds of play, for one design and for three side by
 side with their forces. What if: from a movement of a length to the end of the frame that shows mechanism, curves,

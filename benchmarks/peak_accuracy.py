@@ -1,4 +1,4 @@
-"""How many sampled angles a turn the peak search needs: the origin of `model.peaks.ANGLES`."""
+"""Number of sampled angles a turn that the peak search needs: the origin of `model.peaks.ANGLES`."""
 
 from __future__ import annotations
 

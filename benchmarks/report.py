@@ -14,7 +14,7 @@ from rich.table import Table
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured, several times, and the limit that its median must keep; or its greatest figure, if `worst`."""
+    """A repeated measurement, and the limit that its median must keep; or its greatest figure, if `worst`."""
 
     what: str
     figures: list[float]
@@ -31,7 +31,7 @@ class Row:
         return None
 
     def cells(self) -> tuple[str, str, str, str, str]:
-        """Return what, median, range, limit and verdict."""
+        """Return name, median, range, limit and verdict."""
         limit = "" if self.at_least is None else f">= {self.at_least:g}"
         limit = limit if self.at_most is None else f"<= {self.at_most:g}"
         verdict = {None: "", True: "kept", False: "MISSED"}[self.kept()]

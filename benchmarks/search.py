@@ -1,4 +1,4 @@
-"""How soon and how well the front is found, against pymoo's NSGA-II on the same kernel and reduced problem."""
+"""Time to the front and its quality, against pymoo's NSGA-II on the same kernel and reduced problem."""
 
 from __future__ import annotations
 

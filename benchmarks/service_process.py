@@ -60,7 +60,7 @@ def service(address: str, folder: Path, *, workers: int) -> Iterator[Service]:
 
 
 def headers() -> dict[str, str]:
-    """Return what every request carries."""
+    """Return the headers of every request."""
     return {"Authorization": f"Bearer {TOKEN}"}
 
 

@@ -1,4 +1,4 @@
-"""How long commands take from the shell, the second time."""
+"""Time that commands take from the shell, the second time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How quick a store with 10,000 runs and a million designs is: `python -m benchmarks.store_scale`.
+"""Speed of a store with 10,000 runs and a million designs: `python -m benchmarks.store_scale`.
 
 Runs, designs, events and files are made up; their columns, widths and lengths are those of a run of the feeder.
 """

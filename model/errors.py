@@ -42,7 +42,7 @@ class JobError(InputError):
 
 
 class NotFound(InputError):
-    """What was asked for by its name or number is not there."""
+    """The object that a name or number asks for does not exist."""
 
 
 class MissingExtra(SlidercrankError, ImportError):

@@ -1,4 +1,4 @@
-"""Kinds of physical values, and the units that they are shown in: one table for files, tables, figures and the page.
+"""Kinds of physical values and their display units: one table for files, tables, figures and the page.
 
 SI inside, always. A metric face is what columns and JSON have; an inch face what a reader of US customary units asks
 for: inch, pound-mass, pound-force, second, and what is made of these; horsepower and psi where the field has them.
@@ -242,7 +242,7 @@ SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
 
 
 def shown_in(symbol: str, system: System) -> tuple[str, float]:
-    """Return the unit that a system shows for a metric one, and the value of one of the metric unit in it.
+    """Return the unit in which a system shows a metric one, and the metric unit's value in it.
 
     "mm" is ("in", 1 / 25.4) in the inch system. A unit that is no metric one of `SHOWN`, such as one of an own
     quantity, stays as it is.
@@ -254,7 +254,7 @@ def shown_in(symbol: str, system: System) -> tuple[str, float]:
 
 
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
-    """Return the kind of a value that is shown in any unit, with the suffix that follows from the unit's symbol.
+    """Return the kind of a value shown in any unit, its suffix made from the unit's symbol.
 
     factor: what one SI unit is in it. kind: that of the table, if it is known; else one named after the unit.
     """

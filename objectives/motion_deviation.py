@@ -47,11 +47,11 @@ class MotionDeviation(Quantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
         found = fit_pieces(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
-        more = dimensions.shape[1] - 3  # what varies beside the dimensions does not move the slider
+        more = dimensions.shape[1] - 3  # what varies besides the dimensions does not move the slider
         return Pieces(found.values, np.pad(found.gradients, ((0, 0), (0, 0), (0, more))), found.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
-        """Return phase (deg) and shift (mm) of the best fit for designs (n, 3), each if it is free, by column."""
+        """Return the best fit's phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
         found: Fit = fit(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""

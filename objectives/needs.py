@@ -14,7 +14,7 @@ Without = Literal["undefined", "equal", "zero"]
 
 @dataclass(frozen=True)
 class Need:
-    """What a machine must have.
+    """A requirement of a quantity on the machine.
 
     met: whether a machine has it; one with varying numbers, whether it may have it. missing: rule, value and remedy;
     "{instead}" stands for the quantities that serve without. without: what becomes of the quantity: it is undefined,

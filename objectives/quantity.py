@@ -1,4 +1,4 @@
-"""A quantity and its facts: all that anyone asks about a number that can be an objective or stand in a constraint."""
+"""A quantity and its facts: everything asked about a number that is an objective or stands in a constraint."""
 
 from __future__ import annotations
 

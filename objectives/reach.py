@@ -42,7 +42,7 @@ class Ranges:
 
 @dataclass(frozen=True, kw_only=True)
 class Reach:
-    """Bounds of a quantity within ranges, SI, and in words how the ranges must change for more or less of it."""
+    """Bounds of a quantity within ranges, SI, and in words the change of ranges for more or less of it."""
 
     bounds: Callable[[Ranges], tuple[float, float]]
     more: str

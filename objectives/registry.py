@@ -30,7 +30,7 @@ QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.it
 def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:
     """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
 
-    own: quantities that a problem has beside those that every one has. Where there is a problem, ask it: it has its own
+    own: quantities of a problem besides those that every one has. Where there is a problem, ask it: it has its own
     (`Problem.quantity`).
     """
     known = QUANTITIES | {of.name: of for of in own}

@@ -1,4 +1,4 @@
-"""The approximate models beside the exact one, over crank angle and over offset."""
+"""The approximate models against the exact one, over crank angle and over offset."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The two-mass rod: the rod replaced by a point mass at each pin, one turning with the crank, one with the slider.
+"""Two-mass model of the rod: a point mass at the crank pin, and one at the slider pin.
 
 By its mass centre at the distance a from the crank pin and b = l - a from the slider pin: m b / l at the crank pin,
 m a / l at the slider pin. Mass and mass centre are kept; the inertia about the mass centre becomes m a b, so that the

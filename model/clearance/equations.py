@@ -1,4 +1,4 @@
-r"""Equations of motion of the linkage when one of its pins is loose in its bearing and the crank turns steadily.
+r"""Equations of motion of a linkage with one pin loose in its bearing and a steadily turning crank.
 
 Whichever pin is loose, the linkage keeps two degrees of freedom besides the crank angle theta: slider position x and
 rod angle phi. With complex numbers for vectors in the plane, the loop of the ideal linkage fails to close by the *gap*
@@ -72,7 +72,7 @@ class System(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where the linkage is: directions of crank and rod as complex numbers, and the coordinates with their speeds."""
+    """Place of the linkage: directions of crank and rod as complex numbers, and the coordinates with their speeds."""
 
     crank: Any
     rod: Any
@@ -195,7 +195,7 @@ def rates(time: float, y: Any, rate: float, outward: bool, s: System, block: Any
 
 @kernel
 def observe(times: Any, y: Any, rate: Any, outward: Any, s: System, block: Any, loads: Any) -> Any:
-    """Return what is reported of states (7, n), as (10, n).
+    """Return the reported quantities of states (7, n), as (10, n).
 
     Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,
     potential and elastic energy.

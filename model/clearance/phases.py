@@ -30,7 +30,7 @@ _ASK = 64
 
 @dataclass
 class Trace:
-    """What an integration leaves, in pieces: times, states (7, n), damping rates, strokes; times and speeds of impacts.
+    """Pieces of an integration: times, states (7, n), damping rates, strokes; times and speeds of impacts.
 
     A time comes twice where a phase ends and the next one begins.
     """

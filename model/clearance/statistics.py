@@ -1,4 +1,4 @@
-"""What a run with a loose joint amounts to: statistics over the turns of the crank, each with its uncertainty."""
+"""Statistics of a run with a loose joint over the turns of the crank, each with its uncertainty."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ def _breakpoints(raw: Any, loads: Any, watch: Any, out: Any, rubbing: Any) -> An
 
 
 def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the crank angles (k,) in [0, 2 pi), rad, at which torque and forces of one linkage may jump or kink.
+    """Return the crank angles (k,) in [0, 2 pi), rad, of possible jumps and kinks in torque and forces.
 
     At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
     """

@@ -1,4 +1,4 @@
-"""Where the work of a cycle goes: load, friction of each joint, kinetic energy.
+"""Work balance of a cycle: load, friction of each joint, kinetic energy.
 
 Per turn, with dt = dtheta / w at constant speed:
 

@@ -132,7 +132,7 @@ def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]
 
 
 def _balances(d: Design, theta: float, load: float) -> bool:
-    """Return whether h has a root where its two ends point the same way: whether it comes to the other side of zero."""
+    """Return whether h has a root although its two ends point the same way: whether it crosses zero between."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
     b: Balance = balance(sine, cosine, m, d, load)

@@ -56,7 +56,7 @@ def sides_of(
 def cut_contacts(
     d: Any, block: Any, j: Any, loads: Any, watch: Watch, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
-    """Add the cuts where the guide's force changes sides to the `count` cuts there are; return how many there are then.
+    """Add cuts where the guide's force changes sides to the first `count` cuts; return their new number.
 
     Found between neighbouring samples: two changes within one spacing, where the force is next to nothing, are passed
     over; the curves follow the one side there, off by no more than the friction of that force.

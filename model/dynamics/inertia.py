@@ -1,4 +1,4 @@
-"""What the moving masses do by themselves: reflected inertia, shaking force and shaking moment.
+"""Inertia effects of the moving masses: reflected inertia, shaking force and shaking moment.
 
 With A the crank pin, S the rod's first moment about it, C that of the crank (counterweight included) about the pivot:
 

@@ -27,11 +27,11 @@ _TURN = 2.0 * math.pi
 _STILL = 1e-13
 """|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
 ROOM = 40
-"""Breakpoints there is room for, beside two for each knot: 8 at most, and those that friction makes."""
+"""Breakpoints there is room for, besides two for each knot: 8 at most, and those that friction makes."""
 
 
 class Watch(NamedTuple):
-    """Which part of the cycle counts, and what is a breakpoint.
+    """The counted part of the cycle, and the kinds of breakpoints in it.
 
     strokes: 0 the cycle, 1 the outward stroke, 2 the inward stroke. start, end: fractions of the stroke from the inner
     dead centre. split: whether a load or friction changes at the dead centres. swing: whether friction changes where
@@ -157,7 +157,7 @@ def within(a: float, b: float) -> float:
 
 @inlined
 def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
-    """Fix the piece of every table at a crank angle and a distance x of the slider from the crank pivot."""
+    """Fix the piece of every table at a crank angle and a slider distance x from the crank pivot."""
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if first == last:

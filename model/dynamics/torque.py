@@ -44,7 +44,7 @@ def smooth_load(m: Motion, d: Design, stroke_force: Any) -> Any:
 
 
 class Balance(NamedTuple):
-    """What the equations of motion leave before the slider pin's force is known, N and N m.
+    """Terms of the equations of motion before the slider pin's force is known, N and N m.
 
     pull: B_x without friction in the guide. moment: I_A phi_tt + S x (a_A - G) of the rod. rod_x, rod_y: A - B.
     crank_x, crank_y: P - A. couple: the torque without the crank pin's share.

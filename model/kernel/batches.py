@@ -16,7 +16,7 @@ from ..errors import AssemblyError
 
 
 def turning(designs: ArrayLike) -> NDArray[np.float64]:
-    """Return designs (n, 3 + k), crank, rod, offset, m, and more, as a contiguous array; every one must turn fully.
+    """Return designs (n, 3 + k) of full rotation as a contiguous array: crank, rod, offset, m, and more.
 
     Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.
     """

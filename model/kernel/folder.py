@@ -28,7 +28,7 @@ _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 
 
 class Chosen(NamedTuple):
-    """Where kernels are kept: the folder if there is one, whether it was just made, and why places were refused."""
+    """Choice of a folder for kernels: the folder if any, whether it is new, and why places were refused."""
 
     folder: Path | None
     new: bool

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class ClosedForm(IntEnum):
-    """Which quantity: time ratio, least transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
+    """Quantities of closed form: time ratio, least transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
 
     TIME_RATIO = 0
     TRANSMISSION_ANGLE = 1

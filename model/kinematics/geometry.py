@@ -42,19 +42,19 @@ def outer_crank_angle(r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def inner_crank_angle(r: Any, l: Any, e: Any) -> Any:
-    """Return the crank angle of the inner dead centre on the open branch, pi + asin(e / (l - r)), rad."""
+    """Return the crank angle of the inner dead centre (open branch), pi + asin(e / (l - r)), rad."""
     return math.pi + arcsine(e * inverse(l - r))
 
 
 @analytic
 def excess_angle(r: Any, l: Any, e: Any) -> Any:
-    """Return by how much one stroke's crank angle exceeds pi: asin(e/(l - r)) - asin(e/(l + r)), rad, sign of e."""
+    """Return the excess of a stroke's crank angle over pi, asin(e/(l - r)) - asin(e/(l + r)), rad. Sign of e."""
     return arcsine(e * inverse(l - r)) - arcsine(e * inverse(l + r))
 
 
 @analytic
 def time_ratio(r: Any, l: Any, e: Any) -> Any:
-    """Return the duration of the slower stroke over that of the faster, (pi + b) / (pi - b), for an offset e >= 0."""
+    """Return the slower stroke's duration over the faster's, (pi + b) / (pi - b), for offset e >= 0."""
     b = excess_angle(r, l, e)
     return (math.pi + b) * inverse(math.pi - b)
 
@@ -99,7 +99,7 @@ def rod_from_stroke(stroke: Any, r: Any, e: Any) -> Any:
 
 @analytic
 def offset_from_stroke(stroke: Any, r: Any, l: Any) -> Any:
-    """Return the offset >= 0, m, that gives the stroke with crank r and rod l; same relation, solved for e.
+    """Return the offset >= 0, m, that gives the stroke with crank r and rod l; same relation.
 
     e^2 = l^2 + r^2 - S^2/4 - 4 l^2 r^2 / S^2 = (S^2/4 - r^2) (4 l^2 / S^2 - 1).
     """

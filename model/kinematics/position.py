@@ -48,7 +48,7 @@ class Motion(NamedTuple):
 
 @analytic
 def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motion:
-    """Return the `Motion` for sine and cosine of the crank angle, crank r, rod l, offset e (m) and branch (+1, -1).
+    """Return the `Motion` from sine and cosine of the crank angle, r, l, e (m) and branch (+1, -1).
 
     Differentiating the two loop equations once and twice gives
     phi' = -r cos(theta) / (l cos(phi)),  phi'' = (r sin(theta) + l sin(phi) phi'^2) / (l cos(phi)),
@@ -61,7 +61,7 @@ def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motio
 
 @analytic
 def motion_of(sine: Any, cosine: Any, r: Any, across: Any, along: Any) -> Motion:
-    """Return the `Motion` for sine and cosine of the crank angle, crank r and the components of the rod vector, m."""
+    """Return the `Motion` from sine and cosine of the crank angle, crank r and the rod vector's components, m."""
     per_along = inverse(along)
     tangent = across * per_along
     rod_1 = -r * cosine * per_along

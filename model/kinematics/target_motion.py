@@ -1,4 +1,4 @@
-"""How far the slider's motion is from a wanted one, given as points (crank angle, position).
+"""Deviation of the slider's motion from a wanted one, given as points (crank angle, position).
 
 With x the slider's distance from the crank pivot along its line and (theta_i, t_i) the points, the deviations are
 
@@ -76,7 +76,7 @@ class TargetMotion:
 
 
 class Fit(NamedTuple):
-    """The least deviation of n designs: (n,), m, with the phase, rad, in [-pi, pi) and the shift, m, that give it."""
+    """The least deviation (n,), m, of n designs, with its phase, rad, in [-pi, pi) and shift, m."""
 
     values: Array
     phase: Array

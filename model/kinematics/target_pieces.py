@@ -99,7 +99,7 @@ class _Sides(NamedTuple):
 
     @classmethod
     def at(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
-        """Return the local peaks over the points of both signs; with the shift free, half the sums of two of them."""
+        """Return the local peaks of both signs over the points; with the shift free, half-sums of pairs."""
         m = _points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
         slopes = _slopes(target, branch, phase, designs)

@@ -69,7 +69,7 @@ def _tells(load: Load) -> bool:
 
 
 def _path(linkage: Linkage, *, outward: bool, direction: float) -> tuple[Array, Array]:
-    """Return crank angles (n, m) between the steps of a stroke, and distances (n, m + 1) outward at their ends."""
+    """Return mid-step crank angles (n, m) of a stroke, and outward distances (n, m + 1) at the step ends."""
     inner, outer = (np.atleast_1d(angle)[:, None] for angle in linkage.dead_centre_angles)
     begin, end = (inner, outer) if outward else (outer, inner)
     turn = direction * np.mod(direction * (end - begin), 2.0 * math.pi)

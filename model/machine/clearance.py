@@ -34,7 +34,7 @@ class Clearance:
     restitution: e, ratio of the speeds after and before an impact, above 0 and at most 1.
     friction: coefficient between journal and bearing, with the tangential force
     mu F v / sqrt(v^2 + slip_speed^2) against the sliding velocity v. slip_speed: m/s, below which friction fades;
-    the default is small beside the sliding of any pin that turns.
+    the default is small next to the sliding of any pin that turns.
     law: of the damping, see above.
     elastic_modulus, poisson: of journal and bearing, Pa; steel if not given. stiffness: K, N/m^1.5; Hertz's if None.
     slow_impact: m/s; impacts slower than this have the damping of this one. It keeps the damping finite where a

@@ -1,4 +1,4 @@
-"""What drives the crank: the torque law of a motor over its speed, a gear, and the inertias that turn with it.
+"""Drive of the crank: the torque law of a motor over speed, a gear, and the inertias turning with it.
 
 Motor speed and motor torque are counted positive in the direction in which the motor is meant to turn; a `Drive` turns
 that into the crank's, which is the direction of the mechanism's speed.
@@ -151,7 +151,7 @@ class Drive:
 
     @property
     def inertia(self) -> float:
-        """What turns with the crank besides the mechanism, seen at the crank: flywheel + ratio^2 motor, kg m^2."""
+        """Inertia turning with the crank besides the mechanism, seen at the crank: flywheel + ratio^2 motor, kg m^2."""
         return self.flywheel + self.gear_ratio**2 * self.motor_inertia
 
     def torque(self, crank_speed: ArrayLike, direction: float) -> NDArray[np.float64]:

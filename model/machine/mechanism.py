@@ -20,7 +20,7 @@ Branch = Literal["open", "crossed"]
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerance:
-    """How far a dimension may be off: `absolute + fraction |dimension|`. absolute: m (rad for an angle)."""
+    """Tolerance of a dimension: `absolute + fraction |dimension|`. absolute: m (rad for an angle)."""
 
     absolute: float = 0.0
     fraction: float = 0.0
@@ -143,7 +143,7 @@ class Mechanism:
     def direction(self) -> float:
         """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
 
-        A speed that varies has one sign; it is that of the designs, whatever the speed that is given beside.
+        A speed that varies has one sign; it is that of the designs, whatever other speed is given.
         """
         return -1.0 if self.fullest.speed < 0.0 else 1.0
 

@@ -1,4 +1,4 @@
-"""From designs to raw numbers: which raw numbers the designs of a machine set, and how they follow from a design.
+"""Raw numbers that the designs of a machine set, and their derivation from a design.
 
 A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. What a kernel
 overwrites are raw numbers (`parameters.Raw`). Most are a factor times one value; the counterweight's mass centre is
@@ -117,7 +117,10 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bo
 
 
 def number_of(mechanism: Mechanism, slot: Raw, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
-    """Return one raw number of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k); `otherwise` if it is given."""
+    """Return one raw number (n,) of designs (n, 3 + k) and its derivatives (n, 3 + k).
+
+    `otherwise`: unless designs set it.
+    """
     found = numbers_of(mechanism, designs, room=10**9, gradients=True)
     place = np.flatnonzero(found.columns == slot)
     if found.slopes is None or not len(place):

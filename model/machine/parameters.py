@@ -1,6 +1,6 @@
 """All numbers of a machine as one vector, and the design properties that follow from them.
 
-A kernel takes the vector of raw numbers (`RAW` names its entries; loads follow, `LOAD_SLOTS` each) and overwrites the
+A kernel takes the vector of raw numbers (`Raw` names its entries; loads follow, `LOAD_SLOTS` each) and overwrites the
 entries that vary from design to design. `derive` turns raw numbers into a `Design`: the masses, moments and forces that
 the equations of motion use. Because `derive` is compiled for complex numbers too, anything in the vector can be a
 design variable and has an exact derivative.
@@ -67,7 +67,7 @@ class Loads(NamedTuple):
 
 
 class Design(NamedTuple):
-    """What the equations of motion need of one design (scalars) or of many (arrays). SI.
+    """Numbers of one design (scalars) or of many (arrays) for the equations of motion. SI.
 
     Mass moments are about the crank pivot (crank) or the crank pin (rod), in the link's own axes; rod_along and
     rod_across are per rod length, kg.

@@ -1,4 +1,4 @@
-"""Numbers of a machine that differ from design to design, beside crank, rod and offset."""
+"""Numbers of a machine that differ from design to design, besides crank, rod and offset."""
 
 from __future__ import annotations
 

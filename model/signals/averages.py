@@ -51,7 +51,7 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Averages:
-    """Mean and RMS value of a curve over crank angle, of n designs: (n,), with gradients (n, 3 + k) or None.
+    """Mean and RMS values (n,) over crank angle of n designs' curves; gradients (n, 3 + k) or None.
 
     Where friction locks a design the mean is NaN and the RMS value infinite.
     """
@@ -230,7 +230,7 @@ def _rule() -> tuple[Array, Array, Array]:
 
 
 def _gaps(crank: Array, rod: Array, offset: Array) -> Array:
-    """Return l - r - |e|, exact to rounding of itself: the error of the first difference is added (Knuth's two-sum)."""
+    """Return l - r - |e|, exact to its own rounding: the first difference's error is added (Knuth's two-sum)."""
     first = rod - crank
     back = first - rod
     return np.asarray((first - np.abs(offset)) + ((rod - (first - back)) - (crank + back)))
@@ -242,7 +242,7 @@ def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = Fa
 
 
 def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS value of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
+    """Return mean and RMS value of a signal for fully turning designs (n, 3 + k): crank, rod, offset, m.
 
     The k columns more are the values of the machine's varying numbers.
     The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no

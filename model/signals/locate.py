@@ -1,4 +1,4 @@
-"""Where the peaks of very many designs are: the curves sampled in single precision, and each one's highest samples.
+"""Location of the peaks of very many designs: the curves sampled in single precision, and each one's highest samples.
 
 The sweep only has to find the cell that a peak lies in; `screening` refines it in double precision, by the formulas of
 `signals`. Single precision is twice as fast and enough: near locking rounding grows to 1e-7 l / (l - r - |e|), but so
@@ -167,7 +167,7 @@ def row_of(kind: Any) -> Any:
 
 @inlined
 def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
-    """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and those next to the ends.
+    """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and the wrapped ends.
 
     Torque and worst case come together, asked for or not: two ways to compute a curve would round differently, and a
     result would depend on what else was asked for.

@@ -1,4 +1,4 @@
-"""How errors of the dimensions and of the crank angle move the slider, to first order.
+"""First-order influence of errors of dimensions and crank angle on the slider position.
 
 dx = (dx/dr) dr + (dx/dl) dl + (dx/de) de + (dx/dtheta) dtheta, with
 dx/dr = cos(theta - phi) / cos(phi), dx/dl = 1 / cos(phi), dx/de = -tan(phi),

@@ -14,7 +14,7 @@ from .position_error import influences, root_sum_square, worst_case
 
 
 class Signal(IntEnum):
-    """What is watched over the cycle, each by its size.
+    """A signal that is watched over the cycle by its size.
 
     Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
     shaking force (N) and shaking moment (N m).

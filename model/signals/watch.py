@@ -1,4 +1,4 @@
-"""What a signal of a machine needs to be followed over the cycle: loads, and where its curve is piecewise."""
+"""Inputs for following a signal over the cycle: loads, and the places where its curve is piecewise."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def shares(parts: Array) -> Array:
 
 
 def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
-    """Return a bound (m,), m, on |x - x_0 - first order| over all deviations within the limits, at crank angles (m,).
+    """Return a bound (m,), m, on |x - x_0 - first order| within the limits, at crank angles (m,).
 
     Taylor's theorem: half the sum over pairs of |second derivative| T_i T_j, with bounds of the second derivatives over
     the whole box. With q = e - r sin(theta) and h = sqrt(l^2 - q^2), x = r cos(theta) + h, those of h are

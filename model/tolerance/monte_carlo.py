@@ -29,7 +29,7 @@ _MOST = 100_000_000  # errors kept: 0.8 GB
 
 @dataclass(frozen=True)
 class Simulation:
-    """What n machines do.
+    """Errors of n simulated machines.
 
     crank_angle: (m,), rad. errors: (n, m), m: slider position less the one meant, along +x.
     greatest: (n,), m: size of the greatest error over the counted part of the cycle, at sampled angles.

@@ -1,4 +1,4 @@
-"""Where a position error comes from: every dimension, the crank angle and every clearance as one source each."""
+"""Sources of a position error: every dimension, the crank angle and every clearance as one source each."""
 
 from __future__ import annotations
 

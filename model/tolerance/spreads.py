@@ -1,4 +1,4 @@
-"""How errors are spread within their limits: the distributions that a Monte Carlo simulation draws from."""
+"""Distributions of errors within their limits: the distributions that a Monte Carlo simulation draws from."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Spreads:
 
     @property
     def variances(self) -> Array:
-        """Variance of each source, (8,), in units of its squared limit: of a pin, that of the part along the rod."""
+        """Variance of each source, (8,), in units of its squared limit; of a pin, the part along the rod."""
         pin, guide = {"along the rod": (1.0, 1.0), "any direction": (0.5, 1.0), "anywhere": (0.25, 1.0 / 3.0)}[
             self.contact
         ]
@@ -92,7 +92,7 @@ class Spreads:
 
 @dataclass(frozen=True)
 class Draw:
-    """Errors of n machines, each (n,): crank, rod, offset, m, crank angle, rad, and where the crank pin is off, m."""
+    """Errors of n machines, each (n,): crank, rod, offset, m; crank angle, rad; crank pin position, m."""
 
     crank: Array
     rod: Array

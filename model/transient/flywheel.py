@@ -5,7 +5,7 @@ needs, and the greatest change dE of the energy, the integral of mean T - T, bet
 
     J = dE / (delta w^2),    delta = (w_max - w_min) / w_mean.
 
-It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected beside
+It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected next to
 J. The exact J is a root search on steady running, whose speed is that of the equation of motion. w_mean is 2 pi over
 the time of a turn, not the middle of w_max and w_min: a crank that nearly stops has any delta above 1, without bound.
 The search is for 1 / delta, which is nearly linear in J, and 0 where the crank does not come through the turn.

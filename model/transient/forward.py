@@ -31,7 +31,7 @@ _EPS = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class State:
-    """Where the crank is, rad, and how fast it turns, rad/s, counter-clockwise."""
+    """Crank angle, rad, and crank speed, rad/s, counter-clockwise."""
 
     angle: float = 0.0
     speed: float = 0.0
@@ -43,7 +43,7 @@ class State:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a simulation is: time, s, of at most `duration`; turns made, backward ones negative; speed, rad/s."""
+    """Progress of a simulation: time, s, of at most `duration`; turns made, backward ones negative; speed, rad/s."""
 
     time: float
     duration: float
@@ -164,7 +164,7 @@ class _Run:
             self._lift(self.index == len(breakpoints) - 1)
 
     def result(self, verdict: Verdict) -> Transient:
-        """Return what was found so far."""
+        """Return the motion found so far, with a verdict."""
         self.recorder.stand(self._stretch(self.way or self.equation.direction), self.turn, self.time, self._y())
         return self.recorder.result(verdict, tuple(self.turned_back))
 

@@ -23,8 +23,7 @@ from .equation import TURN, Array
 Function = Callable[[Array], ArrayLike]
 
 _CLOSE = 1e-4
-"""How far a derivative that is given may be off the slope of its function, as a share of the greatest: a check against
-mistaken ones."""
+"""Greatest error of a given derivative against its function's slope, as a share of the greatest: finds mistakes."""
 _STEP = 1e-4
 """Step of the differences that check it, as a share of the distance between points."""
 

@@ -1,4 +1,4 @@
-"""What a forward simulation found: the motion over time, and the energy balance that tells whether to believe it."""
+"""Result of a forward simulation: the motion over time, and the energy balance that tests it."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Transient:
 
     @property
     def message(self) -> str:
-        """What the verdict means, with the time at which it came."""
+        """The verdict in words, with the time at which it came."""
         return f"after {self.time[-1]:.4g} s and {self.turns:.4g} turns: {_SAID[self.verdict]}"
 
     @property
@@ -66,7 +66,7 @@ class Transient:
 
     @property
     def imbalance(self) -> float:
-        """Greatest error of the energy balance, as a share of the greatest of the energies and works; 0 if all are 0.
+        """Greatest error of the energy balance, as a share of the greatest energy or work; 0 if all are 0.
 
         Kinetic energy gained + potential gained - (work of the motor - work on the loads).
         """

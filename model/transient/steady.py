@@ -19,7 +19,7 @@ from .turn import Guess, PeriodicTurn, Profile, Torque
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyRunning:
-    """One turn of steady running, arrays (n,) in the order of time, SI and radians; extremes of speed are among them.
+    """One turn of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
 
     crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: on the crank, N m,
     counter-clockwise. torque: what the mechanism takes of it. mean_speed: 2 pi / period, with its sign. work: of the
@@ -100,7 +100,7 @@ class Runner:
         else:
             raise InputError(
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
-                f"{inertia:.6g} kg m^2 beside the mechanism; add a flywheel or turn faster"
+                f"{inertia:.6g} kg m^2 besides the mechanism; add a flywheel or turn faster"
             )
         turn, profile = solved
         if not self.works:  # what cancels leaves rounding
@@ -170,7 +170,7 @@ class Runner:
         return min(found, key=lambda speed: abs(speed - self.speed)) if self.speed else found[0]
 
     def energy_change(self, speed: float) -> float:
-        """Return the range over a turn of the integral of mean T - T at a constant speed, J; speed: rad/s, its size."""
+        """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: rad/s, its size."""
         torque = self.turn.terms.torque(self.turn.way * speed, 0.0)
         starts, nodes = self.turn.integral(self.turn.mean(torque) - torque)
         return float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))

@@ -55,7 +55,7 @@ class Profile:
 
 
 class PeriodicTurn:
-    """The terms of the equation of motion on the nodes of a turn, in the order in which the crank passes them.
+    """Terms of the equation of motion on the nodes of a turn, in the order of the crank's passage.
 
     angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
     cuts: crank angles, rad, at which panels end besides.

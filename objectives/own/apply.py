@@ -23,12 +23,12 @@ PIECES = 32
 
 
 class Refused(Exception):
-    """What a function did wrong, in words: rule, value, place and remedy."""
+    """Fault of a function, in words: rule, value, place and remedy."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a function returned for n designs, as the greatest of k pieces.
+    """Answer of a function for n designs, as the greatest of k pieces.
 
     values: (n, k), SI. slopes: their derivatives by the dimension that was stepped, or None. angles: of peaks, or None.
     """

@@ -1,4 +1,4 @@
-"""The process that runs a function of your own: it may end, hang or print as it likes, and nothing else is hurt.
+"""Process that runs a function of your own: it may end, hang or print without harm to others.
 
 Requests come pickled on standard input; answers go out as length, kind and raw numbers, so that nothing which the
 function makes is ever unpickled. What the function prints goes to standard error.

@@ -1,4 +1,4 @@
-"""What a function of your own is given: designs, and everything that they do over the cycle."""
+"""Arguments of a function of your own: designs, and everything that they do over the cycle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A question asked while a function of your own is at work: by raising, it ends the call and the function's process."""
+"""Interruption of a function of your own: a callback polled during a call ends it, and the process, by raising."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ FAREWELL = 0.5
 
 @dataclass
 class Interruption:
-    """What may end calls. farewell: time that they still have then, s. killed: whether one did not end in that time."""
+    """Callback that may end calls by raising.
+
+    farewell: time that they still have then, s. killed: whether one did not end in that time.
+    """
 
     poll: Poll
     farewell: float = FAREWELL

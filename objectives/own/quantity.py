@@ -27,7 +27,7 @@ GROUP = "slidercrank.quantities"
 LIMIT = 30.0
 """s; what a call of at most `_BATCH` designs may take unless the job says otherwise."""
 _BATCH = 256
-_STEP = 2e-5  # of the nearest of locking and a crank of zero: truncation 4e-10 beside rounding 5e-12
+_STEP = 2e-5  # of the nearest of locking and a crank of zero: truncation 4e-10 next to rounding 5e-12
 _WITNESSES = 3  # designs on which a complex step is compared with differences
 _AGREE = 1e-4  # of the gradient's size
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
@@ -37,7 +37,7 @@ Call = Callable[[Mechanism, Array, int | None], Answer]
 
 
 class _Session:
-    """What is kept between calls: the process, and for which machines the gradient has been checked.
+    """State kept between calls: the process, and the machines for which the gradient has been checked.
 
     A copy in another process starts a process of its own but does not check again: what it is given there may be one
     design, and that on a kink.
@@ -258,7 +258,7 @@ class OwnQuantity(Quantity):
 
 
 def bounded(quantity: Quantity, longest: float) -> Quantity:
-    """Return a quantity whose calls of own functions take at most so long, s; also one that is made of such a one."""
+    """Return a quantity whose own functions take at most `longest` s a call, even inside another quantity."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
     inner = getattr(quantity, "inner", None)

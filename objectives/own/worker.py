@@ -44,7 +44,7 @@ _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 
 
 def _forget_all() -> None:
-    """In a fork: leave all processes of functions to the one that started them."""
+    """Leave all processes of functions, in a fork, to the process that started them."""
     for worker in list(_running):
         worker.forget()
     _running.clear()
@@ -143,7 +143,10 @@ class Worker:
         return content
 
     def _next(self, limit: float) -> Message:
-        """Return what the process says next, nothing if it has ended. What interrupts ends a process that is slow."""
+        """Return the next message of the process, nothing if it has ended.
+
+        What interrupts ends a process that is slow.
+        """
         # The child watches its time itself; this is for a child that cannot.
         end = time.monotonic() + limit + _GRACE
         try:

@@ -55,14 +55,14 @@ def uncertain(mechanism: Mechanism) -> list[int]:
 
 
 def corners(columns: list[int]) -> Array:
-    """Return the corners of the box, (2^d, 3), in units of the limits; a corner and its opposite are mirrored rows."""
+    """Return the corners of the box, (2^d, 3), in units of the limits; opposite corners are mirrored rows."""
     found = np.zeros((2 ** len(columns), 3))
     found[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
     return found
 
 
 def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[NDArray[np.int64], Array]:
-    """Return the designs (m,) whose offset may be zero within the limits, and points (m, q, 3) of theirs at zero.
+    """Return the designs (m,) whose offset may be zero within the limits, and their points (m, q, 3) there.
 
     The points are the corners of the other dimensions' box, in units of the limits.
     """
@@ -76,7 +76,7 @@ def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[NDArr
 
 
 def star(columns: list[int]) -> Array:
-    """Return the points that a full quadratic is fitted to, in units of the limits: 1 + 2 d + d (d - 1), (q, 3).
+    """Return the points (q, 3) that fit a full quadratic, in units of the limits. Here q = 1 + 2 d + d (d - 1).
 
     The centre, both ends along each axis, and two opposite corners in each plane: cubic terms then cancel in the mixed
     second derivatives as they do in the pure ones.
@@ -90,7 +90,7 @@ def star(columns: list[int]) -> Array:
 
 
 def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> Around:
-    """Return a quantity at points (q, 3) of the box, in units of the limits, around designs (n, 3 + k).
+    """Return a quantity at points (q, 3) around designs (n, 3 + k), in units of the limits.
 
     points: of all designs, or (n, q, 3) of each.
     """

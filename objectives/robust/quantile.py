@@ -55,7 +55,7 @@ def weights(share: float, samples: int) -> Array:
 
 @lru_cache(maxsize=32)
 def interpolation(columns: tuple[int, ...], shape: Shape, samples: int, seed: int) -> Array:
-    """Return what makes the sample from the values at the star: (points, samples)."""
+    """Return the matrix from values at the star to the sample: (points, samples)."""
     found = np.ascontiguousarray((_basis(sample(columns, shape, samples, seed), columns) @ _fit(columns)).T)
     found.setflags(write=False)
     return found
@@ -63,7 +63,7 @@ def interpolation(columns: tuple[int, ...], shape: Shape, samples: int, seed: in
 
 @lru_cache(maxsize=32)
 def linear(columns: tuple[int, ...]) -> Array:
-    """Return what makes the slopes along the uncertain dimensions from the values at the star: (d, points)."""
+    """Return the matrix from values at the star to slopes along the uncertain dimensions: (d, points)."""
     found = np.asarray(_fit(columns)[1 : 1 + len(columns)])
     found.setflags(write=False)
     return found

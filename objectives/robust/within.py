@@ -21,7 +21,7 @@ _EXACT = 1e-15
 
 @dataclass(frozen=True)
 class Inside:
-    """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some beside the corners."""
+    """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some besides the corners."""
 
     rows: NDArray[np.int64]
     points: Array
@@ -30,7 +30,7 @@ class Inside:
 def within(
     quantity: Quantity, mechanism: Mechanism, dimensions: Array, columns: list[int], here: Around, *, low: bool
 ) -> Inside:
-    """Return the points within the box of designs (n, 3 + k) at which a quantity may be worse than at all corners.
+    """Return points inside the box of designs (n, 3 + k) that may be worse than all its corners.
 
     here: the quantity at the corners. low: whether the least value is wanted, else the greatest.
     1. What depends on |offset| turns at zero: those points are given wherever the limits span it.
@@ -75,7 +75,7 @@ def within(
 
 
 def _worst(here: Around, low: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return how bad a quantity is at points, (n, q), the more the worse, its slopes (n, q, 3), and where it turns."""
+    """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage turns."""
     first = np.argmax(here.values, axis=2)[:, :, None]
     values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
     slopes = np.take_along_axis(here.local, first[:, :, :, None], axis=2)[:, :, 0]

@@ -28,7 +28,7 @@ from .varying_column import varying_column
 def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> pd.DataFrame:
     """Return a table with every quantity of designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
-    own: quantities beside those of the registry; a free phase or shift of a target motion gets a column too. The values
+    own: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
     rotation, the loaded stroke that of `loaded_stroke`. Position errors are NaN without tolerances. Raises

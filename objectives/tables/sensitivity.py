@@ -1,4 +1,4 @@
-"""How every quantity of one design changes with each dimension: exact derivatives, as a table."""
+"""Sensitivity of every quantity of one design to each dimension: exact derivatives, as a table."""
 
 from __future__ import annotations
 

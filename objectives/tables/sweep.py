@@ -24,7 +24,7 @@ _LENGTHS = ("crank", "rod", "offset")
 
 @dataclass(frozen=True)
 class Axis:
-    """What is swept, and its values, SI: m, or rad/s."""
+    """The swept parameter and its values, SI: m, or rad/s."""
 
     parameter: Parameter
     values: tuple[float, ...]
@@ -42,7 +42,7 @@ def sweep(
     """Return a table with a row for every combination of the values of the axes, the first axis slowest.
 
     dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities.
-    own: those that it may name beside those of the registry.
+    own: those that it may name besides those of the registry.
     Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
     the row has no values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.

@@ -1,4 +1,4 @@
-"""How a varying number of a machine is called in tables and JSON, and its unit there."""
+"""Column of a varying number of a machine in tables and JSON, and its unit there."""
 
 from __future__ import annotations
 

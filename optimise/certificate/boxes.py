@@ -1,4 +1,4 @@
-"""What can be said of all designs of a box at once: that none is feasible, and the least that any objective may be."""
+"""Bounds on all designs of a box at once: proof that none is feasible, and lower bounds on the objectives."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def usable(problem: Problem, constraint: Constraint) -> bool:
 
 @dataclass(frozen=True)
 class Bounded:
-    """What holds for the designs of n boxes.
+    """Bounds that hold for the designs of n boxes.
 
     alive: whether one may be feasible; what follows means nothing where not. lower, upper: (n, k), the part of the box
     that holds all feasible ones. corner: (n, m), what no feasible one's minimised objectives are below, -inf where
@@ -104,7 +104,7 @@ class Boxes:
         self.curves = {peak.name: Curve(problem.mechanism, peak) for peak in peaks if isinstance(peak, CyclePeak)}
 
     def bound(self, lower: Array, upper: Array) -> Bounded:
-        """Return what holds for boxes lower to upper (n, k)."""
+        """Return the bounds that hold for boxes lower to upper (n, k)."""
         with np.errstate(all="ignore"):
             n, k = lower.shape
             limits = Limits(n, k)
@@ -206,7 +206,7 @@ def _turning(kind: int, r: Array, l: Array, a: Array) -> Array:
 
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
-    """Return what a computed dimension may be where it meets its range, and r + |e| <= lean l if these are known."""
+    """Return the ends of a computed dimension from its range, and from r + |e| <= lean l if known."""
     others = [known[other].ends() for other in UNKNOWNS if other != name and other in known]
     slack = _SLACK * bounds.upper
     low, high = np.full_like(others[0][0], bounds.lower - slack), np.full_like(others[0][0], bounds.upper + slack)
@@ -219,13 +219,13 @@ def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) ->
 
 
 def _ends(value: Enclosure, low: Array, high: Array) -> tuple[Array, Array]:
-    """Return what the greatest part of (n, p) is at least, and at most."""
+    """Return a lower and an upper bound on the greatest part of (n, p)."""
     least, most = value.ends(low, high)
     return least.max(axis=1), most.max(axis=1)
 
 
 def _minimised(objective: Objective, below: Array, above: Array) -> Array:
-    """Return what an objective between two ends is at least, as it is minimised."""
+    """Return a lower bound on an objective as it is minimised, from the ends of its value."""
     if objective.sense == "maximise":
         return -above
     if objective.target is not None:

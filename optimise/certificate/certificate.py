@@ -1,4 +1,4 @@
-"""What a search for a proof gives."""
+"""Certificate of a front: the result of a search for a proof, and its steps."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Status = Literal["proven", "out of budget", "cancelled"]
 
 @dataclass(frozen=True)
 class Step:
-    """Where the proof stands. epsilon: proven so far for the completed set, infinite while nothing is."""
+    """State of the proof. epsilon: proven so far for the completed set, infinite while nothing is."""
 
     epsilon: float
     boxes: int

@@ -1,4 +1,4 @@
-"""How far a front can be from the true one: proven by branch and bound on the whole design box.
+"""Distance of a front from the true one: bounded by branch and bound on the whole design box.
 
 What is proven, for an epsilon e and objectives scaled by their range over the front: **for every feasible design there
 is a design of the set that is worse than it by at most e of the range in no matter which objective**. No design that

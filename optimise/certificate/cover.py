@@ -1,4 +1,4 @@
-"""By how much designs fall short of covering a point of the objective space, and which few of them cover many points.
+"""Excess of points of the objective space over designs, and few designs that cover many points.
 
 A design p covers a point z to e when p_j <= z_j + e in every objective j (all minimised and scaled). The *excess* of z
 over designs is the least e to which one of them covers it: additive epsilon dominance (E. Zitzler et al., "Performance
@@ -86,14 +86,14 @@ def _choose(points: Any, values: Any, epsilon: Any, chosen: Any) -> None:
 
 
 def choose_covering(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
-    """Return which of the values (n, m) cover their own point (n, m) to epsilon where those before them do not."""
+    """Return the rows of values (n, m) that cover their point (n, m) to epsilon where earlier ones do not."""
     chosen = np.zeros(len(points), dtype=bool)
     _choose(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
     return np.flatnonzero(chosen)
 
 
 def thinned(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
-    """Return few rows of values (p, m) that cover all points (n, m) to epsilon; the one covering most comes first."""
+    """Return few rows of values (p, m), chosen greedily, that together cover all points (n, m) to epsilon."""
     covers = np.stack([(row <= points + epsilon).all(axis=1) for row in values]) if len(values) else np.zeros((0, 0))
     if not len(points) or not covers.any(axis=0).all():
         return np.arange(len(values)) if len(points) else np.zeros(0, dtype=np.int64)

@@ -57,7 +57,7 @@ class Curve:
         self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
     def over(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, p) at crank angles (n,) for crank, rod and offset (n, 1) and middle designs (n, 3).
+        """Return the signal (n, p) at crank angles (n,) for dimensions (n, 1) and middle designs (n, 3).
 
         It has two parts where it may jump at the angle. The rest is not a number where the angle does not count in all
         of the box.
@@ -134,7 +134,7 @@ def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
 
 
 def _of_forces(kind: Signal, f: Forces, d: Design) -> Enclosure:
-    """Return what `signal` does of forces without friction; the compiled step that it takes them from is for floats."""
+    """Return the signal of forces without friction, as `signal` does; its compiled step takes floats only."""
     if kind == Signal.TORQUE:
         found = magnitude(f.torque)
     elif kind == Signal.POWER:
@@ -187,7 +187,7 @@ def _at_share(
 def _at_dead_centre(
     d: Design, sine: Array, cosine: Array, middle: Array
 ) -> tuple[NDArray[np.bool_], Enclosure, Enclosure]:
-    """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there with it."""
+    """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there."""
     r, l, e = (column[:, None] for column in middle.T)
     at = motion(sine, cosine, r, l, e, d.branch)
     on = np.abs(at.x_1) < _AT_REST * r

@@ -46,7 +46,7 @@ class Enclosure:
 
     @property
     def reach(self) -> Array:
-        """How far the number may be from the centre."""
+        """Greatest distance of the number from the centre."""
         if self._reach is None:
             self._reach = np.abs(self.slopes).sum(axis=0) + self.rest
         return self._reach
@@ -160,7 +160,10 @@ class Enclosure:
         return Enclosure(self.centre * self.centre + half, 2.0 * self.centre * self.slopes, rest, self.empty)
 
     def _inverted(self) -> Enclosure:
-        """1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)): the last is largest at the end next to zero."""
+        """Return an enclosure of 1 / x.
+
+        1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)): the last is largest at the end next to zero.
+        """
         size, reach = np.abs(self.centre), self.reach
         clear = size > reach * (1.0 + INFLATION)
         inverse = 1.0 / np.where(clear, self.centre, np.nan)
@@ -170,7 +173,10 @@ class Enclosure:
         return Enclosure(inverse + np.sign(inverse) * 0.5 * most, -self.slopes * square, rest, self.empty)
 
     def _root(self) -> Enclosure:
-        """With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end."""
+        """Return an enclosure of the square root.
+
+        With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end.
+        """
         reach = self.reach
         least, most = self.centre - reach, self.centre + reach
         clear = least > 0.0

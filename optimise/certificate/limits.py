@@ -83,7 +83,7 @@ class Limits:
         return d
 
     def smear(self, low: Array, high: Array) -> Array:
-        """Return what the width along each axis matters to the conditions that are not sure to hold, (n, k)."""
+        """Return the effect of the width along each axis on the conditions not sure to hold, (n, k)."""
         most = np.zeros((len(self.alive), self.k))
         for centre, slopes, rest in self.rows:
             open_ = centre + np.maximum(slopes * low, slopes * high).sum(axis=0) + rest > 0.0

@@ -185,7 +185,7 @@ class Search:
     # ---- what it gives --------------------------------------------------------------------------------------------
 
     def certificate(self) -> Certificate:
-        """Return what is proven, the added designs polished and no more of them than it takes."""
+        """Return the certificate so far, its added designs polished and reduced to as few as it takes."""
         from ...objectives.tables.analysis import analyse
 
         tree, proven = self.tree, self._proven()

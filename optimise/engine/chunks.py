@@ -21,7 +21,7 @@ Subject = TypeVar("Subject")
 Asked = TypeVar("Asked", bound=Hashable)
 Part = TypeVar("Part")
 Work = Callable[[Subject, Asked, Array], Part]
-"""What is done with rows, a function of a module: of the subject, what is asked, and rows (n, k). It judges each row by
+"""Work on rows, a function of a module: of the subject, what is asked, and rows (n, k). It judges each row by
 itself, to the last bit, so that chunks do not show."""
 
 CHUNK = 0.05
@@ -33,7 +33,7 @@ _SURE = 0.5 * CHUNK  # s, after which a pace is believed
 
 @dataclass
 class _Pace:
-    """How long a row takes, s, and over how many seconds that was measured; less than zero before the first."""
+    """Time a row takes, s, and the seconds over which it was measured; negative before the first."""
 
     row: float = 0.0
     over: float = -1.0
@@ -67,7 +67,7 @@ class Chunked(Generic[Subject]):
         kind: Hashable = None,
         together: bool = False,
     ) -> list[Part]:
-        """Return the parts of the work on rows (n, k), in order; one for all of them where that is light.
+        """Return the parts of the work on rows (n, k), in order; a single part where it is light.
 
         kind: of work that takes alike for a row, what is asked if not given. together: rows are much quicker together
         than one by one, so that they are not cut here, and into no more chunks than there are workers elsewhere. Raises

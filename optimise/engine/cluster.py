@@ -24,7 +24,7 @@ _log = logging.getLogger(__name__)
 PATIENCE = 300.0
 """s, without a scheduler or without a single worker, after which a search is given up."""
 MOST_KILLED = 3
-"""How often Dask may give up an item because its workers died, four of them each time."""
+"""Times that Dask may give up an item because its workers died, four of them each time."""
 _START = 1.0  # s, that connecting takes about
 _CONNECT = 5.0  # s, of one attempt
 _TICK = 0.1
@@ -216,7 +216,7 @@ def _versions() -> tuple[str, ...]:
 
 
 def _told(error: BaseException) -> BaseException:
-    """Return what a task raised, in words where it is the cluster's fault."""
+    """Return the exception of a task, in words where the cluster is at fault."""
     if isinstance(error, SlidercrankError) or not isinstance(error, ImportError | AttributeError | RuntimeError):
         return error
     return EngineError(

@@ -18,7 +18,7 @@ class Engine(Protocol):
 
     @property
     def workers(self) -> int:
-        """How many items are worked on at once, at least one."""
+        """Number of items that are worked on at once, at least one."""
         ...
 
     def worth(self, seconds: float) -> bool:

@@ -17,7 +17,7 @@ from ...objectives.own.interruption import ask, farewell, killed
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3
-"""How often a process may end abruptly with nothing but one item under way before that is given up."""
+"""Abrupt ends of a process, with nothing but one item under way, before that item is given up."""
 _STARTS = 8  # in a row that may fail
 _START = 3.0  # s, that it takes about to start them and to load what is compiled
 _TICK = 0.1  # s, between two questions whether to stop

@@ -1,4 +1,4 @@
-"""What many chunks have in common, pickled once where it comes from and unpickled once in every process."""
+"""A value that many chunks share, pickled once at its source and unpickled once in every process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Value = TypeVar("Value")
 class Shared(Generic[Value]):
     """A value that goes along with every chunk but is made only once in each process that works on them.
 
-    A problem pickles into some kB, nothing beside a chunk of 50 ms. What costs is making it: functions of your own
+    A problem pickles into some kB, nothing next to a chunk of 50 ms. What costs is making it: functions of your own
     start a process, samples are drawn.
     """
 

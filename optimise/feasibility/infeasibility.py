@@ -26,7 +26,7 @@ _STARTS = 24
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What a search for feasible designs found.
+    """Result of a search for feasible designs.
 
     feasible: designs (n, 3 + v), SI, that are feasible if there are any after all. relaxations: requirements of which
     giving up any one is enough. message: the contradiction in words.

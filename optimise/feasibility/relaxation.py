@@ -1,4 +1,4 @@
-"""What can be had in place of a requirement that stands in the way, in numbers that can be asked for."""
+"""Reachable values in place of a requirement that cannot be met, in numbers that can be asked for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOWEST = 0.02
 
 @dataclass(frozen=True)
 class Relaxation:
-    """One requirement that stands in the way, and what can be had of it (shown units) while all others are kept.
+    """A requirement that cannot be met, and its reachable value (shown units) while all others are kept.
 
     alone: whether no value near the one that can be had is possible, so that it is told in all its digits. standing:
     whether nobody asked for it: a floor that holds where a job sets none.
@@ -35,19 +35,19 @@ class Relaxation:
 
     @property
     def told(self) -> str:
-        """What can be had, in digits that can be asked for."""
+        """The reachable value, in digits that can be asked for."""
         if self.alone:
             return exact(self.reachable)
         return safe(self.reachable, "down" if self.reachable < self.asked else "up")
 
     @property
     def number(self) -> float:
-        """What can be had, as it is told."""
+        """The reachable value as a number, as it is told."""
         return float(self.told)
 
     @property
     def with_unit(self) -> str:
-        """What can be had, as it is told, with its unit."""
+        """The reachable value as it is told, with its unit."""
         return f"{self.told} {self.unit}".rstrip()
 
     def sentence(self, *, kept: str = "all else") -> str:
@@ -57,7 +57,7 @@ class Relaxation:
         return f"{self._asked()} {asked}, {reach} {self.with_unit} can be had with {kept} kept"
 
     def instead(self) -> str:
-        """Return what to ask for in place of the requirement, in words."""
+        """Return the reachable requirement to ask for instead, in words."""
         return f"{self.title} {self.relation} {self.with_unit} instead of {self._number_asked()}"
 
     def _asked(self) -> str:
@@ -80,7 +80,7 @@ def sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:
 
 
 def missed(problem: Problem, constraint: Constraint, relation: str, bound: float, value: float) -> Relaxation | None:
-    """Return a side of a constraint with the value (SI) that stands in its place; None where the value meets it."""
+    """Return a missed side of a constraint with its reachable value (SI); None if the value meets it."""
     slack = FEASIBLE * (abs(bound) or 1.0)
     off = {"at least": bound - value, "at most": value - bound, "exactly": abs(value - bound)}[relation]
     if off <= slack:
@@ -94,7 +94,7 @@ def missed(problem: Problem, constraint: Constraint, relation: str, bound: float
 def relaxations(
     problem: Problem, constraint: Constraint, best: Callable[[Problem], Best | None]
 ) -> Iterator[Relaxation | Array]:
-    """Yield what can be had in place of the sides of a constraint that cannot be had, where giving it up is enough.
+    """Yield the reachable value for each unreachable side of a constraint, where giving that side up is enough.
 
     Where a side can be had after all, the design (3 + v,) that has it with all else kept is given instead. best: gives
     the best of a problem with one objective, None where nothing meets its requirements.

@@ -9,7 +9,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from typing import Literal
 
 Side = Literal["down", "up"]
-"""Where what is possible lies: below the greatest value ("down") or above the least ("up")."""
+"""Side on which possible values lie: below the greatest value ("down") or above the least ("up")."""
 
 DIGITS = 6
 """Significant digits of a limit: less than 1e-5 of it is given away, far below any tolerance of manufacture."""

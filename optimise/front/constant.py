@@ -15,7 +15,7 @@ times greater.
 
 
 def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.bool_]:
-    """Return whether the numbers of each column are the same but for rounding: () or (m,) of values (n,) or (n, m).
+    """Return whether the numbers of each column are equal to rounding: () or (m,) of values (n,) or (n, m).
 
     The spread is compared with the greatest magnitude, at least with `size`: of a distance from a target that is the
     target. NaN and infinity do not count; a column without numbers is constant. Zero needs a size: nothing is near it.

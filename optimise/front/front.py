@@ -1,4 +1,4 @@
-"""What an optimisation gives: the Pareto front, how good it is, and how it was found."""
+"""Result of an optimisation: the Pareto front, how good it is, and how it was found."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class ParetoFront:
     designs: one row a design, all quantities under their JSON names with units, then `slack_<field>` for every
     constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual` (stationarity)
     and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
-    dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary beside them, SI, exactly.
+    dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary besides them, SI, exactly.
     variants: of each design, which of the problem's variants it is; empty if nothing was to be chosen.
     values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
     design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
@@ -172,7 +172,7 @@ class ParetoFront:
         return int(rows[np.argmin(self.values[rows, objective])])
 
     def rates(self, row: int) -> Array:
-        """Return the trade-off rates at a design, (m, m): `[a, b]` is what objective a loses per unit that b gains.
+        """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.
 
         To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
         of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column

@@ -25,7 +25,7 @@ _TIE = 1e-9  # of a range, of a closeness: nearer together is rounding
 
 @dataclass(frozen=True, kw_only=True)
 class Priority:
-    """An objective in a ranking, and what may be given up of its best value for the sake of the next.
+    """An objective in a ranking, and the loss from its best value allowed for the sake of the next.
 
     absolute: in the quantity's SI unit. share: of the objective's range over the designs. The two add up.
     """

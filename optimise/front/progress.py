@@ -1,4 +1,4 @@
-"""Where a search stands, as it is told while it runs."""
+"""Progress of a search, as it is told while it runs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ REPEATING = "repeating rounds"
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a search stands after one of its rounds, or in a long stage between two.
+    """Progress of a search after one of its rounds, or in a long stage between two.
 
     round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
     hypervolume: what those dominate; it never falls. While the search goes on it is told in boxes that the first

@@ -1,4 +1,4 @@
-"""How stationary a design is: the least-norm convex combination of objective gradients, less active constraints.
+"""Stationarity of a design: the least-norm convex combination of objective gradients, less active constraints.
 
 A design is Pareto-stationary when no direction improves every objective at once while the active constraints hold:
 

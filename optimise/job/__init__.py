@@ -49,7 +49,7 @@ def load_job(
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return the tables of a job file, with the points of a file beside it in them; they are not checked.
+    """Return the unchecked tables of a job file, with the points of a file that it names in them.
 
     Raises JobError for files that cannot be read.
     """
@@ -82,7 +82,7 @@ def parse_job(
 ) -> Problem:
     """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`.
 
-    folder: where the modules of its own functions lie, beside the working directory.
+    folder: where the modules of its own functions lie, besides the working directory.
     """
     require_plain(data)
     own = declared(data, allowed=allow_user_code)

@@ -1,4 +1,4 @@
-"""What is possible within the ranges of crank, rod and offset, by the `Reach` of quantities."""
+"""Possible values within the ranges of crank, rod and offset, by the `Reach` of quantities."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
 
 _SLACK = 1.0 + 1e-9
-"""What is asked at the very edge is left to the optimiser: rounding must not make it a contradiction."""
+"""Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other rules on the dimensions"
 _ANY = Range(lower=0.0, upper=1.0)
@@ -133,7 +133,7 @@ def _possible(problem: Problem, constraint: Constraint) -> str:
 def _nearest(
     problem: Problem, constraint: Constraint, alone: tuple[Constraint, ...]
 ) -> tuple[Relaxation | None, tuple[Constraint, ...]]:
-    """Return what can be had in place of a constraint on the dimensions, and the constraints that were kept for that.
+    """Return the reachable value for a constraint on the dimensions, and the constraints kept for it.
 
     Where all of them contradict each other even then, those that are kept `alone`.
     """
@@ -148,7 +148,7 @@ def _nearest(
 
 
 def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
-    """Return in words why no linkage has the time ratio with the transmission angle that are asked; None if one may.
+    """Return in words why no linkage has both time ratio and transmission angle as asked; None if one may.
 
     share: where offset / rod may lie.
     """
@@ -173,7 +173,7 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:
-    """Return a bound that the time ratio does not exceed while (r + a) / l <= cosine and a / l lies in `share`.
+    """Return an upper bound on the time ratio while (r+a)/l <= cosine and a/l lies in `share`.
 
     With p = r / l and q = a / l the excess angle rises with both, so that the greatest lies on p + q = cosine. It is
     cut into cells of p, each bounded by its greatest p and its greatest q: never below the true maximum, and above it

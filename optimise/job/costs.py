@@ -1,4 +1,4 @@
-"""What tolerances cost in a job file, [costs], and how it becomes the costs of an allocation."""
+"""Costs of tolerances in a job file, [costs], and their conversion to the costs of an allocation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
 
 class _CostPart(Part):
-    """What all costs have. Any currency, the same in all."""
+    """The fields that all costs have. Any currency, the same in all."""
 
     cost: PositiveRatio = Field(
         description="of the part that depends on the tolerance, where that is `at`", examples=[8.0]
@@ -65,7 +65,7 @@ def _build(part: LengthCostPart | AngleCostPart) -> Cost:
 
 
 class CostsPart(Part):
-    """What it costs to hold each tolerance, for the allocation of tolerances; one without a cost stays as given."""
+    """Costs of holding each tolerance, for the allocation of tolerances; one without a cost stays as given."""
 
     crank: LengthCostPart | None = Field(
         None, description="of the crank", examples=[{"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"}]

@@ -1,4 +1,4 @@
-"""What drives the crank in a job file, [drive], and how it becomes the drive of the model."""
+"""Drive of the crank in a job file, [drive], and its conversion to the drive of the model."""
 
 from __future__ import annotations
 

@@ -149,7 +149,7 @@ def _turning(speed: float) -> float:
 
 
 class MechanismPart(Part):
-    """How the machine is driven and what it weighs; lengths belong in [variables]."""
+    """Drive and masses of the machine; lengths belong in [variables]."""
 
     speed: Annotated[AngularSpeed, AfterValidator(_turning)] = Field(
         description="of the crank, positive counter-clockwise, negative clockwise",
@@ -260,7 +260,7 @@ class ClearancesPart(Part):
 
 
 class TolerancesPart(Part):
-    """How far dimensions and crank angle may be off, and over which part of the cycle the error counts."""
+    """Tolerances of dimensions and crank angle, and the part of the cycle over which the error counts."""
 
     crank: LengthTolerance = Field(
         0.0, description="of the crank, as a length or a share", examples=["0.05 mm", "0.1 %"]

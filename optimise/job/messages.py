@@ -1,4 +1,4 @@
-"""What is wrong with a job, in the words of the job file: key, rule, value, remedy. No jargon of the validator."""
+"""Messages on mistakes in a job, in the words of the job file: key, rule, value, remedy. No jargon of the validator."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from pydantic_core import ErrorDetails
 from .units import closest, shown
 
 MOST = 8
-"""How many problems of one job are listed."""
+"""Number of problems of one job that are listed."""
 
 LONGEST = 100
-"""How many are looked at: each costs a search for a near key."""
+"""Number of problems that are looked at: each costs a search for a near key."""
 
 Schema = dict[str, Any]
 
@@ -41,7 +41,7 @@ _LIMITS = {
     "literal_error": ("must be {}", "expected"),
     "enum": ("must be {}", "expected"),
 }
-"""What a kind of error says, by its name in pydantic, and which value of its context it names."""
+"""Sentences of kinds of errors, by their names in pydantic, and the value of the context that each names."""
 
 
 def explain(error: ValidationError, schema: Schema) -> list[str]:
@@ -124,7 +124,7 @@ def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str
 
 
 def rule_of(details: Mapping[str, Any]) -> str:
-    """Return what a value must be that a validator found wrong, without words of Python."""
+    """Return the rule that a value breaks, from a validator's finding but without words of Python."""
     kind, context = details["type"], details.get("ctx", {})
     if kind in _LIMITS:
         words, name = _LIMITS[kind]

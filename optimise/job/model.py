@@ -35,7 +35,7 @@ class _MethodName:
 
 
 class OptimiserPart(Part):
-    """How to search."""
+    """Settings of the search."""
 
     method: Annotated[str, _MethodName()] = Field(
         "auto",
@@ -90,7 +90,7 @@ class Job(Part):
         description="of the job; names the run too", examples=["Vibrating sieve"]
     )
     description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = Field(
-        None, description="anything worth keeping beside the results", examples=["Second draft"]
+        None, description="anything worth keeping with the results", examples=["Second draft"]
     )
     mechanism: MechanismPart = Field(
         description="how the machine is driven and what it weighs",

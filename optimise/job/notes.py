@@ -1,4 +1,4 @@
-"""What is allowed in a job, and yet is often not what was meant: told, not refused."""
+"""Notes on content of a job that is allowed, yet often not meant: told, not refused."""
 
 from __future__ import annotations
 

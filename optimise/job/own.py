@@ -93,7 +93,7 @@ def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
 
 @dataclass(frozen=True)
 class Declared:
-    """The quantities that a job has beside those that every job has.
+    """The quantities that a job has besides those that every job has.
 
     tables: facts by name, for what [objectives] and [constraints] may say. installed: those from packages.
     """
@@ -103,7 +103,7 @@ class Declared:
 
 
 def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
-    """Return what a job declares, and what it names of installed packages; raises JobError for code not allowed.
+    """Return the quantities that a job declares or names of installed packages; raises JobError for code not allowed.
 
     Lenient otherwise: what is wrong in a declaration the validation of the job says.
     """

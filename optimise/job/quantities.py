@@ -85,7 +85,7 @@ class Stated(NamedTuple):
 def tables(own: Mapping[str, Stated]) -> tuple[type[Part], type[Part]]:
     """Return the tables [constraints] and [objectives]: one optional key for each quantity.
 
-    own: quantities that a job has beside those that every job has.
+    own: quantities that a job has besides those that every job has.
     """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}

@@ -24,7 +24,7 @@ EXAMPLE = {
 
 
 class MaterialPart(Part):
-    """What crank and rod are made of."""
+    """Material of crank and rod."""
 
     density: Density = Field(description="of the material", examples=["7850 kg/m^3"])
     elasticity: Pressure = Field(description="Young's modulus", examples=["207 GPa"])

@@ -1,4 +1,4 @@
-"""The table [target_motion] of a job file: the wanted slider motion, point by point or from a file beside the job."""
+"""The table [target_motion] of a job file: the wanted slider motion as points, given there or in a file."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ _HINTS = {
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 PATTERN = rf"^\s*{_NUMBER}\s*[^\d\s.+-].*$"
-"""What a value with a unit looks like, for a JSON Schema."""
+"""Pattern of a value with a unit, for a JSON Schema."""
 _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*))?\s*", re.ASCII | re.DOTALL)
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
@@ -144,7 +144,7 @@ def kind_of(symbol: str) -> Kind:
 
 
 def kind_for(symbol: str) -> Kind:
-    """Return the kind of value of any unit, one of `KINDS` or a new one; raises InputError for what is no unit."""
+    """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError for what is no unit."""
     dimension = _unit(symbol)[1]
     for kind in KINDS:
         if _unit(kind.unit)[1] == dimension:
@@ -156,12 +156,12 @@ def kind_for(symbol: str) -> Kind:
 
 
 def per_si(symbol: str) -> float:
-    """Return what one SI unit is in a unit: 1000 for "mm". Raises InputError for what is no unit."""
+    """Return the value of one SI unit in a unit: 1000 for "mm". Raises InputError for what is no unit."""
     return float(1 / _unit(symbol)[0])
 
 
 def to_si(value: object, kind: Kind, *, sign: Sign = "any") -> float:
-    """Return a value in SI, from a string of number and unit, or from a plain number that is in SI already.
+    """Return a value in SI, from a string of number and unit, or from a plain number in SI.
 
     sign: what the value must be. A ratio is a plain number, as a number or as a string.
     Raises InputError, with rule, value and remedy, for anything else: another dimension, an unknown unit, an

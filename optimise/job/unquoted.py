@@ -12,7 +12,7 @@ _PART = re.compile(rf"[=:,\[{{]\s*({_BARE}[^=,:\]}}]*)(?=[,\]}}]|$)")
 
 
 def remedy(text: str, error: str) -> str:
-    """Return what to do about an error of the parser, told with its line: quotes for a value that lacks them."""
+    """Return the remedy for a parser's error, told with its line: quotes for a value that lacks them."""
     place = re.search(r"line (\d+)", error)
     lines = text.splitlines()
     line = lines[min(int(place[1]), len(lines)) - 1] if place else lines[-1]  # "at end of document"

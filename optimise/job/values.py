@@ -30,7 +30,7 @@ class Part(BaseModel):
 
 
 def _note(info: core_schema.ValidationInfo, value: object, kind: Kind) -> None:
-    """Add numbers without a unit to the list that the context of a validation is, if it is one: name, number, kind."""
+    """Add numbers without a unit to the validation context if that is a list: name, number, kind."""
     if not isinstance(info.context, list) or not kind.unit:
         return
     given = value["choices"] if isinstance(value, Mapping) else value

@@ -1,4 +1,4 @@
-"""What may vary, in a job file: [variables] and [[choice]].
+"""Variables and choices of a job file: [variables] and [[choice]].
 
 A variable other than the three dimensions is named by the path of a number that the job gives, as messages name it:
 `mechanism.slider.mass = ["0.5 kg", "2 kg"]`, or `load.1.force` for the first [[load]]. What the job gives there stays
@@ -29,7 +29,7 @@ def _more(what: str, example: dict[str, Any]) -> Any:
 
 
 class VariablesPart(Part):
-    """Where dimensions and other numbers may lie: [lower, upper], or { choices = [...] }.
+    """Ranges of dimensions and other numbers: [lower, upper], or { choices = [...] }.
 
     One value fixes a dimension.
     """
@@ -62,7 +62,7 @@ class VariablesPart(Part):
 
     @property
     def paths(self) -> dict[str, Any]:
-        """The numbers that vary beside the dimensions: path and what is given for it."""
+        """The numbers that vary besides the dimensions: path and what is given for it."""
         return {path: leaf for root in ROOTS for path, leaf in _leaves(getattr(self, root), root)}
 
 
@@ -79,7 +79,7 @@ class OptionPart(Part):
     )
     constraints: ConstraintsPart = Field(
         ConstraintsPart(),
-        description="what holds for it beside the constraints of the job, as in [constraints]",
+        description="what holds for it in addition to the constraints of the job, as in [constraints]",
         examples=[{"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}],
     )
 

@@ -224,12 +224,12 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
 
 def _stated(part: Any) -> dict[str, Any]:
-    """Return what a part of a job states, by key; its own parts as they are, so that they are not read again."""
+    """Return the values that a part of a job states, by key; nested parts stay as read."""
     return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
 
 
 def _with(part: Any, steps: list[str], value: Any) -> Any:
-    """Return a part of a job with a value in place of a plain one; what the path leads past stays as it was read.
+    """Return a part of a job with one plain value replaced; whatever the path passes stays as read.
 
     Raises `LookupError` where the job has no number or text.
     """

@@ -37,7 +37,7 @@ _RESTART = 1_000_000  # stream of random numbers, beyond those of any generation
 
 
 def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return what CMA-ES with restarts finds for the problem's only objective."""
+    """Return the designs that CMA-ES with restarts finds for the problem's only objective."""
     breed = _Climbs(problem, evaluators)
     return evolve(problem, evaluators, run, breed, size=breed.size)
 

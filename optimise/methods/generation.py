@@ -1,4 +1,4 @@
-"""What a method that goes generation by generation has done: all that the next generation is bred from."""
+"""Past generations of a method that goes generation by generation: everything that the next one is bred from."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class History:
 
     @classmethod
     def of(cls, past: Sequence[Generation]) -> History:
-        """Return what one or more generations are end to end."""
+        """Return one or more generations joined end to end."""
         count = sum(len(generation) for generation in past)
         return cls(
             np.concatenate([generation.sheet for generation in past]),
@@ -66,5 +66,5 @@ class History:
 
 
 def generation_seed(seed: int, generation: int) -> int:
-    """Return the seed of one generation, so that a run may go on at any of them; independent of all others."""
+    """Return the seed of one generation, independent of all others, so that a run may resume at any."""
     return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])

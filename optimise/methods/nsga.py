@@ -40,14 +40,14 @@ POPULATION = 100
 
 
 def nsga2(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return what NSGA-II finds: its population is kept diverse by crowding distance."""
+    """Return the designs that NSGA-II finds; crowding distance keeps its population diverse."""
     from optuna.samplers import NSGAIISampler
 
     return _genetic(problem, evaluators, run, NSGAIISampler)
 
 
 def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return what NSGA-III finds: its population is kept diverse by reference directions, about one a member."""
+    """Return the designs that NSGA-III finds; reference directions, about one a member, keep its population diverse."""
     from optuna.samplers import NSGAIIISampler
 
     size, objectives = population_size(problem), len(problem.objectives)

@@ -25,7 +25,7 @@ BAND = 0.01
 
 
 class Breed(Protocol):
-    """How a method finds the next points."""
+    """The step by which a method finds its next points."""
 
     def __call__(self, past: Sequence[Generation]) -> Brood:
         """Return the brood that follows these generations, which depends on nothing but them."""
@@ -71,7 +71,7 @@ class _Seen:
         self.known: dict[tuple[int, bytes], tuple[Array, float]] = {}
 
     def evaluate(self, brood: Brood) -> Generation:
-        """Return what the points of a brood are, each sheet's new ones evaluated in one batch."""
+        """Return the evaluated generation of a brood; each sheet's new points are evaluated in one batch."""
         keys = self._keys(brood)
         fresh = {key: row for row, key in enumerate(keys) if key not in self.known}
         for index, evaluator in enumerate(self.evaluators):

@@ -22,7 +22,7 @@ BATCH = 1024
 
 
 def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return what uniformly random points find, spread over the sheets by chance."""
+    """Return the designs found by uniformly random points, spread over the sheets by chance."""
 
     def draw(generation: int, size: int, dimension: int) -> Array:
         return np.random.default_rng(generation_seed(problem.settings.seed, generation)).random((size, dimension))
@@ -31,7 +31,7 @@ def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return what one scrambled Sobol sequence finds, one coordinate of which chooses among several sheets."""
+    """Return the designs found by one scrambled Sobol sequence; one coordinate chooses among several sheets."""
     from scipy.stats import qmc
 
     def draw(generation: int, size: int, dimension: int) -> Array:

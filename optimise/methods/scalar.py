@@ -79,7 +79,7 @@ class Programme:
         self._valid = True
 
     def begin(self, u: Array) -> Array:
-        """Return z at a point u (k,) where the evaluator is valid, s and t as low as they can be.
+        """Return z at a point u (k,) where the evaluator is valid, with the lowest possible s and t.
 
         A piece that an equality holds is the highest one here; another one may be highest after a run of the solver.
         """
@@ -132,7 +132,7 @@ class Programme:
         return np.pad(self._limits.gradients[self._held()], ((0, 0), (0, self.m + 1)))
 
     def _held(self) -> NDArray[np.int64]:
-        """Return the rows that are to vanish; for a piece that this design does not have the row of the highest."""
+        """Return the rows that must vanish; for a piece that this design lacks, the row of the highest."""
         own, instead = self._equal.T
         return np.asarray(np.where(np.isfinite(self._limits.values[own]), own, instead))
 
@@ -182,7 +182,7 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.int64]:
 
 
 def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArray[np.int64]], ...]:
-    """Return the columns of goals and of limits that are peaks of one curve, hence may swap; lower bounds may not."""
+    """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
     found: tuple[list[NDArray[np.int64]], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]
     bounds = [constraint.lower is not None for constraint in evaluator.constraints]
@@ -196,7 +196,7 @@ def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArr
 
 
 def _placed(rows: Rows, before: Rows, groups: list[NDArray[np.int64]]) -> Rows:
-    """Return the rows in the places that the same pieces had before: peaks come by height and swap where they tie."""
+    """Return the rows in the former places of the same pieces; peaks come by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
         apart = np.abs(rows.labels[columns][:, None] - before.labels[columns])

@@ -114,7 +114,7 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 @dataclass
 class _Front:
-    """What the problems share.
+    """State that the scalarised problems share.
 
     payoff: (m, m), objectives (columns) of the optimum of each objective (rows), SI. aimed: (n, m), where later rounds
     took aim, scaled.

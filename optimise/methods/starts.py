@@ -1,4 +1,4 @@
-"""Where local solvers begin: screened samples, and of these the best ones that lie apart."""
+"""Starting points of local solvers: screened samples, and of these the best ones that lie apart."""
 
 from __future__ import annotations
 

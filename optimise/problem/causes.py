@@ -18,6 +18,6 @@ def undefined_because(quantity: Quantity, machines: Iterable[Mechanism]) -> str 
 
 
 def zero_because(quantity: Quantity, machines: Iterable[Mechanism]) -> str | None:
-    """Return rule, value and remedy for a quantity that is zero for every design of all machines; None if it is not."""
+    """Return rule, value and remedy for a quantity that is zero for all designs and machines; None otherwise."""
     reasons = [quantity.lacks(machine, "zero") for machine in machines]
     return reasons[0] if all(reasons) else None

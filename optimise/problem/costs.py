@@ -1,4 +1,4 @@
-"""What tolerances cost to make."""
+"""Costs of making parts to tolerances."""
 
 from __future__ import annotations
 
@@ -75,4 +75,4 @@ class Costs:
 
 
 NAMES = ("crank", "rod", "offset", "crank_angle")
-"""What has a tolerance that can be chosen, in the order of `model.tolerance.sources.SOURCES`."""
+"""Sources whose tolerance can be chosen, in the order of `model.tolerance.sources.SOURCES`."""

@@ -44,7 +44,7 @@ def _whole(value: object, least: int) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Where a dimension may lie, m; equal bounds fix it."""
+    """Range of a dimension, m; equal bounds fix it."""
 
     lower: float
     upper: float
@@ -63,7 +63,7 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """A quantity that must lie in [lower, upper], in its SI unit; None leaves a side open, equal bounds ask a value."""
+    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds ask a value."""
 
     quantity: str
     lower: float | None = None
@@ -110,7 +110,7 @@ class Objective:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """How to search.
+    """Settings of the search.
 
     method: a name from `methods.registry`. designs: how many to deliver at most. samples: designs evaluated per round
     before the polish; None lets the method choose. evaluations: how many designs a method other than "auto" may
@@ -157,10 +157,10 @@ class Variant:
 class Problem:
     """A complete optimisation problem.
 
-    mechanism: its varying numbers are variables beside the dimensions. crank, rod, offset: where the three dimensions
+    mechanism: its varying numbers are variables besides the dimensions. crank, rod, offset: where the three dimensions
     may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
     chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
-    tolerances, for their allocation. own: quantities beside those that every problem has; objectives and constraints
+    tolerances, for their allocation. own: quantities besides those that every problem has; objectives and constraints
     may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
     only, see `slow_side`, and the time ratio is above 1, see `evaluation.constraints_of`.
     """
@@ -184,7 +184,7 @@ class Problem:
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):
                 raise InputError(
-                    f"a number that varies beside the dimensions needs a name of its own; got {item.name!r}"
+                    f"a number that varies besides the dimensions needs a name of its own; got {item.name!r}"
                 )
         for variant in self.variants:
             if len(variant.labels) != len(self.choices):
@@ -280,7 +280,7 @@ class Problem:
             )
 
     def slow_side(self) -> float | None:
-        """Sign that the offset must have for the slow stroke that is asked, +1 or -1; None where none is asked.
+        """Sign of the offset (+1 or -1) that gives the slow stroke asked for; None where none is asked.
 
         The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
         """

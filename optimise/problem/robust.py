@@ -15,7 +15,7 @@ from .problem import Constraint, Objective, Problem
 
 @dataclass(frozen=True, kw_only=True)
 class Robust:
-    """How objectives and constraints are robust, see `RobustQuantity`.
+    """Robustness of objectives and constraints, see `RobustQuantity`.
 
     quantities: which of them; None for all but equalities and targets, which stay nominal, and position errors.
     """

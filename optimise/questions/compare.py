@@ -24,7 +24,7 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Comparison:
-    """How k fronts compare.
+    """Comparison of k fronts.
 
     sizes: (k,), designs. ideal, span: (m,), the scaling, in the objectives' units. hypervolumes: (k,), of each, share
     of the box from the ideal to 1.1 ranges beyond it. union: hypervolume of all together. shares: (k,), hypervolume by

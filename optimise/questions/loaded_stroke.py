@@ -1,4 +1,4 @@
-"""Warnings of a loaded stroke that is the fast one, and of offsets that a slow stroke leaves out, before and after."""
+"""Warnings before and after a search: a fast loaded stroke, and offsets that a slow stroke leaves out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What robustness costs: the robust front beside the nominal one of the same problem."""
+"""Price of robustness: the robust front compared with the nominal one of the same problem."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class RobustCost:
 
 
 def robust_cost(front: ParetoFront) -> RobustCost | None:
-    """Return what the robustness of a front costs; None if the nominal problem has no front. Solves that problem."""
+    """Return the price of a front's robustness; None if the nominal problem has no front. Solves that problem."""
     problem = front.problem
     plain = solve(nominal(problem))
     if not len(plain) or not len(front):

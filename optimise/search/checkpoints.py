@@ -1,4 +1,4 @@
-"""What a search has found out, step by step: a run that is given it again goes on where it was stopped, bit for bit.
+"""Checkpoints of a search, step by step: given them, a run resumes where it was stopped, bit for bit.
 
 A search is a function of its problem and of what its costly steps gave: a batch that was screened or polished, a local
 solver from one start, a brood that was bred. Given these again it takes the same way without computing them, and from
@@ -36,7 +36,7 @@ class Cancelled(Exception):
 
 @dataclass(frozen=True)
 class Identity:
-    """Whose records these are. problem: a digest of it. versions: of all that computes, as JSON."""
+    """Fingerprint of a problem and of the software versions that solved it. problem: a digest. versions: as JSON."""
 
     problem: str
     versions: str
@@ -58,7 +58,7 @@ class Record:
 
 
 class Counts(Protocol):
-    """What a step that evaluates designs counts them with."""
+    """Counter of evaluated designs in a step."""
 
     evaluations: int
 
@@ -130,9 +130,9 @@ class Ledger:
     def step(
         self, kind: str, given: Sequence[Numbers], compute: Callable[[], tuple[Numbers, ...]], counts: Counts
     ) -> tuple[Numbers, ...]:
-        """Return what a step gives: what it gave in the earlier run, else what it computes.
+        """Return the result of a step: that of the earlier run, else computed now.
 
-        kind, given: what tells it from other steps, all that it depends on beside the problem. counts: takes the
+        kind, given: what tells it from other steps, all that it depends on besides the problem. counts: takes the
         evaluations. Raises `ForeignRecords` if the earlier run did something else here.
         """
         if self._next is None and self._keep is None:
@@ -152,7 +152,7 @@ class Ledger:
         return found
 
     def turn(self) -> bool:
-        """Keep the steps of a round that has ended; return whether it is new, not one that the earlier run told."""
+        """Keep the steps of a round that has ended; return whether the earlier run had not told it."""
         self.told += 1
         self._flush()
         return self.told > self.before

@@ -2,7 +2,7 @@
 
 Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
 free unknowns is chosen from which the rules, applied one after the other, give the rest. Requirements that no rule
-covers stay with the solver as equality constraints. Numbers that vary beside the three are free: no rule computes them.
+covers stay with the solver as equality constraints. Other numbers that vary are free: no rule computes them.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Rule:
 class Sheet:
     """One sign of the offset with the free unknowns and the steps that give the others.
 
-    sign: of the offset. free: names; crank, rod and offset come before the numbers that vary beside them. lower, upper:
+    sign: of the offset. free: names; crank, rod and offset come before other varying numbers. lower, upper:
     of the free unknowns, SI. bounds: of all unknowns, SI. names: of all unknowns, in the order of a design's numbers.
     variant: which combination of the problem's choices, see `Problem.part`.
     eliminated: requirements that hold exactly wherever the roots taken are not spurious, which `evaluation` checks.
@@ -72,7 +72,7 @@ class Sheet:
     def dimensions(self, u: Any) -> Any:
         """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage fulfils it.
 
-        Columns: crank, rod, offset, m, and the numbers that vary beside them, SI. Complex points give complex designs.
+        Columns: crank, rod, offset, m, and the numbers that vary besides them, SI. Complex points give complex designs.
         """
         u = np.atleast_2d(u)
         known: dict[str, Any] = {
@@ -99,7 +99,7 @@ class Sheet:
 
 
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
-    """Return the sheets of a problem: one for each sign that its offset may have, in every variant of its choices.
+    """Return the sheets of a problem: one for each possible sign of the offset, in every variant of its choices.
 
     Those that leave something free come first: the search moves on them; of each other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked

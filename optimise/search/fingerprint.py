@@ -1,4 +1,4 @@
-"""Whose records these are: a digest of a problem that is the same in every process, and the versions that compute."""
+"""Fingerprint of a search: a digest of its problem, the same in every process, and the software versions."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 
 
 class Evaluates(Protocol):
-    """What the polish needs of an evaluator."""
+    """The part of an evaluator that the polish needs."""
 
     def valid(self, u: Array) -> NDArray[np.bool_]:
         """Return which points can be evaluated."""
@@ -238,7 +238,7 @@ class _Batch:
         return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
     def _search(self, rows: NDArray[np.int64], steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
-        """Take the steps that lower the merit, corrected where they do not as they are; shrink the radius of the rest.
+        """Take the steps that lower the merit, after correction where necessary; shrink the radius of the rest.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.
         """
@@ -315,5 +315,5 @@ def _left(limits: Rows, move: Array) -> float:
 
 
 def _beyond(excess: Array) -> Array:
-    """Return what exceeds rounding."""
+    """Return the excess beyond rounding."""
     return np.maximum(excess - ROUNDING, 0.0)

@@ -32,7 +32,7 @@ _REACH = 1.0  # pieces farther below the greatest cannot become it within a step
 
 @dataclass(frozen=True)
 class Step:
-    """A step d (k,), the multipliers of goal rows (p,) and limit rows (q,), and the gradients (r, k) of what holds it.
+    """A step d (k,), the multipliers of goal (p,) and limit rows (q,), and the binding gradients (r, k).
 
     normals: gradients of the limits, bounds, held objectives and ties (differences) whose multipliers are positive.
     """

@@ -1,4 +1,4 @@
-"""The polish and the projection as steps of a ledger: what they gave is kept, not the evaluations that they took."""
+"""Polish and projection as recorded steps of a search: their results are kept, not the evaluations that they took."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def polished(
     chosen: tuple[int, ...] | None = None,
     shown: Evaluates | None = None,
 ) -> Polished:
-    """Return what `polish` gives. shown: the evaluator in another light, which it is to see instead."""
+    """Return the result of `polish`. shown: the evaluator in another light, which it is to see instead."""
     given = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
 
     def compute() -> tuple[Numbers, ...]:
@@ -30,7 +30,7 @@ def polished(
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
-    """Return what `project` gives."""
+    """Return the result of `project`."""
 
     def compute() -> tuple[Numbers, ...]:
         return _arrays(project(evaluator, start, scale))

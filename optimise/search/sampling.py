@@ -1,4 +1,4 @@
-"""Where to look: low-discrepancy points with a share on the faces, then new points around sparse parts of the front."""
+"""Samples of a search: low-discrepancy points, some on faces, then points around sparse parts of the front."""
 
 from __future__ import annotations
 

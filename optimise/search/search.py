@@ -111,7 +111,7 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 
 @dataclass
 class Run:
-    """What a search tells while it runs: its rounds, the fronts that they ended with, and what it would give by now.
+    """State of a running search: its rounds, the front at the end of each, and the result so far.
 
     ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
     archive: what the search has found on the others. pile: the designs of the settled ones, and what the polish has
@@ -163,7 +163,7 @@ class Run:
             self.stand(stage, 0, 1)
 
     def stage(self, name: str) -> Stand:
-        """Return what is to be called many times a second in a long stage: it ends a cancelled search, and tells."""
+        """Return the callback of a long stage, many times a second: it ends a cancelled search and tells progress."""
 
         def stand(done: int, of: int) -> None:
             self.ledger.poll()

@@ -22,14 +22,14 @@ def polish(
     chosen: tuple[int, ...] | None = None,
     iterations: int = ITERATIONS,
 ) -> Polished:
-    """Return what `polish.polish` gives, on the evaluator's engine where that is worth it."""
+    """Return the result of `polish.polish`, on the evaluator's engine where that is worth it."""
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
         return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations)
     return _shared_out(evaluator, _Asked(tuple(scale.tolist()), chosen, iterations), start)
 
 
 def project(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
-    """Return what `polish.project` gives, on the evaluator's engine where that is worth it."""
+    """Return the result of `polish.project`, on the evaluator's engine where that is worth it."""
     if isinstance(evaluator.engine, Serial):
         return project_here(evaluator, start, scale)
     return _shared_out(evaluator, _Asked(tuple(scale.tolist()), None, None), start)
@@ -37,7 +37,7 @@ def project(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
 
 @dataclass(frozen=True)
 class _Asked:
-    """How to polish; see `polish.polish`. iterations: None to project only."""
+    """Settings of a polish; see `polish.polish`. iterations: None to project only."""
 
     scale: tuple[float, ...]
     chosen: tuple[int, ...] | None

@@ -50,7 +50,7 @@ _EXCESS = 1e-10  # of the shaking before, by which a peak may exceed those that 
 
 @dataclass(frozen=True, kw_only=True)
 class RodSpace:
-    """Where a balance mass on the rod may be: within `radius` of the crank pin, m, and of at most `mass`, kg."""
+    """Space for a balance mass on the rod: within `radius` of the crank pin, m; at most `mass`, kg."""
 
     radius: float
     mass: float
@@ -78,7 +78,7 @@ class Shaking:
 
 @dataclass(frozen=True)
 class RodBalance:
-    """What is added to the rod: mass, kg, first moment along and across the rod, kg m, and inertia, kg m^2.
+    """Balance added to the rod: mass, kg, first moment along and across it, kg m, and inertia, kg m^2.
 
     First moment and inertia are about the crank pin. The mass centre is at moment / mass.
     """
@@ -216,7 +216,7 @@ class _Programme:
         )
 
     def _cone(self, angles: Array) -> tuple[Array, float, float]:
-        """Return x (6,), the least objective, N, with peaks at some angles only, and the price of `most`, N / kg m."""
+        """Return x (6,), the least objective, N, for peaks at these angles only, and the price of `most`, N/(kg m)."""
         cp = required("cvxpy", "counterweights of least shaking need")
         z = cp.Variable(self.count)
         goals, rules = [], []

@@ -23,7 +23,7 @@ _TURN = 2.0 * np.pi
 
 
 class ErrorRows:
-    """(error / limit)^p of one linkage as a linear function of x_i = t_i^p / scale_i, which is of order one.
+    """Rows of (error / limit)^p of one linkage, linear in x_i = t_i^p / scale_i, of order one.
 
     p: 1 for the worst case, 2 for the root-sum-square. t_i: the n tolerances that have a cost, m and rad. start: crank
     angles spread over the counted part of the cycle, rad.

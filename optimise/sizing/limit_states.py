@@ -1,4 +1,4 @@
-"""What sections must withstand, each limit state a posynomial of width w (in the plane of motion) and depth d.
+"""Limit states of sections, each a posynomial of width w (in the plane of motion) and depth d.
 
 With pin centre distance L, density rho, and the joints' loads of `section_loads` (N axial, V moment at the root, F on
 pins), the own mass of a bar of width w adds at most
@@ -64,7 +64,7 @@ def same(expression: Any) -> Any:
 
 @dataclass(frozen=True)
 class BarLoads:
-    """What one bar carries; numbers, or posynomials of the sections. N, N m, and Pa^-1 N for fatigue.
+    """Loads on one bar; numbers, or posynomials of the sections. N, N m, and Pa^-1 N for fatigue.
 
     axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass included.
     pins: force and diameter by name.
@@ -100,10 +100,10 @@ def limit_states(
     limits: SectionLimits,
     above: Above = same,
 ) -> dict[str, Any]:
-    """Return what must be at most one, by name; held: K of the plane's buckling length. z: amplification.
+    """Return the utilisation of each limit state (1 is the limit), by name.
 
-    cvxpy expressions give posynomials; numbers give numbers, with z at its least if it is None, infinite where the bar
-    buckles.
+    held: K of the plane's buckling length. z: amplification. cvxpy expressions give posynomials; numbers give numbers,
+    with z at its least if it is None, infinite where the bar buckles.
     """
     static = limits.static_safety / material.yield_strength
     euler = 12.0 * (held * length) ** 2 / (math.pi**2 * material.elasticity) * loads.compression
@@ -130,7 +130,7 @@ def limit_states(
 def rod_loads(
     w: Any, d: Any, length: float, joints: dict[str, Any], whip: Whip, material: Material, limits: SectionLimits
 ) -> BarLoads:
-    """Return what the rod carries, its own mass included."""
+    """Return the loads on the rod, its own mass included."""
     rho, fatigue = material.density, 1.0 / material.endurance
     axial = rho * d * (_some(whip.spinning * length**2 / 8.0) * w + _some(math.pi / 8.0 * whip.along) * w**2)
     moment = (
@@ -160,7 +160,7 @@ def crank_loads(
     material: Material,
     limits: SectionLimits,
 ) -> BarLoads:
-    """Return what the crank carries at the pivot, its own mass included."""
+    """Return the loads on the crank at the pivot, its own mass included."""
     rho, fatigue, pull = material.density, 1.0 / material.endurance, math.hypot(*mechanism.gravity)
     first = length**2 / 2.0 * w + math.pi * length / 8.0 * w**2 + w**3 / 12.0
     second = length**3 / 3.0 * w + math.pi * length**2 / 8.0 * w**2 + length / 6.0 * w**3 + math.pi / 128.0 * w**4
@@ -180,7 +180,7 @@ def crank_loads(
 
 
 def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -> dict[str, float]:
-    """Return the joints' loads as the limit states take them, each more than zero: N, N m, and those over Pa."""
+    """Return the joints' loads as terms of the limit states, all positive: N, N m, and those over Pa."""
     mean = material.ultimate_strength if limits.criterion == "goodman" else material.yield_strength
 
     def fatigue(load: Range) -> float:

@@ -1,4 +1,4 @@
-"""What sections are made of and what they must keep: material, safety factors, pins, sizes that can be made."""
+"""Material and limits of sections: strengths, safety factors, pins, sizes that can be made."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def _require(what: str, name: str, value: float, least: float = 0.0) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """What crank and rod are made of, SI.
+    """Material of crank and rod, SI.
 
     endurance: fully reversed strength of the finished part, all corrections and the stress raisers of the eyes in it
     (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.

@@ -1,4 +1,4 @@
-"""What loads crank and rod over the cycle: from the joints, and from their own mass. Frictionless pins, rigid links.
+"""Loads on crank and rod over the cycle, from the joints and from their own mass. Frictionless pins, rigid links.
 
 Joint forces come from the inverse dynamics of the whole machine with the sections in question, so they grow with them.
 The moment in the rod is that of its own mass only (inertia whip and weight): pins without friction carry none. For end
@@ -53,7 +53,7 @@ class Range:
 
 @dataclass(frozen=True)
 class JointLoads:
-    """What the joints put on the links, N and N m, tension positive.
+    """Loads of the joints on the links, N and N m, tension positive.
 
     rod, crank: axial force. bending: moment of the crank pin's force at the pivot, in the crank. crank_pivot,
     crank_pin, slider_pin: greatest forces of the pins.
@@ -83,7 +83,7 @@ class Whip:
 
 
 def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
-    """Return what the joints put on crank and rod; pin forces to machine precision, the others sampled."""
+    """Return the joints' loads on crank and rod; pin forces to machine precision, the others sampled."""
     angles = _angles(mechanism, linkage)
     curves = cycle(mechanism, linkage, angles)
     motion = linkage.at(angles)

@@ -42,7 +42,7 @@ class Task:
         )
 
     def joints(self, sizes: Array) -> JointLoads:
-        """Return what the joints put on these sections."""
+        """Return the joints' loads on these sections."""
         crank, rod = self.bars(sizes)
         return joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
 

@@ -54,7 +54,7 @@ def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, 
     along, across = (curves(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi))
     mass = curves(rod=RigidLink(mass=1.0, centre=0.0, inertia=0.0))
     inertia = curves(rod=RigidLink(mass=0.0, inertia=1.0))
-    pin = mass + inertia  # a mass of 1 kg at 1 m has both, beside its first moment
+    pin = mass + inertia  # a mass of 1 kg at 1 m has both, besides its first moment
     ahead = curves(rod=RigidLink(mass=1.0, centre=1.0, inertia=0.0)) - pin
     aside = curves(rod=RigidLink(mass=1.0, centre=0.0, centre_across=1.0, inertia=0.0)) - pin
     table = np.stack([bare, along, across, mass, ahead, aside, inertia], axis=-1)
@@ -62,7 +62,7 @@ def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, 
 
 
 def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
-    """Return force (7, 7) and moment (7, 7) rows: the norm of rows @ (1, x) is the root mean square over the cycle."""
+    """Return force and moment rows (7, 7) each; |rows @ (1, x)| is the root mean square over the cycle."""
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     tau = np.arange(_NODES) * (2.0 * math.pi / _NODES)
     angles = np.array([uncrowded(float(t), kappa) for t in tau])
@@ -75,7 +75,7 @@ def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
 
 
 def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:
-    """Return the mechanism with a counterweight at a radius, m, instead of its own, and with a mass added to the rod.
+    """Return the mechanism with its counterweight replaced by one at a radius, m, and a mass on the rod.
 
     x: (6,), as in `NAMES`; the rod then becomes a `RigidLink` of that length.
     """
@@ -106,7 +106,7 @@ def _moments(link: Link, length: float) -> Array:
 
 
 def moving_moment(mechanism: Mechanism, linkage: Linkage) -> float:
-    """Return the first moment, kg m, of crank, rod and slider as if all but the crank were at the crank pin."""
+    """Return the first moment, kg m, of crank, rod and slider, the last two at the crank pin."""
     crank = _moments(mechanism.crank, float(linkage.crank))
     mass = _moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass
     return float(math.hypot(crank[1], crank[2]) + mass * float(linkage.crank))

@@ -1,4 +1,4 @@
-"""The application that serves the API: store and settings in, one ASGI application out, nothing shared beside."""
+"""The application that serves the API: store and settings in, one ASGI application out, nothing else shared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Connections of the web server: how many there are, and how large, late or broken a request on one may be.
+"""Limits on connections of the web server: their number, and the size, duration and form of a request.
 
 What is refused here never reaches the application: nobody needs a token to open a connection, and without these limits
 one client could hold all of them, or keep the server busy with a request that never ends.
@@ -73,7 +73,7 @@ class Gate:
         app_state: dict[str, Any],
         _loop: asyncio.AbstractEventLoop | None = None,
     ) -> Connection:
-        """Return what handles a new connection."""
+        """Return the protocol that handles a new connection."""
         return Connection(self, config, server_state, app_state, _loop)
 
     def make_room(self, new: Connection) -> bool:

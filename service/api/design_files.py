@@ -1,4 +1,4 @@
-"""Single designs as files: the linkage for CAD, its motion, and the report for a review; as they are, or changed."""
+"""Files of a single design, as found or with other lengths: linkage for CAD, motion, report for a review."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric")
 
 
 def _report(shown: ShownDesign, store: Store, units: System) -> Report:
-    """Return the report of a design, with what the store keeps beside the result."""
+    """Return the report of a design, with what the store keeps besides the result."""
     from ..report.design_report import design_report
     from ..report.subject import subject_of
 
@@ -133,7 +133,7 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
 
 
 def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:
-    """Return what takes a while to draw; what was drawn before is kept with the front."""
+    """Return a drawn file from those kept with the front; draw and keep it if it is not there yet."""
     found = shown.found
     content = found.image(shown.key, kind)
     if content is None:

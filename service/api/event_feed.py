@@ -1,4 +1,4 @@
-"""What happens to jobs, for many streams at once: one task looks it up and wakes those who wait for it.
+"""Events of jobs for many streams at once: one task looks them up and wakes the streams that wait.
 
 A stream never holds a thread while it waits, and never misses an event: it knows the number of the last one it sent,
 takes what follows from those that the task looked up lately, and from the store where it is further behind.
@@ -83,7 +83,7 @@ class Feed:
             channel.tell([], over=True)
 
     async def follow(self, number: int, after: int, *, last: int, heartbeat: float) -> AsyncIterator[Event | None]:
-        """Yield the events of a job after one, as they come; ends when the job has ended and all are told.
+        """Yield the events of a job after a given one as they come, up to its last one.
 
         last: an event that it has already. Yields None when nothing came for `heartbeat` seconds. Also ends when the
         job is deleted.

@@ -1,4 +1,4 @@
-"""What happens to a job: as server-sent events while it happens, or as a page of JSON."""
+"""Events of a job: as server-sent events while they happen, or as a page of JSON."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ async def list_events(
         Header(ge=0, le=LARGEST, description="the same as `after`, as browsers send it to reconnect"),
     ] = None,
 ) -> Response:
-    """Return what happened to a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""
+    """Return the events of a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""
     begin = after if last_event_id is None else last_event_id
     if STREAM not in request.headers.get("accept", ""):
         return JSONResponse(await run_sync(_page, store, number, begin, limit))

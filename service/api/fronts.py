@@ -54,7 +54,7 @@ class ColumnModel(BaseModel):
 
 
 class FrontModel(BaseModel):
-    """What a job found, without its designs."""
+    """The front that a job found, without its designs."""
 
     job: int = Field(examples=[7])
     run: str = Field(examples=["20261121-193012-feeder"])

@@ -50,7 +50,7 @@ def list_presets() -> PresetList:
 
 @router.post("/parse", responses=problem_responses(415))
 def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
-    """Give the tables of a job file, which is sent as for a submission; whether it is a valid job is not looked at."""
+    """Give the tables of a job file, which is sent as for a submission. Whether the job is valid is not checked."""
     return Tables(job=dict(asked.tables))
 
 

@@ -1,4 +1,4 @@
-"""Jobs as clients send them: as JSON with what else is wanted, or as a job file, and what is allowed in them."""
+"""Requests that submit or copy jobs: JSON with options or a job file, and the content they may have."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ IdempotencyKey = Annotated[
 
 
 class AskedLimits(BaseModel):
-    """What a job may use; what is left out is as far as the service allows."""
+    """Limits that a client asks for a job; the service's own hold where one is left out."""
 
     model_config = ConfigDict(extra="forbid", strict=True, title="AskedLimits")
 
@@ -68,7 +68,7 @@ class Submission(BaseModel):
 
 
 class Clone(BaseModel):
-    """What is different in a copy of a job."""
+    """The changes in a copy of a job."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -92,7 +92,7 @@ class Asked:
 
 
 async def asked_for(request: Request) -> Asked:
-    """Return what a submission asks for; a dependency. Raises what becomes 400, 415 or 422."""
+    """Return the submission that a request contains; a dependency. Raises the errors that become 400, 415 or 422."""
     body = await request.body()
     settings: Settings = request.app.state.settings
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def merged(value: Any, changes: Any) -> Any:
-    """Return a value with changes: tables key by key, null takes a key away, everything else in place of what was."""
+    """Return a value with changes applied: tables key by key; null removes a key; anything else replaces the value."""
     if not isinstance(changes, Mapping):
         return changes
     kept = dict(value) if isinstance(value, Mapping) else {}

@@ -1,4 +1,4 @@
-"""What the API says of jobs, as JSON; and so what its schema promises."""
+"""JSON models of the API's answers about jobs, from which its schema is made."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Shown(BaseModel):
 
 
 class JobLimits(Shown):
-    """What a job may use; null is no limit."""
+    """Limits of a job on time, evaluations and memory; null is no limit."""
 
     seconds: float | None = Field(description="of its search, s")
     evaluations: int | None = Field(description="designs that its search evaluates")
@@ -57,7 +57,7 @@ class FrontSoFar(Shown):
 
 
 class JobProgress(Shown):
-    """Where a search stands."""
+    """Progress of a search."""
 
     stage: str
     round: int
@@ -75,7 +75,7 @@ class JobProgress(Shown):
 
 
 class JobSummary(Shown):
-    """What a job found, in short."""
+    """Summary of the result of a job."""
 
     designs: Count
     hypervolume: float | None
@@ -87,7 +87,7 @@ class JobSummary(Shown):
 
 
 class JobShown(Shown):
-    """Where a job stands. Times are seconds since 1970, UTC."""
+    """State of a job. Times are seconds since 1970, UTC."""
 
     model_config = ConfigDict(frozen=True, title="Job")
 

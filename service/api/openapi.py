@@ -74,7 +74,7 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
 
 
 def _links(paths: dict[str, Any]) -> dict[str, Any]:
-    """Return what may be asked next of a job that was submitted."""
+    """Return the OpenAPI links from a submitted job to the requests that may follow."""
     links = {}
     for path, methods in paths.items():
         rest = path.removeprefix(_NUMBER)

@@ -1,4 +1,4 @@
-"""A job while it is being written: what is wrong with it, what it allows, and a linkage to look at."""
+"""Preview of a job while it is being written: mistakes, possible values, and an example linkage."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class WrongModel(BaseModel):
 
 
 class AllowedModel(BaseModel):
-    """What the ranges of crank, rod and offset allow, from samples.
+    """Values that the ranges of crank, rod and offset allow, from samples.
 
     turning_share: of the designs within the ranges that turn fully. stroke_mm, time_ratio, transmission_angle_deg: from
     least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
@@ -87,7 +87,7 @@ class ExampleModel(BaseModel):
 
 
 class PreviewModel(BaseModel):
-    """What can be said of a job while it is being written."""
+    """Findings about a job while it is being written."""
 
     wrong: list[WrongModel]
     understood: Understood | None = Field(description="what was understood, once nothing is wrong")

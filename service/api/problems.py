@@ -1,4 +1,4 @@
-"""What a client is told when something is refused or fails: problem documents (RFC 9457), whatever the reason."""
+"""Problem documents (RFC 9457), which tell a client why a request was refused or failed."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _RETRY = {"Retry-After": "5"}
 
 
 class Problem(BaseModel):
-    """Why a request was refused or failed."""
+    """Reason why a request was refused or failed."""
 
     type: str = Field("about:blank", description="always about:blank: the status says which kind of problem it is")
     title: str = Field(description="the status in words", examples=["Not Found"])

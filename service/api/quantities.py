@@ -1,4 +1,4 @@
-"""What the quantities mean, and the units that they are shown in."""
+"""Meanings of the quantities, and the units in which they are shown."""
 
 from __future__ import annotations
 

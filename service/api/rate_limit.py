@@ -1,4 +1,4 @@
-"""How often something may be asked for."""
+"""Limit on the rate of requests."""
 
 from __future__ import annotations
 

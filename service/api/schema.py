@@ -21,7 +21,7 @@ router = APIRouter(tags=["jobs"])
 
 
 class Understood(BaseModel):
-    """What was understood of a job, in words."""
+    """A job in words, as it was understood."""
 
     name: str = Field(examples=["Feeder"])
     given: list[str] = Field(examples=[["crank speed 2400 rpm (counter-clockwise)"]])
@@ -54,7 +54,7 @@ def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep
 
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
-    """Return what was understood of the tables that state a problem."""
+    """Return a problem in words, as it was understood from the tables that state it."""
     from ...optimise.job.notes import notes_of
     from ..text.summary import summarise
 

@@ -1,4 +1,4 @@
-"""Who may talk to the service: nobody without the token, no page of another site, nobody under another name."""
+"""Access to the service: nobody without the token, no page of another site, nobody under another name."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Guard:
             await fault(scope, receive, protected)
 
     def _answer(self, connection: HTTPConnection) -> Response | None:
-        """Return what a request is answered without being passed on; None for one that is."""
+        """Return the answer to a request that is not passed on; None for one that is."""
         scope, headers = connection.scope, connection.headers
         host = headers.getlist("host")
         if "*" not in self.hosts and (len(host) != 1 or _name(host[0]) not in self.hosts):

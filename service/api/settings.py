@@ -1,4 +1,4 @@
-"""What whoever runs the API decides about it."""
+"""Settings of the API, chosen by its operator."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """How an API behaves.
+    """Settings of an API.
 
     token: what every request must carry; None lets everybody in who can reach it. hosts: names by which the service may
     be called, without ports; "*" is any. most_body: bytes of a request. most_depth: tables within tables of a JSON

@@ -1,4 +1,4 @@
-"""A design as it is on the screen of who asks: that of the front, or with other lengths that the address gives."""
+"""A design of a front, with its own lengths or with others given in the address of a request."""
 
 from __future__ import annotations
 

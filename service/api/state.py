@@ -1,4 +1,4 @@
-"""What a request finds in the application that serves it."""
+"""Objects of the application that its requests use: the store and the settings."""
 
 from __future__ import annotations
 
@@ -24,4 +24,4 @@ StoreDep = Annotated[Store, Depends(_store)]
 """The store; its calls block, so endpoints that use it are plain functions, which run in a thread of their own."""
 
 SettingsDep = Annotated[Settings, Depends(_settings)]
-"""What whoever runs the API decided."""
+"""Settings of the API, chosen by its operator."""

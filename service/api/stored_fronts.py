@@ -1,4 +1,4 @@
-"""Fronts of jobs that have ended, kept at hand: they do not change, and reading one of 10,000 designs takes a while."""
+"""Fronts of ended jobs, kept in memory: they never change, and reading 10,000 designs takes a while."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a request may bring: refused before anything reads it are bodies too large, and JSON that no job has."""
+"""Refusal of bodies that are too large, and of JSON that no job has, before anything else reads them."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class StrictInput:
 
 
 async def in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
-    """Return what a body says. Large ones wait for each other: reading one holds the interpreter for long stretches."""
+    """Return the content of a body; large ones are read in turn, as each holds the interpreter for long."""
     if len(body) <= _LARGE:
         return read(*of)
     turn: asyncio.Lock = app.state.reading
@@ -88,7 +88,7 @@ async def in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
 
 
 def _again(body: bytes, receive: Receive) -> Receive:
-    """Return what gives the body once more, then whatever comes."""
+    """Return a receive function that gives the body once more, then whatever comes."""
     first = True
 
     async def replayed() -> Message:
@@ -102,7 +102,10 @@ def _again(body: bytes, receive: Receive) -> Receive:
 
 
 def read_json(body: bytes, most_depth: int) -> Any:
-    """Return what a JSON text says. Raises `InputError` for what `require_moderate` refuses, and for doubled keys."""
+    """Return the value of a JSON text.
+
+    Raises `InputError` for what `require_moderate` refuses, and for doubled keys.
+    """
     try:
         value = json.loads(body, parse_constant=_no_number, parse_int=_whole, object_pairs_hook=_unique)
     except RecursionError:

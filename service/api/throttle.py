@@ -23,7 +23,7 @@ class Turns:
 
     @contextlib.contextmanager
     def turn(self) -> Iterator[None]:
-        """Wait for a turn; give up with a 503 that says so where too many wait, or it does not come soon."""
+        """Wait for a turn; refuse with a 503 that says so where too many wait, or none comes soon."""
         if not self._waiting.acquire(blocking=False):
             raise self._busy(f"{_MOST} others wait")
         try:

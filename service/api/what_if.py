@@ -1,4 +1,4 @@
-"""What surrounds a design: what its job asks, what it trades, and what becomes of it with other lengths."""
+"""Context of a design: the requirements of its job, its trade-offs, and the effect of other lengths."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class RequirementModel(BaseModel):
 
 
 class RequirementsModel(BaseModel):
-    """What the job asks of a design, with the choices that it made.
+    """The requirements of a job on a design, with the choices that the design made.
 
     ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
     names: of quantities, as in job files, by column. tolerances: whether the machine has any.
@@ -61,7 +61,10 @@ class RequirementsModel(BaseModel):
 
 
 class TradeOffsModel(BaseModel):
-    """What one objective costs in the others at a design, in words. note: why there is nothing, or empty."""
+    """Trade-offs of a design: the cost of one objective in the others, in words.
+
+    note: why there is nothing, or empty.
+    """
 
     job: int = Field(examples=[7])
     number: int = Field(examples=[3])

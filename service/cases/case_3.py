@@ -40,7 +40,7 @@ def numbers() -> Numbers:
 
 
 def formulas(r1: float) -> dict[str, float]:
-    """Return what the report's formulas give, in its own notation: r_1 position, r_2 crank, r_3 rod."""
+    """Return the values of the report's formulas in its own notation: r_1 position, r_2 crank, r_3 rod."""
     r2, r3, t2, w2, p = float(LINKAGE.crank), float(LINKAGE.rod), ANGLE, SPEED, -LOAD
     t3 = math.asin(-r2 * math.sin(t2) / r3)
     w3 = -r2 * w2 * math.cos(t2) / (r3 * math.cos(t3))

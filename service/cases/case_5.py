@@ -126,7 +126,7 @@ def numbers() -> Numbers:
 
 
 def formulas(t: float, e: float) -> dict[str, float]:
-    """Return what the paper's equations give as they are printed, in its own notation; lengths in m."""
+    """Return the values of the paper's equations as they are printed, in its own notation; lengths in m."""
     k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
     sine, cosine = math.sin(t), math.cos(t)
     h = e + k * sine

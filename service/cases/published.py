@@ -1,4 +1,4 @@
-"""What the publications print, and the verdict on it.
+"""Printed numbers of publications, and the verdict on each.
 
 Each case has a data file with its printed numbers, as text: the digits printed say how exact they claim to be. The
 exact value comes from the model by the row's key. A number that the model does not confirm needs a reason, written by
@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 CASES = (1, 2, 3, 4, 5)
 _SAME = 1e-9
-"""How far, of its value, a printed formula may be from the exact one: rounding of either, and no more."""
+"""Relative error allowed to a printed formula: rounding of either value, and no more."""
 Verdict = Literal["agrees", "misprint", "differs", "not checkable", "not printed"]
 
 

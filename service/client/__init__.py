@@ -146,7 +146,7 @@ class Client:
         return job
 
     def front(self, number: int) -> Result:
-        """Return what a job found, with all designs; what is infinite or not defined is None."""
+        """Return the result of a job with all designs; infinite and undefined values are None."""
         record = self._get(f"jobs/{number}/export.json")
         rows: list[Row] = record["designs"]
         return result_from(record, rows, str(record["run"]))
@@ -233,7 +233,7 @@ class Client:
         return self._get("schema")
 
     def check(self, job: JobSource) -> Record:
-        """Return what is understood of a job, in words; nothing is queued. Raises `InputError` for a wrong one."""
+        """Return a job in words, as it is understood; nothing is queued. Raises `InputError` for a wrong one."""
         return self._post("check", {"job": tables_of(job)}, again=True)
 
     def analyse(

@@ -121,7 +121,7 @@ class Tries:
 
 
 def refusal(answer: httpx.Response) -> SlidercrankError:
-    """Return what a service refused as an exception with its sentence.
+    """Return the exception for a refusal of a service, with its sentence.
 
     `NotFound` for 404, `InputError` for what was wrong in the request, `RunError` for what a job cannot do or give as
     it stands, `ServiceError` for all others, of which `Away` may pass.

@@ -15,7 +15,7 @@ Event = dict[str, Any]
 
 
 def followed(connection: Connection, number: int, after: int) -> Iterator[Event]:
-    """Yield the events of a job after one, as they happen, until the service says that there will be no more.
+    """Yield the events of a job after a given one as they happen, until the service has no more.
 
     Every connection says which event came last, so none is missed and none comes twice.
     """
@@ -40,7 +40,7 @@ def followed(connection: Connection, number: int, after: int) -> Iterator[Event]
 
 
 def _events(lines: Iterator[str]) -> Iterator[Event | None]:
-    """Yield the data of server-sent events, None for a sign of life; an event that is cut off is left out.
+    """Yield the data of server-sent events, None for a sign of life; leave out an event cut off.
 
     WHATWG, HTML standard, 9.2.6.
     """

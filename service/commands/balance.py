@@ -31,7 +31,7 @@ def balance(
     ] = "peak",
     radius: Annotated[
         str | None,
-        typer.Option(metavar=_LENGTH, help="Where the counterweight's centre is.  [default: as in JOB, or the crank]"),
+        typer.Option(metavar=_LENGTH, help="Place of the counterweight's centre.  [default: as in JOB, or the crank]"),
     ] = None,
     mass: Annotated[
         str | None, typer.Option(metavar="MASS", help="Greatest mass of the counterweight, such as 2 kg.")

@@ -34,7 +34,7 @@ _SHOWN_NOTES = 8
 def certify(
     run: Run,
     epsilon: Annotated[
-        float, typer.Option(help="What is to be proven, as a share of each objective's range over the front.")
+        float, typer.Option(help="Distance to be proven, as a share of each objective's range over the front.")
     ] = 0.01,
     seconds: Annotated[float, typer.Option(help="Stop after so long with what is proven by then.")] = 60.0,
     runs: Runs = None,

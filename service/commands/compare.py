@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Compared:
-    """A run with the name it goes by, what found it, and its objectives in the order of the first run."""
+    """A run with its name in the comparison, its method, and its objectives in the first run's order."""
 
     name: str
     method: str

@@ -37,7 +37,7 @@ class Check:
 
 
 def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
-    """Look at a store, given by its address, at the place of runs and at this machine; no job is changed.
+    """Check a store, given by its address, the place of runs and this machine; change no job.
 
     named: whether somebody says that there is a store at the address; it may be missing otherwise.
     """
@@ -73,7 +73,7 @@ def _store(address: str, named: bool) -> Iterator[Check]:
 
 
 def _private(address: str) -> Iterator[Check]:
-    """Look at who may use a store that is a file: it has all that the token of a service protects."""
+    """Check who may use a store that is a file: it holds everything that a service's token protects."""
     from ..store.database import may_use, remedy_of_rights
 
     if "://" not in address and not may_use(Path(address)):

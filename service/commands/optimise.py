@@ -51,7 +51,7 @@ def optimise(
     runs: Runs = None,
     store: Address = None,
     designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Of everything random.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything random.")] = None,
     cores: Cores = None,
     scheduler: Scheduler = None,
     tls_ca: TlsAuthority = None,
@@ -125,7 +125,7 @@ def optimise(
 
 
 def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
-    """Return what a run found in the units that are asked for. front: where its trade-offs come from."""
+    """Return the result of a run in the units that are asked for. front: where its trade-offs come from."""
     if units == "metric":
         return result
     from ..designs.shown_units import result_in
@@ -135,7 +135,7 @@ def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
 
 
 def _again_command(run: str, runs: Path | None, store: str | None) -> str:
-    """Return the command that goes on with a run, with the places that were named; a password is left to be typed."""
+    """Return the command that resumes a run, with the places that were named but without passwords."""
     from ..store.database import without_secrets
 
     places = [*(["--runs", str(runs)] if runs else []), *(["--store", without_secrets(store)] if store else [])]
@@ -144,7 +144,7 @@ def _again_command(run: str, runs: Path | None, store: str | None) -> str:
 
 @contextlib.contextmanager
 def _store_or_own(option: str | None, runs: Path | None) -> Iterator[tuple[Store, bool]]:
-    """Give the store, or where it cannot be used one that lasts as long as the run; and whether it is the first."""
+    """Give the store, or a temporary one for this run where it cannot be used, and which it is."""
     from ..store import Store
 
     with contextlib.ExitStack() as opened:
@@ -224,7 +224,7 @@ def _contents(folder: Path) -> list[str]:
 
 
 def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:
-    """Return what a job file states, and its tables, both with the options that were given."""
+    """Return the problem of a job file and its tables, both with the options that were given."""
     from ...optimise.job import load_job, read_job
     from ...optimise.job.notes import notes_of
 

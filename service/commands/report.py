@@ -91,7 +91,7 @@ def _content(made: Report, *, pdf: bool) -> bytes:
 
 
 def _kept(file: Path) -> dict[str, Any] | None:
-    """Return what a file of a run says, None if there is none. Raises `RunError` for a damaged one."""
+    """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged one."""
     if not file.is_file():
         return None
     try:

@@ -130,7 +130,7 @@ def front(
 
 
 def shown_result(result: Result, units: System, folder: Path | None) -> Result:
-    """Return what a run found in the units that are asked for.
+    """Return the result of a run in the units that are asked for.
 
     folder: of the run, where its trade-offs are told; None where they are not.
     """

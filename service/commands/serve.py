@@ -54,9 +54,9 @@ def serve(
     ] = None,
     allow_quantity: AllowQuantity = None,
     submissions: Annotated[
-        int, typer.Option("--submissions-per-minute", min=0, help="Of all clients together; 0 is no limit.")
+        int, typer.Option("--submissions-per-minute", min=0, help="Sum over all clients; 0 is no limit.")
     ] = 600,
-    most_queued: Annotated[int, typer.Option(min=1, help="How many jobs may wait.")] = 10_000,
+    most_queued: Annotated[int, typer.Option(min=1, help="Most jobs that may wait.")] = 10_000,
     most_running: MostRunning = None,
     most_seconds: MostSeconds = None,
     most_evaluations: MostEvaluations = None,

@@ -32,11 +32,11 @@ _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 def submit(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
     store: Address = None,
-    priority: Annotated[int, typer.Option(help="From -1000 to 1000; jobs of higher ones are solved first.")] = 0,
+    priority: Annotated[int, typer.Option(help="-1000 to 1000; jobs of higher priority are solved first.")] = 0,
     key: Annotated[
-        str | None, typer.Option(help="Of this submission: repeating it with the same key gives the same job.")
+        str | None, typer.Option(help="Key of this submission: repeating it with the same key gives the same job.")
     ] = None,
-    attempts: Annotated[int, typer.Option(help="How often it is tried, without going forward, before it fails.")] = 3,
+    attempts: Annotated[int, typer.Option(help="Number of tries, without progress, before it fails.")] = 3,
     seconds: Annotated[float | None, typer.Option(help="End its search after so long, with what it found.")] = None,
     evaluations: Annotated[
         int | None, typer.Option(help="End its search after so many designs, with what it found.")
@@ -106,7 +106,7 @@ def _tell_of(functions: Sequence[str], job: Path) -> None:
 
 
 def _source(job: Path) -> Artefact | None:
-    """Return the job file as it is; None if it needs files beside it, which the tables of the job have in them."""
+    """Return the job file as it is; None if it names other files, which the job's tables contain."""
     from ...optimise.job import files_beside
     from ..store import Artefact
 
@@ -117,7 +117,7 @@ def _source(job: Path) -> Artefact | None:
 
 
 def _follow(store: Store, job: Job, *, json: bool) -> int:
-    """Write the events of a job until it ends, and return its exit code; 0 as soon as nobody reads on."""
+    """Write the events of a job until it ends and return its exit code; 0 once nobody reads on."""
     try:
         with _shown(json) as show:
             for event in events_until_end(store, job.id):
@@ -134,7 +134,7 @@ def _follow(store: Store, job: Job, *, json: bool) -> int:
 
 
 def events_until_end(store: Store, number: int) -> Iterator[Event]:
-    """Yield what happened to a job and what happens, until it has ended; while the database is away, wait for it.
+    """Yield the past and coming events of a job until it has ended; wait while the database is away.
 
     Raises `NotFound` if the job is deleted meanwhile.
     """
@@ -164,7 +164,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 
 @contextlib.contextmanager
 def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
-    """Yield what writes an event: as JSON, or in words, with a bar for the progress where there is a terminal."""
+    """Yield the writer of events: as JSON, or in words, with a progress bar where there is a terminal."""
     from ..text.screen import error_console
 
     if json:
@@ -194,7 +194,7 @@ def _line(event: Event) -> str:
 
 
 def in_words(event: Event) -> str:
-    """Return what happened, on one line."""
+    """Return an event in words, on one line."""
     data: dict[str, Any] = event.data
     if event.kind == "progress":
         return (

@@ -32,7 +32,7 @@ def sweep(
         typer.Option(metavar="RANGE", help='What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.'),
     ],
     of: Annotated[
-        list[str], typer.Option(metavar="QUANTITY", help="What to compute, such as peak_torque. Repeatable.")
+        list[str], typer.Option(metavar="QUANTITY", help="Quantity to compute, such as peak_torque. Repeatable.")
     ],
     crank: Crank = None,
     rod: Rod = None,
@@ -78,7 +78,7 @@ def sweep(
 
 
 def parse_axis(text: str) -> Axis:
-    """Return what is swept from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
+    """Return the axis of a sweep from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
     import numpy as np
 
     from ...objectives.kinds import ANGULAR_SPEED, LENGTH

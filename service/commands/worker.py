@@ -26,7 +26,7 @@ from .worker_options import (
 
 def worker(
     store: Address = None,
-    processes: Annotated[int, typer.Option(min=1, max=256, help="How many; each solves one job at a time.")] = 1,
+    processes: Annotated[int, typer.Option(min=1, max=256, help="Workers; each solves one job at a time.")] = 1,
     lease: Lease = 30.0,
     allow_quantity: AllowQuantity = None,
     drain: Annotated[bool, typer.Option("--drain", help="End as soon as no job waits.")] = False,

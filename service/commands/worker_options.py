@@ -9,14 +9,14 @@ import typer
 
 
 class LogFormat(StrEnum):
-    """How logs are written."""
+    """Format of logs."""
 
     text = "text"
     json = "json"
 
 
 Logs = Annotated[
-    LogFormat, typer.Option("--log-format", help="Of the log on standard error: for people, or one JSON object a line.")
+    LogFormat, typer.Option("--log-format", help="Log format on standard error: for people, or one JSON object a line.")
 ]
 Lease = Annotated[
     float, typer.Option(min=1.0, max=3600.0, help="Seconds until a job whose worker is gone goes to another one.")
@@ -26,7 +26,7 @@ Grace = Annotated[
 ]
 AllowQuantity = Annotated[
     list[str] | None,
-    typer.Option(metavar="MODULE:FUNCTION", help="That jobs may name as a quantity of their own. Repeatable."),
+    typer.Option(metavar="MODULE:FUNCTION", help="Function that jobs may name as a quantity of their own. Repeatable."),
 ]
 MostRunning = Annotated[
     int | None, typer.Option(min=1, help="Let at most so many jobs of the store be solved at a time.")

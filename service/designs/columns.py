@@ -91,7 +91,7 @@ def _group(key: str) -> Group:
 
 @functools.cache
 def _titles() -> dict[str, str]:
-    """Return what the columns of quantities are called, by their keys."""
+    """Return the titles of the columns of quantities, by their keys."""
     from ...objectives.registry import QUANTITIES
 
     return {quantity.field: quantity.title for quantity in QUANTITIES.values()}
@@ -132,7 +132,7 @@ def split_unit(key: str) -> tuple[str, str, float]:
 
 
 def key_in(key: str, system: System) -> tuple[str, float]:
-    """Return the key of a metric column in a system of units, and what its values are to be multiplied by."""
+    """Return the key of a metric column in a system of units, and the factor for its values."""
     face = _face(key)
     if system == "metric" or face is None or face.suffix not in _TO_INCH:
         return key, 1.0

@@ -24,7 +24,7 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 
     machine: whether masses, loads and tolerances are known; else only the motion is given.
     """
-    from ...objectives.cycle_curves import cycle_curves, even_angles
+    from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     curves = cycle_curves(mechanism, linkage, even_angles(_ANGLES))
     columns = {

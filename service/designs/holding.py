@@ -20,7 +20,7 @@ Lengths = tuple[float, float, float]
 
 
 def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
-    """Return lengths, m, near the given ones and with the moved one as given, that keep every equality of the job.
+    """Return lengths, m, near the given ones, the moved one as given, that meet every equality of the job.
 
     Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
     equalities, halved while the linkage would not turn fully. Raises `InputError` where it finds none.
@@ -55,7 +55,7 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
 
 
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
-    """Return by how much the equalities are missed (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
+    """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
     import numpy as np
 
     misses, slopes, sizes = [], [], []

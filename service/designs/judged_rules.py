@@ -1,4 +1,4 @@
-"""Whether a design that was given meets what its job asks: each rule with the value, and by how much it is missed."""
+"""Requirements of a job, judged at a given design: the value of each, and by how much it is missed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a job asks of one of its designs: where its dimensions may lie, and what must hold."""
+"""Requirements of a job on one of its designs: ranges of the dimensions, and constraints."""
 
 from __future__ import annotations
 

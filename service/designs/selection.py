@@ -1,4 +1,4 @@
-"""Designs of a front that are asked for: those that meet conditions, in an order, and the front with only these."""
+"""Selection of designs of a front: those that meet conditions, in an order, and the front of only these."""
 
 from __future__ import annotations
 
@@ -47,6 +47,6 @@ def part_of(result: Result, rows: Sequence[int]) -> Result:
 
 
 def none_meets(result: Result, where: Collection[str]) -> str:
-    """Return what to say where no design meets the conditions."""
+    """Return the message for a front where no design meets the conditions."""
     conditions = " and ".join(text.strip() for text in where)
     return f"none of the {len(result.designs)} designs meets {conditions}"

@@ -1,4 +1,4 @@
-"""What was found, in the units of a system: keys, values and sentences together.
+"""Results in a system of units: keys, values and sentences together.
 
 All that is stored is metric. What is shown in inches is made from it here, at the edge, and nowhere else.
 """
@@ -32,7 +32,7 @@ def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
 
 
 def record_in(record: Any, system: System) -> Any:
-    """Return what JSON has with keys and values of a system, at any depth.
+    """Return a JSON record with keys and values of a system of units, at any depth.
 
     Numbers and lists of numbers take the unit that their key ends with, and the key that of the system.
     """
@@ -44,7 +44,7 @@ def record_in(record: Any, system: System) -> Any:
 
 
 def result_in(result: Result, system: System, problem: Problem | None = None) -> Result:
-    """Return what a run found in the units of a system. The order of the designs and all choices among them stay.
+    """Return the result of a run in the units of a system. The order of the designs and all choices among them stay.
 
     problem: of the run; what the knee costs is stored in metric units and computed anew with it, left out without it.
     """

@@ -36,7 +36,7 @@ class StoredDesign:
 
 
 def design_of(problem: Problem, row: Row) -> StoredDesign:
-    """Return a design from its row in the table of the front of a problem; its shown dimensions come out the same.
+    """Return a design from its row in the table of a problem's front, its shown dimensions unchanged.
 
     Raises `RunError` for a row that does not belong to the problem.
     """
@@ -88,7 +88,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
 
 
 def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
-    """Return what the shown rows tell of the designs: all but slopes, which are of no piece and no unknown."""
+    """Return the designs as their shown rows tell them: everything but slopes, which have no piece and no unknown."""
     import numpy as np
 
     sizes = _factors(problem.mechanism)
@@ -104,7 +104,7 @@ def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
 
 
 def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
-    """Return which variant a design is of: that of its labels, and of those the one whose ranges it is in."""
+    """Return the index of the variant with a design's labels; of several, the one whose ranges fit best."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
@@ -124,7 +124,7 @@ def _outside(variant: Variant, values: Sequence[float]) -> float:
 
 
 def _factors(mechanism: Mechanism) -> dict[str, float]:
-    """Return what the free numbers of a design are called in its row, and what one SI unit is there."""
+    """Return the columns of a design's free numbers, each with the factor from SI to its unit."""
     varying = (varying_column(item) for item in mechanism.varying)
     return {**_MILLIMETRES, **{key: unit.factor for key, unit in varying}}
 

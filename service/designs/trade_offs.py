@@ -18,7 +18,7 @@ _NEAR = 1e-9  # relative: how well a point of the unit box must give the design 
 
 
 def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
-    """Return what one objective costs in the others at a design, in words, the active constraints held.
+    """Return the cost of one objective in the others at a design, in words, the active constraints held.
 
     front: of `front_of`. row: of the design in it. system: of the units that they are told in.
 

@@ -1,4 +1,4 @@
-"""A design of a stored front with other lengths: its numbers, what it breaks, and where it is beside the front."""
+"""A design of a stored front with other lengths: numbers, broken requirements, and its place against the front."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _SAME = 1e-9  # of an objective's range over the front: a difference below is ro
 
 @dataclass(frozen=True)
 class Variation:
-    """row: every quantity and the slacks. broken: columns of constraints that are not met. outside: of ranges left.
+    """A design with other lengths, judged against its job and front. row: every quantity and the slacks.
 
-    dominated_by, dominates: positions in the front of designs that are as good in every objective and better in one,
-    and of those that this one beats so, those of the greatest difference first.
+    broken: columns of constraints that are not met. outside: of ranges left. dominated_by, dominates: positions in the
+    front of designs that are as good in every objective and better in one, and of those that this one beats so, those
+    of the greatest difference first.
     """
 
     row: Row

@@ -27,7 +27,7 @@ _ANCHORS = {"start": 0, "middle": 1, "end": 2}  # horizontal alignment on the ba
 
 
 def dxf_file(drawing: Drawing) -> bytes:
-    """Return the drawing as the content of a DXF file; what is not ASCII is escaped, so that any encoding will do."""
+    """Return the drawing as the content of a DXF file, non-ASCII characters escaped so that any encoding serves."""
     out = io.StringIO()
     document(drawing).write(out)
     return out.getvalue().encode("ascii", errors="dxfreplace")  # of ezdxf: \\U+00F6

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
 
 CRANK_ANGLE = math.radians(60.0)
-"""Where a linkage is drawn unless asked otherwise."""
+"""Crank angle at which a linkage is drawn unless asked otherwise, rad."""
 _TEXT = 0.022  # height of dimensions, of the drawing's size
 
 
@@ -55,7 +55,7 @@ def linkage_drawing(
 def _dimensions(
     pin: Point, slider: Point, sizes: Sizes, *, left: float, shown: Proportions, height: float
 ) -> list[Shape]:
-    """Return the dimensions of crank and rod beside them, of the offset at the left, of the stroke beyond the rest."""
+    """Return the dimension lines: of crank and rod beside them, of the offset at the left, of the stroke outside."""
     e = sizes.offset
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     rod = (slider[0] - pin[0], slider[1] - pin[1])

@@ -1,4 +1,4 @@
-"""What a linkage looks like in a position, and what stands still around it: shapes in mm, on their layers."""
+"""Shapes of a linkage in a position, and of its fixed surroundings: in mm, on their layers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a drawing consists of: lines, circles, outlines, labels and dimensions on layers, in millimetres, y upward."""
+"""Elements of a drawing: lines, circles, outlines, labels and dimensions on layers, in millimetres, y upward."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class Dimension:
 
     @property
     def length(self) -> float:
-        """What it measures, mm."""
+        """The measured distance, mm."""
         along = (math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle)))
         return abs((self.end[0] - self.start[0]) * along[0] + (self.end[1] - self.start[1]) * along[1])
 
@@ -113,7 +113,7 @@ class Drawing:
     notes: tuple[str, ...]
 
     def on(self, name: str) -> list[Shape]:
-        """Return what is on a layer."""
+        """Return the shapes on a layer."""
         return [shape for shape in self.shapes if shape.layer.name == name]
 
     @property

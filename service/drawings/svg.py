@@ -1,4 +1,4 @@
-"""A drawing as SVG: a file of its own, at true scale when printed at 100 %, a group for each layer."""
+"""A drawing as an SVG file, true to scale when printed at 100 %, with a group for each layer."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What every quantity means, for engineers: a sentence, a formula, where it is derived."""
+"""Meaning of every quantity, for engineers: a sentence, a formula, and the place of its derivation."""

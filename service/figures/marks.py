@@ -1,4 +1,4 @@
-"""The designs of a front that every figure marks in the same way: the best in each objective, and the knee."""
+"""Designs that every figure of a front marks alike: the best in each objective, and the knee."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Mark:
 
     @property
     def colour(self) -> str:
-        """Of marker and line: the knee stands out."""
+        """Colour of marker and line: the knee stands out."""
         return VERMILION if self.marker == KNEE_MARKER else INK
 
     @property
@@ -96,7 +96,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
-    """Return the axes of crank, rod and offset, and of what varies beside them, in the units of a system."""
+    """Return the axes of crank, rod and offset, and of what varies besides them, in the units of a system."""
     columns = ("crank", "rod", "offset")
     length, one = shown_in("mm", system)
     axes = [

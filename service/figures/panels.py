@@ -1,4 +1,4 @@
-"""A sheet of panels with lines in them, as data and as a figure: what the analyses and the published cases draw."""
+"""A sheet of panels with lines, as data and as a figure, for the analyses and the published cases."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ _PLACES = tuple(
     for distance in (5.0, 14.0)
     for x, y in ((1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.2), (0, -1.2), (1.2, 0), (-1.2, 0))
 )
-"""Where a name may stand, points from what it names; the first is taken unless another is clearer."""
+"""Places for a name, points from what it names; the first is taken unless another is clearer."""
 
 
 def _name(axes: Axes, panel: Panel) -> None:

@@ -1,4 +1,4 @@
-"""The robust front beside the nominal one of the same job."""
+"""The robust front against the nominal one of the same job."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _ARROWS = {1: "→ better", -1: "← better", 0: ""}
 
 
 def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
-    """Return the scatter matrix of a front of at least two objectives and one design, in the units of a system."""
+    """Return the scatter matrix of a front with at least two objectives and one design, in a system of units."""
     axes = [objective_axis(front, objective, system) for objective in front.objectives[:MOST]]
     marked = marks(front)
     count = len(axes) - 1

@@ -1,4 +1,4 @@
-"""How every figure looks: sizes, colours that survive greyscale and colour blindness, ticks, and saving.
+"""Style of every figure: sizes, colours that survive greyscale and colour blindness, ticks, and saving.
 
 Figures are `matplotlib.figure.Figure` objects with their own Agg canvas. Neither pyplot nor the global settings of
 matplotlib are touched, so that drawing never changes what a caller plots himself.
@@ -67,7 +67,7 @@ def place(figure: Figure, left: float, bottom: float, width: float, height: floa
 
 
 def write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
-    """Write text at a place given in inches from the lower left corner, as it stands: a job's name may have any $."""
+    """Write text verbatim at a place in inches from the lower left corner, as job names may contain $."""
     width, height = figure.get_size_inches()
     figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
 
@@ -88,7 +88,7 @@ def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
 
 
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number for people on an axis from low to high: a millionth of the axis is zero to every reader."""
+    """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
     return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 

@@ -1,4 +1,4 @@
-"""Jobs that may name functions of their own: which ones, by whom they are allowed, and how long a call of one may take.
+"""User functions that jobs name as quantities: which are allowed, and for how long one call may take.
 
 Functions run where a job is solved, so whoever starts the workers allows them, by `serve` and `worker
 --allow-quantity`. The API refuses others at once; `submit` cannot know which workers there are, and leaves it to them.

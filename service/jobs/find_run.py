@@ -1,4 +1,4 @@
-"""Finding a run: a folder on the disk, or a job of the store, which gets its folder when it is asked for."""
+"""Finding a run: a folder on the disk, or a stored job, whose folder is written on demand."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FOUND: tuple[State, ...] = ("done", "infeasible", "cancelled")
 
 
 def find_run(text: str, place: Path) -> Path:
-    """Return the folder of a run: a path, a name in the place of runs, the unique start of one, or "latest".
+    """Return the folder of a run: a path, a name or its unique start among the runs, or "latest".
 
     The number of a job in the store will do, too; a job that has no folder yet gets it. Raises `InputError` when
     nothing, or more than one run, answers to it, `RunError` for a job that has found nothing yet.

@@ -1,4 +1,4 @@
-"""A job that the command line solves itself: claimed in the store, and exported to its run folder as it goes."""
+"""A job that the command line solves itself: claimed in the store, and exported to its run folder meanwhile."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def files_of(job: Path, beside: Sequence[Path]) -> list[Artefact]:
 
 
 def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]) -> Claim:
-    """Put the job of a new folder into the store and return its claim; the folder takes the name that it has there."""
+    """Put the job of a new folder into the store, rename the folder as there, and return the claim."""
     worker = _worker()
     claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
     claim.most_full = _PATIENCE
@@ -45,7 +45,7 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
 
 
 def stopped_job(store: Store, text: str, place: Path) -> Job:
-    """Return the job of a run that is to go on: the number of the job, or a run as `find_run` takes it.
+    """Return the job of a run to be resumed, given by its number or as `find_run` takes it.
 
     Raises `InputError` for a run that is not in the store.
     """
@@ -61,7 +61,7 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
 
 
 def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
-    """Return the folder of a job that is to go on, a new one if it has none in this place."""
+    """Return the folder of a job to be resumed; a new one if it has none in this place."""
     path = place / job.run
     if path.is_dir():
         return RunFolder.again(path)

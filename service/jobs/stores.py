@@ -1,4 +1,4 @@
-"""Which store the command line uses."""
+"""Choice of the store that the command line uses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A curve over a turn of the crank as a small picture, with the dead centres and a line that a script moves."""
+"""A small picture of a curve over a crank turn, with dead centres and a line moved by a script."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.FRAME)
 
 @dataclass(frozen=True)
 class Moving:
-    """What moves: its shapes in coordinates of its own."""
+    """A moving part, with its shapes in its own coordinates."""
 
     name: str
     layer: Layer
@@ -84,7 +84,7 @@ def _summary(mechanism: Mechanism, linkage: Linkage) -> str:
 
 
 def _data(mechanism: Mechanism, linkage: Linkage, shown: list[CurveColumn]) -> str:
-    """Return what the script looks up, as JSON that may stand in HTML."""
+    """Return the data of the script as JSON that may stand in HTML."""
     import numpy as np
 
     turn = linkage.at(np.arange(ANGLES) * (2.0 * math.pi / ANGLES))

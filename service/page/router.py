@@ -26,7 +26,7 @@ POLICY = "; ".join(
         "frame-ancestors 'none'",
     )
 )
-"""What the page may do: run and fetch what comes from the service itself, and nothing written into the document."""
+"""Policy of the page (CSP): run and fetch what comes from the service itself, and nothing written into the document."""
 _TYPES = {
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
@@ -76,7 +76,7 @@ def _answer(request: Request, name: str) -> Response:
 
 
 def files_of(folder: Path) -> dict[str, _File]:
-    """Return the files of a folder by name: read once, so that no name from a client is ever a path.
+    """Return the files of a folder by name, read once: no name from a client is ever a path.
 
     The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
     """

@@ -55,7 +55,7 @@ def _style() -> str:
 
 @cache
 def _policy() -> str:
-    """Return what the page may do: this very style and script, and send its form to the service itself."""
+    """Return the content security policy: only this very style and script, and a form sent to the service itself."""
     style, script = (_digest(text) for text in (_style(), _SCRIPT))
     return (
         f"default-src 'none'; style-src {style}; script-src {script}; img-src data:; form-action 'self'; "

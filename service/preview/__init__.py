@@ -1,1 +1,1 @@
-"""What can be said of a job while it is being written: what is wrong with it, and what its ranges allow."""
+"""Preview of a job while it is being written: its mistakes, and the values that its ranges allow."""

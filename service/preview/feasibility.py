@@ -1,4 +1,4 @@
-"""What the ranges of a job allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
+"""Values that a job's ranges allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
 
 A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
 samples lie where the search looks. Extremes are looked for around the best samples and polished: a design has each.
@@ -43,7 +43,7 @@ _CLOSE = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Possible:
-    """What the ranges allow. turning: share of the designs in the box that turn fully.
+    """Values that the ranges of a job allow. turning: share of the designs in the box that turn fully.
 
     stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
     the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
@@ -66,7 +66,7 @@ class Possible:
 
 
 def possible(problem: Problem) -> Possible:
-    """Return what the ranges of a problem of `stated.geometry` allow."""
+    """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
     import numpy as np
 
     from ...optimise.search.evaluation import FEASIBLE
@@ -197,7 +197,7 @@ def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
 
 
 def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Array) -> float:
-    """Return the greatest of `sign` times a closed form near points (n, k) of a sheet; minus infinity if there is none.
+    """Return the greatest of `sign` times a closed form near points (n, k) of a sheet; -inf if none.
 
     Its own requirement apart, all others of the problem hold.
     """
@@ -218,7 +218,7 @@ def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Arr
 
 
 def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
-    """Yield points of a sheet (n, k) at which a requirement is met just so: extremes lie there, and bands are thin."""
+    """Yield points of a sheet (n, k) on the edge of a requirement. Extremes lie there, and bands are thin."""
     import numpy as np
 
     from ...optimise.search.elimination import UNKNOWNS, sheets
@@ -240,7 +240,7 @@ def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
 
 
 def _values(problem: Problem, name: str, designs: Array) -> Array:
-    """Return a closed form of designs (n, 3); NaN where they do not turn or miss a requirement on the dimensions."""
+    """Return a closed form of designs (n, 3); NaN where one does not turn or breaks a dimensional requirement."""
     import numpy as np
 
     from ...objectives.registry import QUANTITIES

@@ -1,4 +1,4 @@
-"""What an incomplete job states already: ranges, requirements, and the machine once it can be read."""
+"""Content of an incomplete job: ranges, requirements, and the machine once it can be read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where in a job something is wrong: the sentences of the job parser, each with the place that it begins with."""
+"""Mistakes in a job with their places, taken from the beginnings of the job parser's sentences."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Wrong:
 
 
 def places(error: InputError) -> list[Wrong]:
-    """Return what the sentences of an error say, each with its place in the job."""
+    """Return the mistakes in the sentences of an error, each with its place in the job."""
     from ...optimise.job import Job
 
     found = []

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Look:
-    """wrong: what is wrong with the job, nothing if it can be solved. problem: of the whole job, if it is valid.
+    """Preview of a job. wrong: its mistakes, none if it can be solved. problem: of the whole job, if it is valid.
 
     stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
     requirements that were not looked at. said: sentences on what cannot be had.
@@ -33,7 +33,7 @@ class Look:
 
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
-    """Return what can be said of a job. read: gives its problem, or raises what is wrong with it."""
+    """Return the findings about a job. read: gives its problem, or raises what is wrong with it."""
     from ...optimise.job.file import require_few
 
     wrong: list[Wrong] = []
@@ -63,7 +63,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
 
 
 def _beyond(stated: Problem) -> Wrong | None:
-    """Return what is wrong if no linkage at all has the time ratio with the transmission angle that are asked."""
+    """Return the mistake if no linkage at all has both the time ratio and the transmission angle asked for."""
     from ...optimise.job.box import beyond_both
 
     sentence = beyond_both(stated)

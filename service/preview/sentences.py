@@ -1,4 +1,4 @@
-"""What the ranges of a job do not allow, in words."""
+"""Sentences on the requirements of a job that its ranges do not allow."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def said(problem: Problem, found: Possible) -> list[str]:
 
 
 def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
-    """Return in words what can be had in place of a requirement that lies beyond the ends of what is possible."""
+    """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
     from ...optimise.feasibility.relaxation import missed, sides
     from ...optimise.front.constant import is_constant
 

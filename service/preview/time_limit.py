@@ -13,7 +13,7 @@ _ONE = threading.Lock()
 
 
 def within(seconds: float, work: Callable[[], T]) -> T | None:
-    """Return what the work gives, or None if it takes longer, or while earlier work still goes on."""
+    """Return the result of the work, or None if it takes longer, or while earlier work still goes on."""
     done: list[T] = []
     failed: list[Exception] = []
 

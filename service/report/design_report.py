@@ -68,7 +68,7 @@ def _summary(subject: Subject) -> Section:
 
 
 def _changed(subject: Subject, changed: Variation) -> list[str]:
-    """Return what was changed of a design of the front, and where that leaves it."""
+    """Return sentences on the changes to a design of the front, and on where they leave it."""
     before = subject.result.designs[subject.number - 1]
     other = [
         f"{name} {with_unit(subject.row[of.key], of.unit)} instead of {with_unit(before[of.key], of.unit)}"

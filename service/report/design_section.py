@@ -1,4 +1,4 @@
-"""The chosen design: what it is, whether it meets its rules, whether it could be better, and every number of it."""
+"""The chosen design in a report: drawing, requirements, stationarity, trade-offs, and every number of it."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _columns(subject: Subject) -> list[Column]:
 def _rules(subject: Subject) -> list[Block]:
     slacks = [column for column in _columns(subject) if column.key.startswith("slack_")]
     if not slacks:
-        return [Paragraph("The job sets no rules beside the ranges of the dimensions.", "note")]
+        return [Paragraph("The job sets no rules besides the ranges of the dimensions.", "note")]
     rows, met = [], True
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))

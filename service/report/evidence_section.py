@@ -1,4 +1,4 @@
-"""How the design reacts: to its dimensions, and to the tolerances of the job."""
+"""Reaction of the design: to its dimensions, and to the tolerances of the job."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def sensitivity_section(subject: Subject) -> Section:
 
 
 def tolerance_section(subject: Subject) -> Section | None:
-    """Return what the tolerances of the job do to the slider's position; None for a job without any."""
+    """Return the section on the tolerances' effect on the slider position; None for a job without tolerances."""
     import numpy as np
 
     from ...model.tolerance.sources import limits

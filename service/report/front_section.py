@@ -66,7 +66,7 @@ def _sense(wanted: Wanted) -> str:
 
 
 def _marked(subject: Subject) -> Table:
-    """Return this design beside the best in each objective and the knee."""
+    """Return this design next to the best in each objective and the knee."""
     result = subject.result
     titles = {wanted.quantity: wanted.title for wanted in result.objectives}
     labels: dict[int, list[str]] = {subject.number - 1: ["this design" if subject.changed is None else "unchanged"]}

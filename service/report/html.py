@@ -1,4 +1,4 @@
-"""A report as one HTML file: style and figures in it, no script, nothing fetched; made to be read and printed."""
+"""A report as one HTML file with style and figures inside, no script, nothing fetched; for screen and print."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def _picture(picture: Picture, name: str) -> str:
 
 
 def _inline(text: str, label: str, name: str) -> str:
-    """Return an SVG file as an element of a page: without its own head and style, its names made its own."""
+    """Return an SVG file as an element of a page, without its head and style and with prefixed names."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"<style[^>]*>.*?</style>", "", text, flags=re.DOTALL)

@@ -1,4 +1,4 @@
-"""What was asked, and how the front was found."""
+"""Sections of a report on the job, and on the search for its front."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .wording import rounded, unit_text
 
 
 def job_section(subject: Subject) -> Section:
-    """Return what the job says, as `slidercrank check` does."""
+    """Return the section on the job in words, as `slidercrank check` gives it."""
     words = summarise(subject.problem)
     parts = (
         ("Given", words["given"]),

@@ -1,4 +1,4 @@
-"""What a report is about: one design of the result of a run, with all that is known of both."""
+"""Subject of a report: one design of the result of a run, with all that is known of both."""
 
 from __future__ import annotations
 

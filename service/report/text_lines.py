@@ -7,7 +7,7 @@ from typing import Any
 
 
 def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
-    """Return a text in lines of at most `width` inches in letters of `size` points; a word too long is broken."""
+    """Return a text in lines of at most `width` inches at `size` points; a word too long is broken."""
     lines: list[str] = []
     line = ""
     for word in text.split():
@@ -50,7 +50,7 @@ def _letter(letter: str, bold: bool) -> float:
 
 @cache
 def _measure() -> tuple[Any, Any, Any]:
-    """Return what measures text, and fonts of 100 points, normal and bold."""
+    """Return a renderer that measures text, and fonts of 100 points, normal and bold."""
     from matplotlib.backends.backend_agg import RendererAgg
     from matplotlib.font_manager import FontProperties
 

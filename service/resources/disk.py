@@ -22,7 +22,7 @@ def is_full(error: BaseException) -> bool:
 
 
 def free(place: Path) -> int:
-    """Return how much room there is where a file or folder is or would be, in bytes; very much if that is not told."""
+    """Return the free room, bytes, where a file or folder is or would be; very large if unknown."""
     there = place.absolute()
     while not there.exists() and there != there.parent:
         there = there.parent
@@ -46,7 +46,7 @@ def full_places(error: OSError) -> str:
 
 
 def _written() -> list[Path]:
-    """Return where this software writes beside its runs and its store: compiled kernels and temporary files."""
+    """Return where this software writes besides its runs and its store: compiled kernels and temporary files."""
     from ... import model
 
     cache = os.environ.get("NUMBA_CACHE_DIR") or Path(model.__path__[0]) / "__pycache__"

@@ -9,7 +9,7 @@ TOLERATED = 0.25
 
 
 class Memory:
-    """What this process and its children take, told apart by jobs.
+    """Memory that this process and its children take, told apart by jobs.
 
     What is there when a job begins, beyond what was when the first one did, was left by others: caches, compiled
     kernels, memory that the allocator keeps. It does not count, and less of it once some is given back.
@@ -26,11 +26,11 @@ class Memory:
 
     @property
     def left(self) -> int:
-        """How much earlier jobs have left, in bytes."""
+        """Memory that earlier jobs have left behind, in bytes."""
         return self._least - self._fresh
 
     def of_the_job(self) -> int:
-        """Return what the job takes now, in bytes, with what a fresh process takes."""
+        """Return the memory that the job takes now, in bytes, including that of a fresh process."""
         taken = memory_taken()
         self._least = min(self._least, taken)
         return taken - self.left

@@ -41,5 +41,5 @@ class Exact:
 
 
 def exact_of(front: ParetoFront) -> Exact:
-    """Return what a front knows of its designs."""
+    """Return the exact dimensions, variants and slopes of a front's designs."""
     return Exact(front.dimensions, front.variants, front.goals, front.active)

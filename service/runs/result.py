@@ -1,4 +1,4 @@
-"""What a run found, in the form that tables, CSV and JSON share."""
+"""Result of a run, in the form that tables, CSV and JSON share."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Wanted:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """What a run found.
+    """Result of a run.
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
@@ -73,7 +73,7 @@ class Result:
         return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
     def record(self) -> dict[str, Any]:
-        """Return what JSON has: finite numbers only, null for what is not defined."""
+        """Return the result for JSON: finite numbers only, null for undefined values."""
         return {
             "run": self.run,
             "name": self.name,
@@ -113,7 +113,7 @@ def wanted_of(front: ParetoFront) -> list[Wanted]:
 
 
 def result_of(front: ParetoFront, run: str) -> Result:
-    """Return what a run found from its front."""
+    """Return the result of a run from its front."""
     from ...optimise.problem.zero_objectives import idle_rules
     from ...optimise.questions.loaded_stroke import front_warnings
 

@@ -96,7 +96,7 @@ class RunFolder:
 
     @property
     def figures(self) -> Path:
-        """Where figures go."""
+        """Folder of the figures."""
         return self.path / "figures"
 
     def log(self, line: str) -> None:
@@ -242,7 +242,7 @@ def sync(path: Path) -> None:
 
 @contextlib.contextmanager
 def disk(place: Path) -> Iterator[None]:
-    """Turn an error of the disk into a `RunError` that names the place, and how much room it has where it is full."""
+    """Turn an error of the disk into a `RunError` that names the place, and its free room if full."""
     try:
         yield
     except OSError as error:

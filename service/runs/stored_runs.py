@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def read_run(folder: Path) -> Result:
-    """Return what a run found. Raises `RunError` for one that is unfinished, damaged, or no run."""
+    """Return the result of a run. Raises `RunError` for one that is unfinished, damaged, or no run."""
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")

@@ -15,7 +15,7 @@ _PATIENCE = 30.0  # s to wait for other writers
 
 
 def back_up(database: Database, target: Path) -> None:
-    """Copy a database of SQLite, as it is at one moment, into a new file, which is whole or not there.
+    """Copy an SQLite database as it is at one moment into a new file, which appears only when whole.
 
     Jobs are submitted and solved meanwhile. The copy is looked through before it gets its name. Raises `InputError` for
     a database on a server and for a file that is there already, `StoreError` if it cannot be read or written.

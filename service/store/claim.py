@@ -70,7 +70,7 @@ class Claim:
         return time.monotonic() - self._renewed
 
     def records(self) -> list[Record]:
-        """Return what the job has evaluated so far, in order."""
+        """Return the records of the job's evaluations so far, in order."""
         query = select(records.c.content).where(records.c.job == self.job.id).order_by(records.c.number)
         with self._database.reading() as connection:
             return [unpacked(content) for content in connection.execute(query).scalars()]

@@ -1,4 +1,4 @@
-"""Which job a worker gets next."""
+"""Choice of the job that a worker gets next."""
 
 from __future__ import annotations
 

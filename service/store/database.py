@@ -44,7 +44,7 @@ _DISK_FULL = "53100"  # of PostgreSQL
 
 
 class Unavailable(StoreError):
-    """What the database refuses may succeed later: it restarts, its disk is full, another writer is at work."""
+    """A refusal of the database that may pass: it restarts, its disk is full, another writer is at work."""
 
 
 class Full(Unavailable):
@@ -171,7 +171,7 @@ class Database:
 
 
 class _File:
-    """The file of a store: made for its owner's eyes alone if it is new, and known again by its number."""
+    """The file of a store, readable by its owner alone if new, and recognised later by its inode."""
 
     def __init__(self, path: str) -> None:
         """Make it where it is not there; where that cannot be, opening it says why."""
@@ -204,7 +204,7 @@ def may_use(path: Path) -> bool:
 
 
 def remedy_of_rights(path: Path) -> str:
-    """Return what gives the rights back that `may_use` misses."""
+    """Return the command that restores the rights that `may_use` misses."""
     return f"chmod u+rw {path}, as the user who owns it"
 
 
@@ -226,7 +226,7 @@ def _shown(url: URL) -> str:
 
 
 def _secrets(url: URL) -> list[str]:
-    """Return what an address has that is not shown, the longest first."""
+    """Return the secret parts of a database address, the longest first."""
     values = [value for name, value in url.query.items() if name not in _OPEN]
     each = [url.password, *(one for value in values for one in ([value] if isinstance(value, str) else value))]
     return sorted({str(one) for one in each if one}, key=len, reverse=True)

@@ -34,7 +34,7 @@ def packed_exact(exact: Exact) -> bytes:
 
 
 def unpacked_exact(content: bytes) -> Exact:
-    """Return what `packed_exact` was given. Raises ValueError if the content is damaged."""
+    """Return the designs that `packed_exact` packed. Raises ValueError if the content is damaged."""
     import numpy as np
 
     try:

@@ -1,4 +1,4 @@
-"""What can be wrong inside a database of jobs: looked for, changed nowhere."""
+"""Search for damage inside a database of jobs; nothing is changed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SETTINGS = ("fsync", "full_page_writes")
 
 
 def damages(database: Database) -> list[str]:
-    """Return what is wrong with the database itself and with what the jobs say of their own rows, in sentences.
+    """Return sentences on damage to the database itself and on jobs whose counts of rows are wrong.
 
     Raises `StoreError` if it cannot be reached.
     """

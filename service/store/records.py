@@ -1,4 +1,4 @@
-"""What is read from the store."""
+"""Records read from the store: jobs, limits, events, files and workers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "resu
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What a job may use; None is no limit.
+    """Limits of a job on time, evaluations and memory; None is no limit.
 
     seconds, evaluations: of its search, which then ends with what it found, as if it had been cancelled. memory: of its
     worker, bytes; beyond it the job fails.
@@ -49,14 +49,14 @@ NO_LIMITS = Limits()
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """Where a job stands. Times are seconds since 1970 on the clock of the database.
+    """State of a job. Times are seconds since 1970 on the clock of the database.
 
     run: the name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
     its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
     state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
     worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
-    progress: fields of the latest `Progress`, or None; `front` beside them where the search gave one, see `Claim.tell`.
-    summary: what it found, see `packing.summary_of`, or None.
+    progress: fields of the latest `Progress`, or None; `front` with them where the search gave one, see `Claim.tell`.
+    summary: what it found, see `serialisation.summary_of`, or None.
     """
 
     id: int
@@ -109,7 +109,7 @@ SILENT = 120.0
 
 @dataclass(frozen=True, kw_only=True)
 class Worker:
-    """Who solves jobs.
+    """A worker that solves jobs.
 
     started, seen: when it began, and when it was heard of last. silent: seconds between then and now.
     """

@@ -37,7 +37,7 @@ NAMES = {
     "fk": "fk_%(table_name)s_%(column_0_N_name)s",
     "pk": "pk_%(table_name)s",
 }
-"""How constraints are called, so that migrations can name them on every database."""
+"""Names of constraints, so that migrations can name them on every database."""
 
 metadata = MetaData(naming_convention=NAMES)
 _number = BigInteger().with_variant(Integer, "sqlite")  # SQLite counts up keys of this type only

@@ -1,4 +1,4 @@
-"""The version of a store's tables: brought up to date when a store is opened, refused when newer than this software."""
+"""The version of a store's tables: upgraded when a store is opened, refused when newer than this software."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _config() -> Config:
 
 
 def strangers(database: Database) -> str:
-    """Return, in words, the tables of a database that is something else's; empty for a store and for an empty one."""
+    """Return, in words, the tables of a foreign database; an empty text for a store or an empty database."""
     scripts = ScriptDirectory.from_config(_config())
     with database.reading() as connection:
         return _strangers(connection, scripts)

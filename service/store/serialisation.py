@@ -71,7 +71,7 @@ def plain(text: str) -> str:
 
 
 def cells_of(row: Mapping[str, Cell]) -> str:
-    """Return the cells of a design as a JSON array: infinities as "inf" and "-inf", what is not defined as null."""
+    """Return the cells of a design as a JSON array: infinities as "inf" and "-inf", undefined values as null."""
     return text_of([_stored(cell) for cell in row.values()])
 
 
@@ -94,7 +94,7 @@ def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return what a list shows of a result: counts, the best value of each objective, a few points of the front.
+    """Return the summary of a result for lists: counts, the best of each objective, points of the front.
 
     axes: the columns of the first two objectives, or of the only one; points: their values, of at most 64 designs.
     """

@@ -179,7 +179,7 @@ class Store:
         return {row.state: int(row[1]) for row in found}
 
     def longest_wait(self) -> float:
-        """Return for how long, in s, the oldest job that a worker may claim has been waiting; 0 if none waits."""
+        """Return the waiting time, s, of the oldest job that a worker may claim; 0 if none waits."""
         with self._database.reading() as connection:
             return longest_wait(connection)
 
@@ -192,7 +192,7 @@ class Store:
         return tables
 
     def events(self, number: int, *, after: int = 0, limit: int = 1000) -> list[Event]:
-        """Return what happened to a job after its event of a number, in order, at most `limit` events."""
+        """Return the events of a job after the one of a number, in order, at most `limit` of them."""
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
         with self._database.reading() as connection:
             the_job(connection, number)
@@ -202,12 +202,12 @@ class Store:
         ]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
-        """Return what is new in jobs, given by the number of an event of each, after which at most `limit` are told."""
+        """Return the news of jobs after a given event of each, at most `limit` events a job."""
         with self._database.reading() as connection:
             return news_of(connection, after, limit)
 
     def record(self, number: int) -> dict[str, Any]:
-        """Return what a job found as `Result.record` has it, with "count" and "columns" in place of the designs.
+        """Return the result of a job as `Result.record` does, with "count" and "columns" in place of the designs.
 
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
@@ -221,7 +221,7 @@ class Store:
             return {**record, "count": connection.execute(count).scalar_one()}
 
     def result(self, number: int) -> Result:
-        """Return what a job found. Raises `RunError` if it has no result (yet), or a damaged one."""
+        """Return the result of a job. Raises `RunError` if it has no result (yet), or a damaged one."""
         with self._database.reading() as connection:
             stored = the_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
@@ -250,7 +250,7 @@ class Store:
         return Artefact(name=name, media_type=row.media_type, content=bytes(row.content))
 
     def cancel(self, number: int) -> Job:
-        """Cancel a job and return it: at once if it waits or its worker is gone, else when its worker hears of it.
+        """Cancel and return a job: at once if no worker is at it, else when its worker hears of it.
 
         A cancelled job keeps what it found, and can go on. One that has ended stays as it is.
         """

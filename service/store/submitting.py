@@ -81,7 +81,7 @@ def add_job(
 
 
 def in_hand(worker: str, lease: float) -> dict[str, Any]:
-    """Return what changes, beside its state, in a job that a worker takes for `lease` s."""
+    """Return the changes, besides the state, to a job that a worker takes for `lease` s."""
     return {
         "attempts": jobs.c.attempts + 1,
         "started": func.coalesce(jobs.c.started, now()),

@@ -1,4 +1,4 @@
-"""Looking after many jobs at once: what is new in each of them, and how long the queue keeps jobs waiting."""
+"""Watch over many jobs at once: news of each, and the waiting time of the queue."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TOGETHER = 100  # jobs of one query: databases refuse very long ones
 
 @dataclass(frozen=True, kw_only=True)
 class News:
-    """What is new in a job. last: the number of its last event, which may come after `events`, as some of them may."""
+    """News of a job. last: the number of its last event, which may come after `events`, as some of them may."""
 
     state: State
     last: int
@@ -30,7 +30,7 @@ class News:
 
 
 def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dict[int, News]:
-    """Return what is new in jobs since an event of each; jobs that are gone are left out. See `Store.news`."""
+    """Return the news of jobs since an event of each; jobs that are gone are left out. See `Store.news`."""
     numbers = list(after)
     news: dict[int, News] = {}
     for start in range(0, len(numbers), _TOGETHER):

@@ -1,4 +1,4 @@
-"""What the command line writes: results to standard output, messages and progress to standard error."""
+"""Output of the command line: results to standard output, messages and progress to standard error."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def give(text: str) -> None:
 
 
 def waiting(text: str) -> contextlib.AbstractContextManager[object]:
-    """Return what shows, while entered, that something goes on; nothing where standard error is no terminal."""
+    """Return a context that shows an activity while entered; nothing where standard error is no terminal."""
     screen = error_console()
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Callable[[Progress], None]]:
-    """Show a live bar on standard error if it is a terminal; yield what is to be called after each round."""
+    """Show a live bar on standard error if it is a terminal; yield the callback for each round."""
     screen = error_console()
     if not screen.is_terminal:
         yield lambda _: None

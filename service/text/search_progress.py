@@ -1,4 +1,4 @@
-"""Where a search stands, in words."""
+"""Progress of a search, in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was understood of a job, in words and as data."""
+"""A job in words and as data, as it was understood."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def _varying(item: Varying) -> str:
 
 
 def _choices(problem: Problem) -> list[str]:
-    """Return what there is to choose from, and how many combinations that makes."""
+    """Return the options of each choice, and the number of their combinations."""
     lines = []
     for place, name in enumerate(problem.choices):
         labels = dict.fromkeys(variant.labels[place] for variant in problem.variants)

@@ -29,7 +29,7 @@ def show_front(
     columns: Sequence[Column] | None = None,
     most: int = ROWS,
 ) -> None:
-    """Write designs of a front, given by their positions, as a table; spread over them if they are more than `most`.
+    """Write designs of a front, given by their positions, as a table; at most `most`, spread over them.
 
     columns: dimensions, stroke and objectives if None; what is the same in all designs is then said once above.
     """
@@ -106,7 +106,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 
 
 def _chosen(keys: list[str]) -> list[str]:
-    """Return the columns of what was chosen beside the dimensions: those between the offset and the stroke."""
+    """Return the columns of what was chosen besides the dimensions: those between the offset and the stroke."""
     metric = [metric_key(key) for key in keys]
     if not {"offset_mm", "stroke_mm"} <= set(metric):
         return []

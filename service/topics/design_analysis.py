@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Analysis:
-    """row: all numbers of a design. found: those of its topics. topics: which. notes: what is left out, and why."""
+    """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why."""
 
     row: Row
     found: dict[str, dict[str, Any]]
@@ -27,7 +27,7 @@ class Analysis:
     notes: list[str]
 
     def record(self) -> dict[str, Any]:
-        """Return what JSON has."""
+        """Return all numbers of the design and of its topics, for JSON."""
         return self.row | self.found
 
 

@@ -1,4 +1,4 @@
-"""Where heavy evaluation is done: options of the command line, and the engine that they ask for."""
+"""Engine of heavy evaluation: options of the command line, and the engine that they ask for."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ TlsKey = Annotated[Path | None, typer.Option("--tls-key", metavar="FILE", help="
 
 @dataclass(frozen=True)
 class EngineOptions:
-    """Where heavy evaluation is done. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
+    """Engine for heavy evaluation. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
 
     cores: int | None = None
     scheduler: str | None = None

@@ -1,4 +1,4 @@
-"""The heartbeat of a claimed job: a thread beside its search that keeps the lease and sees what the search cannot."""
+"""Heartbeat of a claimed job: a thread that keeps the lease and notices what the search cannot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits of a job while it is solved: the stricter of its own and those of its worker, and how much of them is left."""
+"""Limits on a job being solved, the stricter of its own and its worker's, and the budget that remains."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Logs of the service: one place that sets them up, as text for people or as JSON for machines, with job and worker."""
+"""Logging of the service, set up in one place: text for people or JSON for machines, with job and worker."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SUBJECT: ContextVar[tuple[str | None, int | None]] = ContextVar("subject", defa
 
 
 def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
-    """Let everything of this process from INFO on be logged to a stream, standard error if None, a line a record.
+    """Log everything of this process from INFO on to a stream, one line a record; standard error if None.
 
     json: one object a line with time (UTC, ISO 8601), level, logger, message, and where there is one worker, job and
     exc_info.

@@ -24,7 +24,7 @@ _SOON = 60.0  # s; one that ran for longer is started again as if it had never e
 
 @dataclass
 class _Place:
-    """Of one worker: its process, since when, how often it ended soon, when to start the next one."""
+    """State of one worker: its process and start, the number of early ends, and the next start."""
 
     number: int
     process: subprocess.Popen[bytes] | None = None

@@ -43,9 +43,9 @@ _DELAY = 2.0  # s before another attempt after the first error; doubled with eve
 
 @dataclass(frozen=True, kw_only=True)
 class Terms:
-    """What a worker lets jobs use and do.
+    """Limits and permissions that a worker gives to its jobs.
 
-    limits: hold for every job, beside its own. Beyond the one of memory the process ends, and beyond `grace`, the time
+    limits: hold for every job, besides its own. Beyond the one of memory the process ends, and beyond `grace`, the time
     in s that a round has to end once the worker is to stop, too; see `Heartbeat`. allowed_quantities: functions,
     "module:function", that jobs may name as quantities. engine: where heavy work is done.
     """
@@ -245,7 +245,7 @@ def _solve(
 
 
 def _load(claim: Claim, parts: int) -> None:
-    """Tell how much of what a search needs is loaded, beside the numbers and the front that the job had before."""
+    """Report how much of a search is loaded, with the numbers and the front that the job had before."""
     from ...optimise.front.progress import LOADING, Progress
 
     known = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}

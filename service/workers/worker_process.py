@@ -28,7 +28,7 @@ GRACE = 10.0
 MARGIN = 5.0
 """Time beyond its grace after which a worker that has not stopped is ended, s."""
 NICENESS = 10
-"""How much a worker yields to others of this machine: the API answers while all workers are busy."""
+"""Niceness of a worker, by which it yields to others of this machine: the API answers while all workers are busy."""
 REFUSED = 2
 """Exit code of a worker that can do nothing as it was started."""
 STALE = 77
@@ -38,7 +38,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class WorkerSettings:
-    """How a worker process works. address: of the store. Times in s; the rest as `worker.work` has it."""
+    """Settings of a worker process. address: of the store. Times in s; the rest as `worker.work` has it."""
 
     address: str
     lease: float = LEASE
@@ -122,7 +122,7 @@ def _line() -> bytes:
 
 
 def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
-    """Stop when standard input ends, and leave when more than the time for that has passed: no supervisor may be left.
+    """Stop when standard input ends, and exit once the grace time has passed: no supervisor may be left.
 
     That is the end of what even its heartbeat cannot stop, such as a database that does not answer.
     """

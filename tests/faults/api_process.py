@@ -1,4 +1,4 @@
-"""The API in a process of its own, `slidercrank serve`, that can be killed and comes back at the same address."""
+"""The API in a process of its own, `slidercrank serve`, that can be killed and restarted at its address."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A log that the database itself keeps of every change of a job, by a trigger: no worker can write past it."""
+"""A log of every change of a job, kept by a database trigger: no worker can write past it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _POSTGRESQL = [
 
 @dataclass(frozen=True)
 class Change:
-    """Where a job stood after a change, and the state that it was in before."""
+    """State of a job after a change, and the state before it."""
 
     fence: int
     writes: int

@@ -1,4 +1,4 @@
-"""Commits that fail, one after the other: every one of a job's life, before and after it took effect, and for long."""
+"""Commits that fail, one by one: each of a job's life, before and after taking effect, and for long."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class _Failing:
 
 
 def commits(kind: Kind, every: int = 1) -> tuple[int, Verdict]:
-    """Let the commits of a job's life fail in every way; return how many did, and what came of the jobs.
+    """Let the commits of a job's life fail in every way; return their number and the verdict.
 
     every: only each one of so many.
     """

@@ -1,4 +1,4 @@
-"""Workers of a Dask cluster killed at random moments while a robust job is evaluated on them, and its scheduler too."""
+"""Workers and scheduler of a Dask cluster, killed at random moments while a robust job is evaluated on them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ peak_torque = "minimise"
 
 @dataclass
 class Struck:
-    """What was done to a cluster, and what came of the jobs. lost, doubled: evaluations."""
+    """Strikes on a cluster, and their effect on the jobs. lost, doubled: evaluations."""
 
     jobs: int = 0
     workers: int = 0

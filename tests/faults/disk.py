@@ -49,7 +49,7 @@ Where = str
 
 
 def disk(count: int, seed: int) -> Verdict:
-    """Fill each disk that a run writes to `count` times, and that of a service once; return what came of it."""
+    """Fill each disk that a run writes to `count` times, and a service's once; return the verdict."""
     chance, verdict = random.Random(seed), Verdict()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         job = Path(folder) / "job.toml"
@@ -92,7 +92,7 @@ def _optimise(runs: Path, environment: dict[str, str], *arguments: str) -> subpr
 def _strike(
     verdict: Verdict, small: Disk, where: Where, job: Path, runs: Path, whole: list[list[str]], chance: random.Random
 ) -> None:
-    """Run a job with one of its places on a disk that is full from some moment on; then give it room and go on."""
+    """Run a job with one place on a disk that fills at some moment; then make room and resume."""
     verdict.jobs += 1
     if where in ("runs", "figures"):
         runs = small.folder / "runs"
@@ -145,7 +145,7 @@ def _go_on(verdict: Verdict, where: Where, runs: Path, environment: dict[str, st
 
 
 def _listen(process: subprocess.Popen[str], disk: str) -> tuple[str, float | None, bool]:
-    """Return what a process says until it ends, when it first told how much room a disk has, and whether it hung."""
+    """Return a process's messages, the time when it first told a disk's room, and whether it hung."""
     assert process.stderr is not None
     timer = threading.Timer(_HANGS, process.kill)
     timer.start()

@@ -1,4 +1,4 @@
-"""Clients that ask too much of an API: every sign of life comes within a second, and the others are answered."""
+"""Clients that ask too much of an API. Every sign of life comes within a second, and the others are answered."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _JOB = (
 
 @dataclass
 class Flooded:
-    """What came of floods. slowest: of all signs of life, s. violations: what must not be, in words."""
+    """Results of floods. slowest: of all signs of life, s. violations: what must not be, in words."""
 
     requests: int = 0
     signs: int = 0
@@ -46,7 +46,7 @@ class Flooded:
 
 
 def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
-    """Send so many requests of each kind to an API of its own and watch whether it answers all the time.
+    """Send `count` requests of each kind to an API of its own; watch whether it answers all the time.
 
     patience: until a sign of life, s; more on a machine that is busy with something else.
     """

@@ -1,4 +1,4 @@
-"""What jobs found, read from the rows of a store as they are."""
+"""Results of jobs, read from the rows of a store as they are."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OF_THE_RUN = ("seconds", "run")
 
 
 def found(address: str) -> dict[int, Found]:
-    """Return what each job of a store found that has ended with a result."""
+    """Return the result of each job of a store that has ended with one."""
     database = Database(address)
     with database.reading() as connection:
         rows: dict[int, list[tuple[int, str]]] = {}
@@ -41,7 +41,7 @@ def found(address: str) -> dict[int, Found]:
 
 @cache
 def undisturbed() -> dict[str, Found]:
-    """Return what each kind of job finds when nothing goes wrong."""
+    """Return the result of each kind of job when nothing goes wrong."""
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         file = Path(folder) / "store.db"
         with Store(file) as store:

@@ -1,4 +1,4 @@
-"""A disk that is full at random moments: SQLite's files may not grow, by the limit that the kernel sets on workers."""
+"""A disk that is full at random moments. SQLite's files may not grow, by the limit that the kernel sets on workers."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def tables(kind: str) -> Mapping[str, Any]:
 
 @dataclass(frozen=True)
 class Found:
-    """What a job found, as the store has it. designs: number and cells; record: all else, but for times and places."""
+    """Result of a job, as the store has it. designs: number and cells; record: all else, but for times and places."""
 
     designs: tuple[tuple[int, str], ...]
     record: Mapping[str, Any]

@@ -1,4 +1,4 @@
-"""What workers note beside the store: lines that outlive a kill, to be compared with what the store has."""
+"""Notes of workers outside the store: lines that outlive a kill, to be compared with the store."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ What = Literal["evaluated", "wrote", "refused", "failed"]
 
 @dataclass(frozen=True)
 class Note:
-    """evaluated: round `number`; wrote: write `number` of its claim is committed; refused: its lease was lost.
+    """A note of a worker. evaluated: round `number`; wrote: write `number` is committed; refused: lease lost.
 
     failed: a transaction that the database did not take, of whichever job; the numbers are 0.
     """

@@ -9,7 +9,7 @@ _PR_SET_PDEATHSIG = 1
 
 
 def die_with_parent() -> None:
-    """Let the kernel kill this process when the one that it was forked from ends, also while it is stopped (Linux)."""
+    """Let the kernel kill this process when its parent ends, even while it is stopped (Linux)."""
     if sys.platform == "linux":
         import ctypes
 

@@ -1,4 +1,4 @@
-"""Where a store is while faults are injected: a file, or a PostgreSQL server, both gone afterwards."""
+"""Place of a store while faults are injected: a file, or a PostgreSQL server, both gone afterwards."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ class Serving:
         return cast(dict[str, Any], self._client.get(f"/jobs/{number}").raise_for_status().json())
 
     def ready(self) -> httpx.Response:
-        """Return what /health/ready says."""
+        """Return the answer of /health/ready."""
         return self._client.get("/health/ready")
 
     def look_at_processes(self) -> list[psutil.Process]:

@@ -1,4 +1,4 @@
-"""A small disk of its own (a tmpfs, which takes root), that can be filled to the last byte and emptied again."""
+"""A small disk of its own (a tmpfs, which takes root), to be filled to the last byte and emptied."""
 
 from __future__ import annotations
 

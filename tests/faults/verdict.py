@@ -1,4 +1,4 @@
-"""What came of the faults: figures, and everything that is not as it has to be."""
+"""Verdict on the faults: figures, and everything that is not as it has to be."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ENDED = ("done", "infeasible", "cancelled", "failed")
 
 @dataclass
 class Verdict:
-    """violations: what must not be, in words; empty if all is well. slowest: of all resumptions, in s."""
+    """Verdict on jobs. violations: in words; empty if all is well. slowest: of all resumptions, in s."""
 
     jobs: int = 0
     wrong: Counter[str] = field(default_factory=Counter)
@@ -86,7 +86,7 @@ def judge(
     *,
     within: float = math.inf,
 ) -> Verdict:
-    """Return what came of jobs, compared with what they find undisturbed.
+    """Return the verdict on jobs, compared with their undisturbed results.
 
     deaths: when workers were killed. within: how soon after that, in s, another one has to go on with their jobs.
     """
@@ -127,7 +127,7 @@ def _judge_result(verdict: Verdict, number: int, result: Found | None, expected:
 
 
 def _judge_writes(verdict: Verdict, number: int, audit: Sequence[Change], noted: Sequence[Note]) -> None:
-    """Every write is that of the latest claim and follows the one before it; and those that were noted are all there.
+    """Check that every write is of the latest claim and in order, and that no noted one is missing.
 
     A write after its lease would show as one of an earlier claim, or as one that its worker noted and the log has not.
     """

@@ -1,4 +1,4 @@
-"""Imported by the process that workers are forked from, so that what takes seconds is done once and not by each.
+"""Imports of the process that workers are forked from: slow work is done once, not by each.
 
 The exception to the rule that nothing works at import: a fork server has no other place for it.
 """

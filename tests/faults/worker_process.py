@@ -1,4 +1,4 @@
-"""A worker in a process of its own: that of the service, with notes of what it did, and with slower rounds."""
+"""A worker in a process of its own: the service's, with notes of its actions and with slower rounds."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from tests.model.virtual_work import body
 
 @dataclass(frozen=True)
 class MassPoint:
-    """A body: mass, inertia, position of the mass centre as complex x and y of a complex angle, and its own angle."""
+    """A body: mass, inertia, mass centre as complex x and y of a complex angle, and its own angle."""
 
     mass: float
     inertia: float

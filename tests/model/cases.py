@@ -184,7 +184,7 @@ def random_loads(
 
 
 def random_friction(random: np.random.Generator) -> Friction:
-    """Return friction in all joints: a coefficient of up to 0.3 in the guide, friction circles of up to 2 mm."""
+    """Return friction in all joints: guide coefficient of up to 0.3, friction circles of up to 2 mm."""
 
     def pin() -> Pin:
         return Pin(radius=random.uniform(0.002, 0.01), coefficient=random.uniform(0.0, 0.2))

@@ -139,7 +139,7 @@ def test_the_reaction_of_the_ideal_joint_keeps_the_gap_closed(joint: Joint) -> N
 
 
 def rebound(hysteresis: float) -> float:
-    """Return the ratio of speeds that F = K d^n (1 + h d'/d'_0) gives, whatever K, n and the mass are.
+    """Return the ratio of speeds from F = K d^n (1 + h d'/d'_0), whatever K, n and the mass.
 
     From m v dv/dd = -F: z - ln(1 + z) is the same for z = h before the impact and for z = -h e after it.
     """
@@ -156,7 +156,7 @@ def rebound(hysteresis: float) -> float:
 @pytest.mark.parametrize("law", ["flores", "lankarani-nikravesh"])
 @pytest.mark.parametrize("restitution", [0.3, 0.7, 0.9, 1.0])
 def test_a_bouncing_journal_rebounds_as_the_law_says(law: Any, restitution: float) -> None:
-    """Crank held still, no gravity: the slider pin flies to and fro along the slider line, the rod does not turn.
+    """Crank held still, no gravity. The slider pin flies to and fro along the slider line, the rod does not turn.
 
     With a rod along the slider line and its mass centre on it, the gap opens along x and nothing turns.
     """
@@ -188,7 +188,7 @@ def test_slow_impacts_lose_less_as_hunt_and_crossley_found() -> None:
 
 
 def test_damping_is_that_of_the_two_papers() -> None:
-    """For e = 1/2, h is 8 (1/2) / (5/2) = 1.6, or 3 (3/4) / 4 = 0.5625; none for e = 1."""
+    """Damping for e = 1/2: 8 (1/2) / (5/2) = 1.6. The other law: 3 (3/4) / 4 = 0.5625. None for e = 1."""
     assert replace(PIN, restitution=0.5).hysteresis == pytest.approx(1.6, rel=1e-15)
     assert replace(PIN, restitution=0.5, law="lankarani-nikravesh").hysteresis == 0.5625
     assert (
@@ -255,7 +255,7 @@ def test_the_contact_never_pulls() -> None:
 
 
 def test_stiffness_is_that_of_hertz() -> None:
-    """A sphere in a sphere of much larger radius is a sphere on a plane: K = 4/3 E* sqrt(R), 1/E* = 2 (1 - nu^2)/E."""
+    """A sphere in a sphere of much larger radius is a sphere on a plane. K = 4/3 E* sqrt(R), 1/E* = 2 (1 - nu^2)/E."""
     clearance = Clearance(joint="crank pin", radius=1e-9, journal_radius=1e-3, elastic_modulus=2e11, poisson=0.25)
     reduced = 1e-3 * (1e-3 + 1e-9) / 1e-9
     modulus = 2e11 / (2.0 * (1.0 - 0.0625))

@@ -1,4 +1,4 @@
-"""What a loose joint refuses: values that make no sense, and linkages that cannot be simulated."""
+"""Refusals of a loose joint: values that make no sense, and linkages that cannot be simulated."""
 
 from __future__ import annotations
 

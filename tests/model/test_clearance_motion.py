@@ -1,4 +1,4 @@
-"""The sieve of the published case with 1 mm of clearance at the crank pin, and what a run does besides."""
+"""The sieve of the published case with 1 mm of clearance at the crank pin, and other properties of runs."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_the_energy_balance_closes_over_every_turn(fast: ClearanceRun) -> None:
 
 
 def test_the_motion_tends_to_the_ideal_one_as_the_clearance_closes() -> None:
-    """First order in position, because the gap itself is; order one half in velocity, v^2 = 2 a c across the gap."""
+    """First order in position, because the gap itself is. Order one half in velocity, v^2 = 2 a c across the gap."""
     gaps = np.array([1e-3, 1e-4, 1e-5])
     position, velocity = [], []
     for gap in gaps:

@@ -144,7 +144,7 @@ def test_mean_torque_against_springs_is_zero() -> None:
 
 
 def test_static_equilibrium_of_the_centred_linkage() -> None:
-    """Statics of the in-line linkage under a slider load P: P / cos(phi) in the rod, P tan(phi) on the guide."""
+    """Statics of the in-line linkage under a slider load P. P / cos(phi) in the rod, P tan(phi) on the guide."""
     machine = Mechanism(loads=(StrokeForce(outward=-100.0, inward=-100.0),))
     f = cycle(machine, Linkage(0.05, 0.2), THETA)
     tilt = np.arcsin(0.05 * np.sin(THETA) / 0.2)

@@ -41,7 +41,10 @@ def machines() -> list[Mechanism]:
 
 
 def inertia_forces(machine: Mechanism, design: Array, theta: Array) -> dict[str, tuple[Array, Array, Array]]:
-    """Return of every body m (a - G) along x and y and the moment r x m (a - G) + I turn'' about the crank pivot."""
+    """Return inertia force (x, y) and moment about the crank pivot of every body.
+
+    m (a - G), r x m (a - G) + I turn''.
+    """
     reach = distance_to_locking(*design)
     found = {}
     for name, part in bodies(machine, design).items():
@@ -116,14 +119,14 @@ def test_forces_solve_the_nine_equations_of_the_three_bodies() -> None:
 
 
 def textbook_rod_force(theta: Array, *, friction: float) -> tuple[Array, Array]:
-    """Return rod force and its angle for a slider load of 100 N that resists: S = P / (cos(phi) - mu sin(|phi|))."""
+    """Return rod force and its angle for a resisting slider load of 100 N. S = P / (cos(phi) - mu sin(|phi|))."""
     tilt = np.arcsin((0.03 - 0.05 * np.sin(theta)) / 0.2)
     return 100.0 / (np.cos(tilt) - friction * np.abs(np.sin(tilt))), tilt
 
 
 @pytest.mark.parametrize("speed", [2.0, -2.0])
 def test_massless_linkage_has_the_rod_force_of_statics(speed: float) -> None:
-    """S cos(phi) = P + mu N with N = S sin(|phi|), whichever way the slider moves; T = S r sin(theta - phi)."""
+    """S cos(phi) = P + mu N with N = S sin(|phi|), whichever way the slider moves. T = S r sin(theta - phi)."""
     machine = Mechanism(speed=speed, loads=(StrokeForce(outward=-100.0, inward=100.0),), friction=Friction(guide=0.35))
     theta = np.linspace(0.0, 2.0 * math.pi, 500) + 1e-3
     found = cycle(machine, Linkage(0.05, 0.2, 0.03), theta)
@@ -134,7 +137,7 @@ def test_massless_linkage_has_the_rod_force_of_statics(speed: float) -> None:
 
 
 def test_friction_of_next_to_nothing_is_no_friction() -> None:
-    """The kernels with friction, at a coefficient that vanishes beside one, against those without."""
+    """The kernels with friction, at a coefficient that vanishes next to one, against those without."""
     nearly = Friction(
         guide=1e-300,
         crank_pin=Pin(radius=1e-150, coefficient=1e-150),

@@ -105,7 +105,7 @@ def test_counterweight_balances_a_crank_in_full() -> None:
 
 
 def test_half_the_reciprocating_mass_as_counterweight_halves_the_peak_shaking_force() -> None:
-    """The textbook compromise: with a long rod m r w^2 cos(theta) along the line becomes m r w^2 / 2 all round."""
+    """The textbook compromise. With a long rod m r w^2 cos(theta) along the line becomes m r w^2 / 2 all round."""
     machine = Mechanism(speed=10.0, slider_mass=3.0)
     half = dataclasses.replace(machine, counterweight=Counterweight(mass=1.5, radius=0.05, angle=math.pi))
     design = np.array([[0.05, 5.0, 0.0]])

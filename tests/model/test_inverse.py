@@ -18,7 +18,7 @@ SOLUTIONS: tuple[Solution, ...] = ("outward", "inward")
 
 
 def there_and_back(designs: Array, theta: Array, branch: Branch) -> dict[Solution, int]:
-    """Check the inverse of the forward motion where the slider moves at a tenth of the crank pin's speed or more."""
+    """Check the inverse of the forward motion where the slider's speed is at least a tenth of the crank pin's."""
     linkage = linkage_of(designs, branch)
     per_speed = linkage.at(theta, speed=1.0).slider_velocity
     counts: dict[Solution, int] = {}

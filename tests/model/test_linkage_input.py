@@ -1,4 +1,4 @@
-"""What a linkage accepts, what it refuses and with which words; crank from stroke."""
+"""Accepted and refused dimensions of a linkage, with the words of the refusals; crank from stroke."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a mechanism refuses."""
+"""Refusals of a mechanism."""
 
 from __future__ import annotations
 

@@ -192,7 +192,7 @@ def test_table_that_ends_at_the_other_dead_centre_is_no_special_case() -> None:
 
 
 def test_gradients_stay_finite_where_a_table_ends_at_the_dead_centres() -> None:
-    """The crank angle of a knot there has no derivative; nor has the curve a kink that it could belong to."""
+    """The crank angle of a knot there has no derivative. Nor has the curve a kink that it could belong to."""
     random = np.random.default_rng(9)
     rod, offset = random.uniform(0.15, 0.5, 300), random.uniform(-0.03, 0.03, 300) * random.integers(0, 2, 300)
     designs = np.stack([crank_from_stroke(0.1, rod=rod, offset=offset), rod, offset], axis=1)

@@ -89,7 +89,7 @@ def test_sieve_links_have_the_published_masses_and_inertias(
 
 
 def newton_raphson(design: tuple[float, float, float], theta: Array) -> tuple[Array, Array]:
-    """Solve the loop r e^(i theta) + l e^(i phi) = x + i e for (phi, x), each angle from the one before."""
+    """Solve r e^(i theta) + l e^(i phi) = x + i e for (phi, x). Each angle starts from the one before."""
     r, l, e = design
     found = np.empty((2, len(theta)))
     phi, x = 0.0, r + l

@@ -129,7 +129,7 @@ def varied_designs(machine: Mechanism, count: int, *, seed: int) -> Array:
 
 
 def unit_steps(machine: Mechanism, designs: Array) -> Array:
-    """Return steps of the numbers of designs (n, 3 + k): a fifth of the range, for a dimension a tenth of the crank."""
+    """Return steps of the numbers of designs (n, 3 + k). A fifth of the range, for a dimension a tenth of the crank."""
     spans = [0.2 * (item.upper - item.lower) for item in machine.varying]
     sizes = 0.1 * designs[:, :1] * np.ones((1, 3))
     return np.column_stack([sizes, np.tile(spans, (len(designs), 1))]) if spans else sizes

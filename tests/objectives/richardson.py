@@ -23,7 +23,7 @@ _SETTLED = 1e-10  # of the derivative; the tests ask for 1e-7
 
 
 def steps_to_the_nearest_edge(designs: Array, *, kink_without_offset: bool) -> Array:
-    """Return first steps (n, 3): half-way to locking, to a zero dimension and, if asked, to the kink at e = 0."""
+    """Return first steps (n, 3): half-way to locking, to a zero dimension and, if asked, to e = 0."""
     r, l, e = designs.T
     a = np.abs(e)
     room = np.minimum(l - r - a, np.minimum(r, l))

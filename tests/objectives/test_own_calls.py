@@ -54,12 +54,12 @@ def killed(designs):
 
 
 class Over(Exception):
-    """What ends a call here."""
+    """Exception that ends a call here."""
 
 
 @pytest.fixture
 def worker(tmp_path: Path) -> Callable[[str], Worker]:
-    """Return what makes a worker of one of the functions."""
+    """Return a factory of workers, each for one of the functions."""
     (tmp_path / "loops.py").write_text(MODULE)
     return lambda name: Worker(f"loops:{name}", [str(tmp_path)], 1e5)
 

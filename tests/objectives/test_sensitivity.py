@@ -56,7 +56,7 @@ def test_derivatives_are_those_of_differences_of_the_table_of_numbers(machine: M
 
 
 def test_scaling_law_ties_the_percentages_together() -> None:
-    """A ratio or an angle does not change when all dimensions grow by one percent; a length grows by one percent."""
+    """A ratio or an angle does not change when all dimensions grow by one percent. A length grows by one percent."""
     for design in DESIGNS:
         table = sensitivity(SMOOTH, design).set_index("quantity")
         totals = table[[f"{name}_percent" for name in DIMENSIONS]].sum(axis=1)

@@ -20,7 +20,7 @@ FEEDER = Mechanism(speed=251.0, crank=RigidLink(mass=0.2), rod=RigidLink(mass=0.
 
 
 def test_sweep_of_case_five_has_its_exact_strokes_and_time_ratios() -> None:
-    """Obaseki and Alfred: crank 40, rod 64 mm, offset 0, 10, 20 mm; figures by the closed forms, not as printed."""
+    """Obaseki and Alfred: crank 40, rod 64 mm, offset 0, 10, 20 mm. Figures by the closed forms, not as printed."""
     table = sweep(FEEDER, DESIGN, [Axis("offset", (0.0, 0.01, 0.02))], ["stroke", "time_ratio", "peak_torque"])
     np.testing.assert_allclose(table["stroke_mm"], [80.0, 81.700690, 88.792308], atol=1.01e-6)
     np.testing.assert_allclose(table["time_ratio"], [1.0, 1.237506, 1.673701], atol=1e-6)

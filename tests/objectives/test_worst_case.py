@@ -1,4 +1,4 @@
-"""What a worst case promises, tried against many machines within the tolerances and a local search among them."""
+"""Promises of a worst case, against many machines within the tolerances and a local search among them."""
 
 from __future__ import annotations
 

@@ -198,7 +198,7 @@ def distance(found: Array, expected: Array) -> float:
 
 
 def pairs(front: Array) -> list[tuple[int, int]]:
-    """Return pairs of a front where one is as good as the other to 1e-9 of the range, and better by more somewhere."""
+    """Return pairs of a front: one as good as the other to 1e-9 of the range, better by more somewhere."""
     near = 1e-9 * np.ptp(front, axis=0) if len(front) else np.zeros(0)
     return [
         (one, other)

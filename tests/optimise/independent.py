@@ -1,4 +1,4 @@
-"""What the tests compute by themselves: closed forms, sampling, dominance, stationarity. Nothing of the optimiser's.
+"""Computations by the tests themselves: closed forms, sampling, dominance, stationarity. Nothing of the optimiser's.
 
 Crank r, rod l, offset e, m; a = |e|. The slider stands farthest out where crank and rod are in line, at
 x_out = sqrt((l + r)^2 - e^2), and nearest where they overlap, at x_in = sqrt((l - r)^2 - e^2).
@@ -29,7 +29,7 @@ def stroke(designs: Array) -> Array:
 
 
 def time_ratio(designs: Array) -> Array:
-    """Return the slower over the faster stroke: the crank turns 180 deg + b in one and 180 deg - b in the other.
+    """Return the slower over the faster stroke. The crank turns 180 deg + b in one and 180 deg - b in the other.
 
     b is the angle between the crank's lines at the two dead centres, seen from the pivot: atan2(a, x) of each.
     """
@@ -39,7 +39,7 @@ def time_ratio(designs: Array) -> Array:
 
 
 def transmission_angle(designs: Array) -> Array:
-    """Return the least angle between rod and normal, rad: the crank pin stands farthest off the line at r + a."""
+    """Return the least angle between rod and normal, rad. The crank pin stands farthest off the line at r + a."""
     r, l, e = designs.T
     reach = r + np.abs(e)
     return np.asarray(np.arctan2(np.sqrt(l * l - reach * reach), reach))
@@ -121,7 +121,7 @@ def feasible(problem: Problem, designs: Array, *, slack: float = 0.0) -> NDArray
 
 
 def dominated(values: Array, others: Array, span: Array) -> list[int]:
-    """Return rows of values (n, m) that one of others beats by more than 1e-9 of the range and is nowhere worse."""
+    """Return rows of values (n, m) dominated by others: better by more than 1e-9 of the range, nowhere worse."""
     found = []
     for row, own in enumerate(values):
         gain = (own - others) / span

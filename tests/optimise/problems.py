@@ -1,4 +1,4 @@
-"""Problems that the tests of the optimiser share: a machine, a way to state a problem in one line, the shipped jobs."""
+"""Problems shared by the tests of the optimiser: a machine, problems stated in one line, the shipped jobs."""
 
 from __future__ import annotations
 

@@ -123,7 +123,7 @@ def test_without_elimination_all_requirements_remain() -> None:
 
 
 def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
-    """The relation of stroke and crank has a second root, where x_out + x_in is the stroke: with S = 0.4, l = 0.21.
+    """The relation of stroke and crank has a second root, where x_out + x_in is the stroke. S = 0.4, l = 0.21.
 
     There 4 l r < S^2. The formula gives a crank and the linkage turns, but its stroke is another.
     """

@@ -1,4 +1,4 @@
-"""What a front says about its designs: extremes, knee, picks, trade-off rates."""
+"""Characteristics of a front: extremes, knee, picks, trade-off rates."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def least_torque(ratio: float) -> float:
 
 @pytest.mark.parametrize("share", [0.3, 0.5, 0.7])
 def test_rates_of_two_objectives_are_the_slope_of_the_front(share: float) -> None:
-    """The slope from the least torques with a little more and a little less time ratio; its error is a few 1e-6."""
+    """The slope from the least torques with a little more and a little less time ratio. Its error is a few 1e-6."""
     front = pair()
     row = int(share * len(front))
     ratio, step = float(front.designs["time_ratio"][row]), 1e-4
@@ -151,7 +151,7 @@ CHANGE = re.compile(r"([\d.e+-]+)(?: (?:N m|N|deg|mm|m\^2))? (?:less|more) ([a-z
 
 @pytest.mark.parametrize("name", ["pair", "feeder", "sieve", "support"])
 def test_trade_offs_stay_within_the_front(name: str) -> None:
-    """No step beyond the best value of the front, no cost beyond its worst; at an extreme this is said instead."""
+    """No step beyond the best value of the front, no cost beyond its worst. At an extreme this is said instead."""
     front = pair() if name == "pair" else shipped_front(name)
     titles = {front.problem.quantity(item.quantity).title: column for column, item in enumerate(front.objectives)}
     units = np.array([front.problem.quantity(item.quantity).unit.factor for item in front.objectives])

@@ -18,7 +18,7 @@ from tests.optimise.test_known_optima import best_transmission_angle, excess_ang
 
 
 def reachable(front: ParetoFront, quantity: str) -> float:
-    """Return what the message says can be had of a quantity, in its shown unit."""
+    """Return the reachable value of a quantity that the message states, in its shown unit."""
     found = re.search(
         rf"{QUANTITIES[quantity].title} (?:at|exactly)[^;]*?at (?:most|least|the nearest) (\S+)", front.message
     )

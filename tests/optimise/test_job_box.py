@@ -1,4 +1,4 @@
-"""What is claimed impossible within the ranges is impossible, and the claims are sharp."""
+"""Bounds claimed within the ranges: no design lies beyond them, and they are sharp."""
 
 import math
 from collections.abc import Callable

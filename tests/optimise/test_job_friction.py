@@ -100,7 +100,7 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
 
 
 def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
-    """A margin's bound as low as can be: what locks has no finite torque, and the search takes it as out of reach."""
+    """A margin's bound as low as can be. Designs that lock have no finite torque, and count as out of reach."""
     problem = job({"guide": 0.9}, constraints={"self_locking_margin": {"min": "1e-9 deg"}})
     wanted = tuple(Objective(quantity=name, sense="minimise") for name in ("peak_torque", "rms_torque", "mean_torque"))
     evaluator = Evaluator(replace(problem, objectives=wanted, constraints=()), sheets(problem)[0])

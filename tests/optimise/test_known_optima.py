@@ -1,4 +1,4 @@
-"""Optima that can be derived by hand, or found by a search in one variable that shares nothing with the optimiser."""
+"""Optima derived by hand, or found by a search in one variable that shares nothing with the optimiser."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def test_best_transmission_angle_with_stroke_and_time_ratio_given(ratio: float) 
 @pytest.mark.parametrize("ratio", [1.1, 1.5, 2.0])
 @pytest.mark.parametrize("offset", [(0.0, 0.8), (-0.8, 0.0), (-0.8, 0.8)])
 def test_best_transmission_angle_with_the_time_ratio_as_a_bound(ratio: float, offset: tuple[float, float]) -> None:
-    """The angle falls with the ratio, so that the bound is met exactly; it is not eliminated but kept by the search."""
+    """The angle falls with the ratio, so that the bound is met exactly. It is not eliminated but kept by the search."""
     held: dict[str, Bounds] = {"stroke": STROKE, "time_ratio": (ratio, None)}
     design, value = only(wide({"transmission_angle": "maximise"}, held, offset))
     assert -value * DEGREE == pytest.approx(best_transmission_angle(ratio), abs=1e-6)
@@ -137,7 +137,7 @@ def test_greatest_time_ratio_with_a_least_transmission_angle(angle: float) -> No
 
 @pytest.mark.parametrize("angle", [20.0, 40.0, 55.0])
 def test_greatest_time_ratio_under_the_rule_rod_is_3_2_offset(angle: float) -> None:
-    """With q = e / l = 1 / 3.2 and p = r / l: cos(mu) = p + q, and the excess angle rises with p term by term,
+    """With q = e/l = 1/3.2 and p = r/l: cos(mu) = p + q. The excess angle rises with p term by term,
 
         b = asin(q / (1 - p)) - asin(q / (1 + p)),
 
@@ -169,7 +169,7 @@ def test_transmission_angle_for_a_time_ratio_under_the_rule_rod_is_3_2_offset(ra
 
 @pytest.mark.parametrize("offset", [(0.0, 0.1), (-0.1, 0.0), (-0.05, 0.1)])
 def test_the_longest_rod_without_offset_transmits_best(offset: tuple[float, float]) -> None:
-    """For a stroke S, r(e) is concave (an arc of an ellipse) and flat at e = 0, where r = S / 2 and r + |e| is least.
+    """For a stroke S, r(e) is concave (an arc of an ellipse) and flat at e = 0. There r = S / 2 and r + |e| is least.
 
     Then cos(mu) = S / (2 l), least with the longest rod.
     """
@@ -179,7 +179,7 @@ def test_the_longest_rod_without_offset_transmits_best(offset: tuple[float, floa
 
 
 def test_the_smallest_footprint_without_offset_has_the_shortest_rod_that_transmits() -> None:
-    """R = S / 2 and l = r / cos(mu): the rectangle is (l + 2 r) by 2 r."""
+    """Crank r = S / 2 and rod l = r / cos(mu). The rectangle is (l + 2 r) by 2 r."""
     held: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(50.0), None)}
     _, value = only(problem({"footprint": "minimise"}, held, offset=0.0))
     rod = 0.1 / math.cos(degrees(50.0))
@@ -187,7 +187,7 @@ def test_the_smallest_footprint_without_offset_has_the_shortest_rod_that_transmi
 
 
 def test_the_mean_torque_against_friction_is_least_with_the_shortest_stroke() -> None:
-    """A force F against the motion takes the work 2 F S a turn: mean torque F S / pi; S >= 2 r, with e = 0 equal."""
+    """A force F against the motion takes the work 2 F S a turn. Mean torque F S / pi; S >= 2 r, with e = 0 equal."""
     rubbing = Mechanism(speed=10.0, loads=(StrokeForce(outward=-50.0, inward=50.0),))
     design, value = only(problem({"mean_torque": "minimise"}, crank=(0.03, 0.1), mechanism=rubbing))
     assert value == pytest.approx(50.0 * 0.06 / math.pi, rel=1e-9)
@@ -196,7 +196,7 @@ def test_the_mean_torque_against_friction_is_least_with_the_shortest_stroke() ->
 
 
 def test_the_peak_torque_of_a_static_force_is_least_with_the_longest_rod() -> None:
-    """Without offset and masses T = F r (sin(theta) + cos(theta) tan(phi')), sin(phi') = r sin(theta) / l; r = S / 2.
+    """Without offset and masses T = F r (sin(theta) + cos(theta) tan(p)). Here sin(p) = r sin(theta) / l and r = S / 2.
 
     Its peak falls with l towards F r; that of the longest rod is found along theta.
     """

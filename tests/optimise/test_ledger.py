@@ -1,4 +1,4 @@
-"""A run that was stopped, wherever, goes on from what it kept and ends as if it had not been; whatever the method."""
+"""Resumption of a run stopped anywhere, by any method: it ends as if it had not been stopped."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def steps(records: list[Record]) -> bytes:
 
 @cache
 def whole(method: str) -> tuple[tuple[object, ...], tuple[Record, ...], tuple[Progress, ...], int]:
-    """Return what an uninterrupted run gives, keeps and tells, and how often it asks whether to end."""
+    """Return the content, records, progress and number of questions whether to end of an uninterrupted run."""
     kept: list[Record] = []
     told: list[Progress] = []
     questions = itertools.count()
@@ -99,7 +99,7 @@ def whole(method: str) -> tuple[tuple[object, ...], tuple[Record, ...], tuple[Pr
 
 
 def after(questions: int) -> Callable[[], bool]:
-    """Return what says that a search is to end after so many questions."""
+    """Return a callback that ends a search after so many questions."""
     left = iter(range(questions))
     return lambda: next(left, None) is None
 
@@ -218,7 +218,7 @@ def test_records_that_are_not_whole_or_not_in_order_are_refused() -> None:
 
 
 def test_a_search_that_comes_to_another_step_is_refused() -> None:
-    """What is kept of a job that gives the same identity, but other designs: of another processor, say."""
+    """Records of a job that gives the same identity, but other designs: of another processor, say."""
     _, records, _, _ = whole("sobol")
     given = asked("sobol")
     other: list[Record] = []

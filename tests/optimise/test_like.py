@@ -37,7 +37,7 @@ CASES: dict[str, tuple[bool, tuple[Constraint, ...], Mapping[str, Ends]]] = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> None:
-    """A front of 60 designs lies nearest to it at most a spacing away, and never nearer by more than rounding."""
+    """A front of 60 designs comes within a spacing of it, and never nearer by more than rounding."""
     torque, constraints, ranges = CASES[case]
     given = front(torque)
     row = len(given) // 2

@@ -25,7 +25,7 @@ TITLES = {QUANTITIES[name].title: name for name in QUANTITIES}
 
 
 def random_job(random: np.random.Generator) -> Job:
-    """Return a job whose rules are those of one of its designs, one or two of them shifted beyond it or not."""
+    """Return a job whose requirements are those of one of its designs. One or two of them may be shifted beyond it."""
     crank, rod, offset = random.uniform(20.0, 80.0), random.uniform(150.0, 300.0), random.uniform(5.0, 60.0)
     spans = 1.0 + random.uniform(0.05, 0.8, 3)
     variables: Job = {
@@ -79,7 +79,7 @@ KEYS = {"at least": "min", "at most": "max", "exactly": "equals"}
 
 
 def said_of(job: Job) -> str:
-    """Return what is said of a job that cannot be met, nothing if it can."""
+    """Return the message on a job that cannot be met, nothing if it can."""
     try:
         front = solve(parse_job(job))
     except JobError as error:

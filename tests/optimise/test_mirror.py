@@ -57,7 +57,7 @@ APART = {
 
 @pytest.mark.parametrize("name", SAME)
 def test_designs_that_are_equal_in_everything_are_delivered_once(name: str) -> None:
-    """What the mirrored offset is worth is computed, for the claim itself."""
+    """The values at the mirrored offset are computed, for the claim itself."""
     given = either(SAME[name])
     front = solve(given)
     assert (front.dimensions[:, 2] >= 0.0).all()

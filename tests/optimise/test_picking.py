@@ -40,7 +40,7 @@ def test_closeness_is_that_of_the_book() -> None:
 
 
 def test_closeness_is_one_at_the_ideal_and_zero_at_the_worst() -> None:
-    """By hand: ranges 10 and 4; the middle is 0.5 and 0.25 of them from the best, with weights 3/4 and 1/4."""
+    """By hand: ranges 10 and 4. The middle is 0.5 and 0.25 of them from the best, with weights 3/4 and 1/4."""
     values = np.array([[0.0, 1.0], [5.0, 2.0], [10.0, 5.0]])
     best, worst = math.hypot(0.375, 0.0625), math.hypot(0.375, 0.1875)
     assert closeness(values, (3.0, 1.0)) == pytest.approx([1.0, worst / (best + worst), 0.0], rel=1e-14)

@@ -114,7 +114,7 @@ def test_designs_do_not_creep_along_a_curved_constraint() -> None:
 
 
 def test_a_curved_equality_is_met_from_anywhere() -> None:
-    """Nearest to (0.1, 0.1) on the hyperbola x y = 0.2, kept as two rows, is x = y = sqrt(0.2)."""
+    """Two rows keep the hyperbola x y = 0.2. Nearest to (0.1, 0.1) on it is x = y = sqrt(0.2)."""
     rows: list[Function] = [lambda x, y: x * y / 0.2 - 1.0, lambda x, y: 1.0 - x * y / 0.2]
     found = polish(Analytic([[squared(0.1, 0.1)]], rows), STARTS, np.ones(1))
     assert found.u == pytest.approx(np.full((40, 2), np.sqrt(0.2)), abs=1e-6)

@@ -1,4 +1,4 @@
-"""What a problem refuses, in Python as in a job file."""
+"""Refusals of a problem, in Python as in a job file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A slow stroke that is asked for: exact, by the sign of the offset; and the warning where the fast one is loaded."""
+"""A slow stroke that is asked for: exact, by the offset's sign; a warning where the fast one is loaded."""
 
 from __future__ import annotations
 

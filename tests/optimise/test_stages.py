@@ -98,7 +98,7 @@ def test_a_search_is_cancelled_in_any_stage() -> None:
 
 
 def saying(heard: list[str], stage: str) -> Callable[[], bool]:
-    """Return what says that a search is to end once a stage was heard of."""
+    """Return a callback that ends a search once a stage was heard of."""
     return lambda: stage in heard
 
 

@@ -25,7 +25,7 @@ def instance(seed: int) -> tuple[Array, NDArray[np.int64], Array]:
 
 
 def least(goals: Array, active: Array, groups: list[list[int]] | None) -> float:
-    """Return the least norm by a cone programme; groups: pieces whose weights add to one or more, None: all to one."""
+    """Return the least norm by a cone programme. groups: pieces whose weights add to one or more, None: all to one."""
     convex = cp.Variable(len(goals), nonneg=True)
     pushing = cp.Variable(max(len(active), 1), nonneg=True)
     rest = goals.T @ convex + (active.T @ pushing if len(active) else 0.0)
@@ -47,7 +47,7 @@ def test_the_residual_is_the_least_norm_of_a_cone_programme(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_the_strict_residual_lets_every_objective_carry_weight(seed: int) -> None:
-    """The sums of weights are held by stiff rows, so that the residual is right to 1e-6 of the gradients' size."""
+    """The sums of weights are held by stiff rows. So the residual is right to 1e-6 of the gradients' size."""
     goals, owner, active = instance(seed)
     residual, weights, pushing = strict_multipliers(goals, owner, active)
     groups = [np.flatnonzero(owner == name).tolist() for name in range(3)]

@@ -49,7 +49,7 @@ def value(front: ParetoFront, row: int, name: str) -> float:
 
 
 def test_least_inertia_torque_has_the_least_mass_and_speed() -> None:
-    """Without load and gravity the torque of a slider of mass m at speed w is m w^2 f(crank angle, dimensions)."""
+    """Without load and gravity, a slider of mass m at speed w takes the torque m w^2 f(crank angle, dimensions)."""
     bare = replace(HEAVY, crank=RigidLink(mass=0.0), rod=RigidLink(mass=0.0))
     light = replace(bare, slider_mass=0.7, speed=9.0)
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, mechanism=light, samples=300)

@@ -1,4 +1,4 @@
-"""What tests, harness and benchmarks share is imported one way: support <- faults <- benchmarks <- test files."""
+"""Imports between tests, harness and benchmarks point one way: support <- faults <- benchmarks <- test files."""
 
 import ast
 from collections.abc import Iterator

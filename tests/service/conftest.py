@@ -1,4 +1,4 @@
-"""What every test of the service has: its own place for runs, and the command line in this process."""
+"""Fixtures of every test of the service: a place for its runs, and the command line in this process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def command(runs: Path) -> Command:
-    """Return what runs the command line in this process: `command("front", "latest")`."""
+    """Return a function that runs the command line in this process: `command("front", "latest")`."""
 
     def run(*arguments: object) -> Result:
         return CliRunner().invoke(app, [str(argument) for argument in arguments])

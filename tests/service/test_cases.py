@@ -165,7 +165,7 @@ def test_a_number_is_confirmed_to_a_unit_of_its_last_printed_digit(
 
 
 def test_reasons_hold(cases: list[Case]) -> None:
-    """What the reasons claim with numbers in them is so."""
+    """The claims with numbers in the reasons are true."""
     sieve, support, feeder = rows(cases, 2), rows(cases, 4), rows(cases, 5)
     for key, low in (("crank_mass", 0.2), ("crank_Mxx", 0.6), ("crank_Mzz", 0.3), ("rod_Mxx", 0.3), ("rod_Mzz", 0.1)):
         printed = float(str(sieve[key].printed))

@@ -106,7 +106,7 @@ def free_port() -> int:
 
 
 def asked(url: str, token: str, *, job: str | None = None) -> object:
-    """Return what the API answers; with a job, to its submission."""
+    """Return the API's answer; with a job, to its submission."""
     headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/toml"}
     request = urllib.request.Request(url, None if job is None else job.encode(), headers)
     with urllib.request.urlopen(request, timeout=60.0) as response:

@@ -1,4 +1,4 @@
-"""A disk that is full, wherever `optimise` writes: told at once with the place and its room, and nothing is lost."""
+"""A full disk wherever `optimise` writes: told at once with place and room, and nothing is lost."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.service.test_worker import TABLES
 
 @pytest.fixture
 def full_after(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return what lets the file of a store grow no more after some writes, by SQLite's own limit, or again."""
+    """Return a function that stops a store's file growing after some writes, by SQLite's own limit, or frees it."""
     opened = Database.writing
     left, limit = [10**9], [0]
 

@@ -1,4 +1,4 @@
-"""Processes of own functions in a worker: they end with their job, and one that did not answer is not asked again."""
+"""Processes of own functions in a worker. They end with their job, and one that did not answer is not asked again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`slidercrank optimise --resume`: a run that was stopped goes on in its folder and ends as if it had not been."""
+"""`slidercrank optimise --resume`: a stopped run goes on in its folder and ends as if never stopped."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def job(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return what lets the next search end after some records: cancelled, or killed."""
+    """Return a function that ends the next search after some records: cancelled, or killed."""
 
     def after(count: int, *, killed: bool) -> None:
         def stopped(*given: Any, keep: Any, **options: Any) -> ParetoFront:

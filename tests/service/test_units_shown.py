@@ -1,4 +1,4 @@
-"""What is shown and written in inch units: the same as in metric ones, on the command line, in files and in reports."""
+"""Results in inch units: the same as in metric ones, on the command line, in files and in reports."""
 
 from __future__ import annotations
 

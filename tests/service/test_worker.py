@@ -42,7 +42,7 @@ def store(address: Path) -> Iterator[Store]:
 
 @pytest.fixture
 def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
-    """Return what puts another search in the place of `solve`."""
+    """Return a function that puts another search in the place of `solve`."""
     return lambda search: monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
 
 

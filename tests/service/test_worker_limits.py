@@ -1,4 +1,4 @@
-"""What a worker lets a job use and do. All searches are made up."""
+"""Limits and permissions of jobs in a worker. All searches are made up."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 @pytest.fixture
 def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
-    """Return what puts another search in the place of `solve`."""
+    """Return a function that puts another search in the place of `solve`."""
     return lambda search: monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
 
 

@@ -1,4 +1,4 @@
-"""What polished designs must stand up to: fresh samples that may dominate them, and the gaps between them."""
+"""Challenges to polished designs: fresh samples that may dominate them, and the gaps between them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 def challengers(
     problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, attempt: int, stand: Stand = unheard
 ) -> list[tuple[int, Array]]:
-    """Return points by sheet that the polish should take up, none if the front is as good and as full as asked.
+    """Return points by sheet for further polish; none if the front is as good and full as asked.
 
     First those that dominate a polished design. Then, where designs are wanting, those that no polished design
     dominates, and points half-way between neighbours. stand: called many times a second.

@@ -1,4 +1,4 @@
-"""What a search that was told to end has found so far, within a moment."""
+"""The front so far of a search that was told to end, delivered within a moment."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _soon(problem: Problem, evaluators: list[Evaluator], pile: Pile, rows: NDArr
 
 
 def _spread(values: Array, count: int) -> NDArray[np.int64]:
-    """Return at most `count` rows of objectives (n, m), but no fewer than the best of each; spread over the first."""
+    """Return at most `count` rows of objectives (n, m), never fewer than the best of each; spread over the first."""
     if len(values) <= count:
         return np.arange(len(values))
     best = np.argmin(values, axis=0)

@@ -50,7 +50,7 @@ _CARRIES = 1e-7  # multipliers below it are the solver's rounding
 
 @dataclass(frozen=True)
 class ActivePiece:
-    """A piece that ties for the greatest: its crank angle, rad (None: no peak over the cycle), SI value and weight."""
+    """A piece that ties for the greatest: crank angle, rad (None: no peak over the cycle), SI value, weight."""
 
     crank_angle: float | None
     value: float
@@ -174,7 +174,7 @@ def _top(evaluator: Evaluator, u: Array) -> float:
 
 
 def _scale(problem: Problem, values: Array) -> float:
-    """Return what the objective is scaled by: its best size, or its spread where a target can be met."""
+    """Return the scale of the objective: its best size, or its spread where a target can be met."""
     if not len(values):
         return 1.0
     target = abs(problem.objectives[0].target or 0.0)

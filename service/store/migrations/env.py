@@ -1,4 +1,4 @@
-"""Where Alembic starts: runs the migrations on the connection that `schema_version.upgrade` hands over."""
+"""Entry point of Alembic: runs the migrations on the connection that `schema_version.upgrade` hands over."""
 
 from __future__ import annotations
 

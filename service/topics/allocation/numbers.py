@@ -64,7 +64,7 @@ def allocation_numbers(found: Allocation, linkage: Linkage, costs: Costs, before
 
 
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
-    """Return what the tolerances of a mechanism cost, by name; None if one that has a cost is zero."""
+    """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
     from ....model.tolerance.sources import limits
     from ....optimise.problem.costs import NAMES
 

@@ -1,4 +1,4 @@
-"""The approximate models beside the exact one: over crank angle, and their errors over offset."""
+"""The approximate models against the exact one: over crank angle, and their errors over offset."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def approximations_sheet(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         f"crank {shown(1e3 * float(linkage.crank))}, rod {shown(1e3 * float(linkage.rod))}, "
         f"offset {shown(1e3 * float(linkage.offset))} mm, {shown(mechanism.speed)} rad/s; inertia alone"
     )
-    return Sheet("Approximate models beside the exact one", subtitle, tuple(panels), columns=2)
+    return Sheet("Approximate models against the exact one", subtitle, tuple(panels), columns=2)
 
 
 _SHORT = {

@@ -1,4 +1,4 @@
-"""Textbook approximations of one design beside the exact model: two-mass rod, series, k F tan(alpha)."""
+"""Textbook approximations of one design against the exact model: two-mass rod, series, k F tan(alpha)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _OFFSETS = 5
 
 
 def over_offset(mechanism: Mechanism, linkage: Linkage, *, count: int = _OFFSETS) -> Errors:
-    """Return the errors for offsets from zero to the design's own, or to half of what still turns if that is more."""
+    """Return the errors at offsets from zero to the design's own, or to (rod - crank) / 2 if greater."""
     import numpy as np
 
     from ....model.classical.comparison import errors_over_offset

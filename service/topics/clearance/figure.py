@@ -1,4 +1,4 @@
-"""The motion with a loose joint against the ideal one, the path of the journal, and several speeds side by side."""
+"""Figures of a loose joint: motion against the ideal one, path of the journal, several speeds side by side."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _IDEAL: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (4, 2
 
 @dataclass(frozen=True)
 class LooseCurves:
-    """What is drawn of a run: its last turn.
+    """Curves of the last turn of a run with a loose joint.
 
     angles: (n,), deg, from 0 to 360 in the direction of rotation. curves, ideal: title with unit -> (n,), displacement,
     velocity and acceleration of the slider. force: contact force, kN. journal_x, journal_y: mm. touching: (n,).

@@ -112,7 +112,7 @@ def numbers(
 
 @contextlib.contextmanager
 def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
-    """Show a live bar of the turns done on standard error if it is a terminal; yield what is called after each.
+    """Show a live bar of turns on standard error if it is a terminal; yield the callback for each turn.
 
     Threads other than the main one show nothing: a service simulates for others.
     """

@@ -37,7 +37,7 @@ _SIZES = np.geomspace(0.25, 4.0, 33)
 
 @dataclass(frozen=True)
 class FlywheelCurves:
-    """What the figure shows: flywheels, kg m^2, fluctuations, and speeds over a turn (crank angle, deg; rpm).
+    """Data of the flywheel figure: flywheels, kg m^2, fluctuations, and speeds over a turn (crank angle, deg; rpm).
 
     Where a flywheel is too small for the machine to come through a turn, there is no point.
     """

@@ -1,4 +1,4 @@
-"""What sizes the motor: numbers, text and figure."""
+"""Motor sizing of one design: numbers, text and figure."""
 
 from ..topic import Topic
 

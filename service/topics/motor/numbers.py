@@ -1,4 +1,4 @@
-"""What sizes the motor of one design: torque, power, reflected inertia."""
+"""Motor sizing of one design: torque, power and reflected inertia."""
 
 from __future__ import annotations
 

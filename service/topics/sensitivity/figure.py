@@ -31,7 +31,7 @@ from ...figures.style import (
 
 
 def tornado_rows(mechanism: Mechanism, linkage: Linkage) -> pd.DataFrame:
-    """Return what is drawn: title and percentages of every quantity that has them, the most sensitive first.
+    """Return the rows of the figure: title and percentages of every quantity that has them, the most sensitive first.
 
     Of an offset of zero the percentages are for 1 mm. <dimension>_percent_below: on the side of smaller values.
     """

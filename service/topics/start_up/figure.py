@@ -37,7 +37,7 @@ _RPM = 30.0 / np.pi
 
 @dataclass(frozen=True)
 class StartUp:
-    """What the figure shows: times, s, or crank angles of a turn, deg; speeds, rpm; torques on the crank, N m.
+    """Data of the start-up figure: times, s; crank angles, deg; speeds, rpm; torques on the crank, N m.
 
     motor: of the motor. taken: into the mechanism. The turn's arrays are empty without steady running.
     """

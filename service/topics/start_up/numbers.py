@@ -1,4 +1,4 @@
-"""How a machine starts: from rest under its motor to steady running, in numbers."""
+"""Start of a machine: from rest under its motor to steady running, in numbers."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str,
 
 
 def steady_numbers(running: SteadyRunning) -> dict[str, Any]:
-    """Return what describes steady running."""
+    """Return the numbers of steady running: speeds, fluctuation, period, torques and mean power."""
     return {
         "mean_speed_rpm": _RPM * running.mean_speed,
         "least_speed_rpm": _RPM * float(abs(running.speed).min()),

@@ -18,7 +18,7 @@ BINS = 40  # of the histogram
 def numbers(
     mechanism: Mechanism, linkage: Linkage, *, limit: float | None = None, samples: int = SAMPLES, seed: int = 1
 ) -> dict[str, Any]:
-    """Return what the tolerances of a mechanism do to the slider position of one linkage, ready for JSON.
+    """Return the effect of a mechanism's tolerances on the slider position of one linkage, ready for JSON.
 
     limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
     case are given. Shares are those at the crank angle of the first-order worst case, of the variance as simulated.

@@ -103,7 +103,7 @@ def test_series_acceleration_has_the_published_extremes() -> None:
     ("offset", "of_s", "of_equation_20"), [(0.0, 80.02, 70.94), (0.010, 176.00, 168.34), (0.020, 772.30, 769.23)]
 )
 def test_peaks_of_the_published_torque_formula(offset: float, of_s: float, of_equation_20: float) -> None:
-    """The paper prints 80, 120 and 250 N m; its formula gives none but the first, in one of its two readings.
+    """The paper prints 80, 120 and 250 N m. Its formula gives none but the first, in one of its two readings.
 
     Computed once more from Eqs. 6, 7, 20 and 48 as they stand, in the paper's own notation.
     """

@@ -88,7 +88,7 @@ def test_no_machine_within_the_limits_is_beyond_the_extremes() -> None:
 
 
 def test_extremes_within_the_box_are_beyond_its_corners() -> None:
-    """Offset where the rod lies along the line; crank angle at a dead centre; crank where it is normal to the rod."""
+    """Offset where the rod lies along the line; crank angle at a dead centre. Crank where it is normal to the rod."""
     for linkage, tolerances, angle, within in (
         (Linkage(0.05, 0.2, 0.0), Tolerances(offset=Tolerance(absolute=0.01)), 0.0, 0.0),
         (Linkage(0.05, 0.2, 0.0), Tolerances(crank_angle=Tolerance(absolute=0.1)), 0.0, 0.0),

@@ -67,7 +67,7 @@ def test_clearance_of_a_pin_is_a_tolerance_of_the_rod_and_that_of_the_guide_one_
 
 
 def test_pin_displaced_by_its_clearance_moves_the_slider_by_the_influence_of_the_rod() -> None:
-    """The two circles' geometry: the crank pin off by u in every direction, the best of which lies along the rod."""
+    """Geometry of the two circles. The crank pin is off by u in every direction; the best lies along the rod."""
     c = 1e-6
     for mechanism, linkage in CASES:
         r, l, e, sign = linkage.crank, linkage.rod, linkage.offset, linkage.sign

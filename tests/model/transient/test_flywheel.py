@@ -59,7 +59,7 @@ class Energies:
         return np.asarray(found)
 
     def gain(self, n: int, start: float, theta: Any) -> Any:
-        """Return what gravity and the load of stroke n do from one angle to another."""
+        """Return the work of gravity and of the load of stroke n from one angle to another."""
         work = self.forces[n] * (self.x(theta) - self.x(start))
         for part in self.parts:
             for pull, of in zip(self.machine.gravity, (part.x, part.y), strict=True):
@@ -72,7 +72,7 @@ class Energies:
         return np.asarray(self.torque * (theta - self.starts[0]) + before + self.gain(n, self.starts[n], theta))
 
     def fluctuation(self, flywheel: float) -> float:
-        """Return (greatest - least speed) / (2 pi / period); infinite where even the last bit of energy is too much."""
+        """Return (greatest - least speed) / (2 pi / period), infinite where the last bit of energy is too much."""
         lows = [float(work.min()) for work in self.works]
 
         def excess(log: float) -> float:

@@ -61,7 +61,7 @@ def test_shaking_is_affine_in_counterweight_and_rod_balance() -> None:
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_without_a_slider_mass_the_rotating_mass_is_balanced_in_full(measure: Measure) -> None:
-    """A rod with its mass at the crank pin turns with the crank: c = -(crank's moment + rod's mass times crank)."""
+    """A rod with its mass at the crank pin turns with the crank. c = -(crank's moment + rod's mass times crank)."""
     crank = RigidLink(mass=0.7, centre=0.02, centre_across=0.004)
     machine = Mechanism(speed=-20.0, crank=crank, rod=RigidLink(mass=1.2, centre=0.0, inertia=0.0))
     found = balance(machine, Linkage(0.05, 0.2, 0.03), measure=measure)

@@ -66,7 +66,7 @@ def test_any_quantity_can_be_minimised(quantity: str) -> None:
     ],
 )
 def test_rates_predict_what_a_bound_costs(name: str, held: dict[str, Bounds]) -> None:
-    """Central difference of optima over a bound moved by 1e-4 of itself: its error is of second order, 1e-6 or so."""
+    """Central difference of optima over a bound moved by 1e-4 of itself. Its error is of second order, 1e-6 or so."""
 
     def least(share: float) -> float:
         if name == "rod":
@@ -84,7 +84,7 @@ def test_rates_predict_what_a_bound_costs(name: str, held: dict[str, Bounds]) ->
 
 
 def test_a_kink_of_three_pieces_is_found_in_the_plane() -> None:
-    """The greatest of x, y and 1 - x - y is least where all are 1/3; each piece weighs a third."""
+    """The greatest of x, y and 1 - x - y is least where all are 1/3. Each piece weighs a third."""
     pieces: list[Function] = [lambda x, y: x, lambda x, y: y, lambda x, y: 1.0 - x - y]
     descent = Descent(Analytic([pieces]), 1.0)
     for start in STARTS[:3]:
@@ -108,7 +108,7 @@ def test_a_smooth_optimum_is_reached_as_fast_as_a_kink() -> None:
 
 
 def test_curved_constraints_hold_from_infeasible_starts() -> None:
-    """Greatest x + 2 y on a disc, from outside too: along the edge the second-order correction is what moves it."""
+    """Greatest x + 2 y on a disc, from outside too. Along the edge the second-order correction is what moves it."""
     disc = Analytic([[lambda x, y: -x - 2.0 * y]], [lambda x, y: x * x + y * y - 0.5])
     descent = Descent(disc, 1.0)
     for start in STARTS[:4]:

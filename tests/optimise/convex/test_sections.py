@@ -67,7 +67,7 @@ def random_task(seed: int) -> tuple[Mechanism, Linkage, Material, SectionLimits]
 def demands(
     x: np.ndarray, mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits
 ) -> np.ndarray:
-    """Return what must be zero or more, in plain variables: millimetres, stresses over what is permitted.
+    """Return margins that must be zero or more, in plain variables: millimetres, stresses over permitted ones.
 
     The same limit states written from the textbook's formulas, the loads taken from the dynamics of exactly these bars.
     """
@@ -145,7 +145,7 @@ def test_slsqp_in_plain_variables_finds_the_same_mass(seed: int) -> None:
 
 
 def test_pure_tension_gives_force_over_stress() -> None:
-    """A slow, light machine that is always pulled: the rod's area is n F / S_y, F the pull along it at its steepest.
+    """A slow, light machine that is always pulled. The rod's area is n F / S_y, F the pull along it at its steepest.
 
     With the depth at its greatest and a pin of next to no diameter nothing else limits it.
     """
@@ -162,7 +162,7 @@ def test_pure_tension_gives_force_over_stress() -> None:
 
 
 def test_bearing_and_net_section_size_a_rod_by_hand() -> None:
-    """Pulled with F: d = F / (D p) by the bearing, w = D + n F / (S_y d) by what the hole leaves."""
+    """A rod pulled with F: d = F / (D p) by the bearing. The net section: w = D + n F / (S_y d)."""
     pulling = Mechanism(speed=1e-3, loads=(StrokeForce(outward=5000.0, inward=5000.0),))
     material = replace(STEEL, density=1e-6, endurance=350e6)
     limits = replace(LIMITS, slider_pin=0.01, fatigue_safety=1.0)
@@ -255,7 +255,7 @@ def test_tension_is_positive() -> None:
 
 
 def test_a_rod_too_slender_for_its_compression_gets_what_euler_asks() -> None:
-    """Pushed with F without mass, out of the plane: w d^3 = 12 n F l^2 / (pi^2 E) where buckling alone holds."""
+    """Pushed with F without mass, out of the plane. w d^3 = 12 n F l^2 / (pi^2 E) where buckling alone holds."""
     pushed = Mechanism(speed=1e-3, loads=(StrokeForce(outward=-2000.0, inward=-2000.0),))
     material = replace(STEEL, density=1e-6, yield_strength=350e7, ultimate_strength=520e7, endurance=350e7)
     material = replace(material, bearing_pressure=1e20)

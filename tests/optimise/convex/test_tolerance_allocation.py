@@ -60,7 +60,7 @@ def influence_sizes(linkage: Linkage, theta: Any) -> Array:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_with_one_active_angle_it_is_the_dearest_of_the_closed_forms_of_single_angles(kind: Kind) -> None:
-    """An angle alone costs no more than all of them, so that with one active angle the cost is the greatest of theirs.
+    """An angle alone costs no more than all of them. With one active angle the cost is the greatest of theirs.
 
     Cost a + b / t, one angle: t_i ~ sqrt(b_i / |s_i|), the cost (sum sqrt(b_i |s_i|))^2 / limit (worst case), and
     t_i ~ (b_i / s_i^2)^(1/3), (sum (b_i |s_i|)^(2/3))^(3/2) / limit (root-sum-square).
@@ -218,7 +218,7 @@ def test_where_the_limit_is_wide_every_tolerance_is_the_greatest_and_only_its_bo
 
 
 def test_a_tolerance_without_a_cost_is_given_and_takes_its_part_of_the_limit() -> None:
-    """At the dead centres of a linkage in line dx = dr + dl: the crank has what the rod leaves of the limit."""
+    """At the dead centres of a linkage in line dx = dr + dl. The crank has what the rod leaves of the limit."""
     given = Mechanism(tolerances=Tolerances(rod=Tolerance(fraction=1e-3), clearances=Clearances(crank_pin=1e-5)))
     tiny = Window(start=0.0, end=1e-9)
     costs = Costs(crank=Cost(cost=1.0, at=1e-4))

@@ -1,4 +1,4 @@
-"""What every engine keeps: serial, processes and a Dask cluster."""
+"""Contract of every engine: serial, processes and a Dask cluster."""
 
 import os
 
@@ -11,7 +11,7 @@ from tests.optimise.engine import work
 
 
 class Enough(Exception):
-    """What the polling of these tests raises."""
+    """Exception that the polling of these tests raises."""
 
 
 def test_results_come_in_the_order_of_the_items(engine: Engine) -> None:

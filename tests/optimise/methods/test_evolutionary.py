@@ -1,4 +1,4 @@
-"""How good the designs are that evolutionary and model-based methods find, beside random points and the default."""
+"""How good the designs are that evolutionary and model-based methods find, against random points and the default."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def asked(given: Problem, method: str, evaluations: int, *, seed: int = 1, sampl
 
 @cache
 def share(method: str, evaluations: int, seed: int) -> float:
-    """Return what a method finds of the default's hypervolume on the feeder."""
+    """Return the share of the default's hypervolume that a method finds on the feeder."""
     best = shipped_front("feeder")
     ideal, span = scaling(best.values)
     front = solve(asked(shipped("feeder"), method, evaluations, seed=seed, samples=40))

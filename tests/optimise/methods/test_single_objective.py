@@ -42,7 +42,7 @@ PAIRS += [("trust_constr", "a torque between two peaks"), ("trust_constr", "a ta
 
 @cache
 def default(name: str) -> float:
-    """Return what the default finds."""
+    """Return the optimum that the default method finds."""
     front = solve(PROBLEMS[name])
     assert front.status == "done", front.message
     return float(front.values[0, 0])
@@ -120,6 +120,6 @@ def test_cancelling_keeps_what_was_found(method: str) -> None:
 
 
 def test_evolution_keeps_to_its_budget() -> None:
-    """What is found is evaluated a few times more for the front."""
+    """Designs that were found are evaluated a few times more for the front."""
     front = solve(asking(PROBLEMS["a torque between two peaks"], "differential_evolution", evaluations=2_000))
     assert front.evaluations <= 2_000 + 100

@@ -18,7 +18,7 @@ Serve = Callable[..., httpx.Client]
 
 @pytest.fixture
 def serve(store: Store) -> Iterator[Serve]:
-    """Return what serves the store with some settings, and gives a client of it."""
+    """Return a function that serves the store with some settings and gives a client of it."""
     with contextlib.ExitStack() as stack:
 
         def served(**settings: Any) -> httpx.Client:
@@ -35,7 +35,7 @@ def client(serve: Serve) -> httpx.Client:
 
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
-    """Return a client that the tests of a file share: of a store with one job, which they leave as it is."""
+    """Return a client that a file's tests share: of a store with one job, which they leave unchanged."""
     with Store(tmp_path_factory.mktemp("shared") / "store.db") as store:
         add(store, files=[Artefact(name="job.toml", media_type="application/toml", content=b"secret = 1")])
         with client_of(store) as client:

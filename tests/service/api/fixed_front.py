@@ -1,4 +1,4 @@
-"""A small job, solved by a worker of a store and once more on the command line, and a service of that store."""
+"""A small job solved by a store's worker and on the command line, and a service of that store."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Solved:
 
     @property
     def path(self) -> str:
-        """Of the job in the API."""
+        """Path of the job in the API."""
         return f"{API}/jobs/{self.number}"
 
 

@@ -41,7 +41,7 @@ ALL = "examples,coverage,fuzzing,stateful"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run of schemathesis came to. cases: requests that were answered; statuses: how often with which."""
+    """Outcome of a run of schemathesis. cases: requests that were answered; statuses: how often with which."""
 
     code: int
     cases: int

@@ -1,4 +1,4 @@
-"""What schemathesis must be told of this API: how a job file is sent, and some jobs that can be solved."""
+"""Hooks that tell schemathesis how a job file is sent, and give it some solvable jobs."""
 
 from __future__ import annotations
 

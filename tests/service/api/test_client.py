@@ -186,7 +186,7 @@ class Broken(httpx.HTTPTransport):
 
 @pytest.fixture
 def losing(store: Store, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], Client]]:
-    """Return what gives a client that loses its first answers."""
+    """Return a maker of clients that lose their first answers."""
     with served(store) as address:
         made: list[Client] = []
 

@@ -39,7 +39,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
 
 
 def command(*arguments: object) -> Any:
-    """Return what the command line prints as JSON, or the sentence with which it refuses."""
+    """Return the JSON that the command line prints, or the sentence with which it refuses."""
     done = CliRunner().invoke(command_line, [str(argument) for argument in arguments])
     return json.loads(done.stdout) if done.exit_code == 0 else done.stderr.removeprefix("slidercrank: ").rstrip("\n")
 

@@ -29,7 +29,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
 
 
 def command(solved: Solved, *arguments: str) -> Any:
-    """Return what `slidercrank front --json` prints."""
+    """Return the JSON that `slidercrank front --json` prints."""
     done = CliRunner().invoke(command_line, ["front", str(solved.folder), "--json", *arguments])
     return json.loads(done.stdout)
 

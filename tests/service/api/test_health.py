@@ -1,4 +1,4 @@
-"""What those who run the service ask it."""
+"""Answers to the operators of a service: health, readiness and figures."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import pytest
 from tests.service.api import schema_cases
 
 CASES = "SLIDERCRANK_CASES"
-"""How many cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000 1`."""
+"""Variable with the number of cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000 1`."""
 
 
 @pytest.mark.slow

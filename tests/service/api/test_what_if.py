@@ -1,4 +1,4 @@
-"""What surrounds a design, and what becomes of it with other lengths."""
+"""Context of a design, and the effect of other lengths."""
 
 from __future__ import annotations
 

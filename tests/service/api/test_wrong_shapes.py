@@ -1,4 +1,4 @@
-"""Bodies and jobs of wrong shapes: whatever stands in place of a value, the answer is in words of an engineer."""
+"""Bodies and jobs of wrong shapes: whatever stands for a value, the answer is in an engineer's words."""
 
 from __future__ import annotations
 

@@ -260,7 +260,7 @@ def test_the_same_design_gives_the_same_svg() -> None:
 
 
 def test_dxf_is_written_where_the_home_folder_cannot_be(tmp_path: Path) -> None:
-    """As in a service that may write nothing but its own folder: ezdxf keeps a list of the fonts at home."""
+    """As in a service that may write nothing but its own folder. ezdxf keeps a list of the fonts at home."""
     script = (
         "from slidercrank.model.linkage.linkage import Linkage;"
         "from slidercrank.model.machine.mechanism import Mechanism;"

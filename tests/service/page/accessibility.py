@@ -1,4 +1,4 @@
-"""What axe-core finds wrong on a page, in light and in dark, and whether it fits a narrow screen."""
+"""Accessibility of a page: findings of axe-core in light and in dark, and fit on a narrow screen."""
 
 from __future__ import annotations
 

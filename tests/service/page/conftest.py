@@ -29,7 +29,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[Open]:
-    """Return what opens a view of a store's service in a browser of its own, such as `open_page(store, "#/jobs/1")`.
+    """Return a function that opens a view of a store's service in a new browser, as `open_page(store, "#/jobs/1")`.
 
     At the end nothing may have gone wrong on any page: no exception, no error in the console, no request to elsewhere.
     A page that has to meet a refusal says so: `open_page(store, view, expected=("404",))`, parts of what is said.

@@ -22,7 +22,7 @@ _OBJECTIVES = (
 
 
 def large_result(count: int = 10_000) -> Result:
-    """Return what a search might have found: `count` designs that turn fully, best time ratio first."""
+    """Return a plausible result of a search: `count` designs that turn fully, best time ratio first."""
     random = np.random.default_rng(11)
     box = np.array([[0.05, 0.2, 0.0], [0.16, 0.6, 0.15]])
     dimensions = box[0] + (box[1] - box[0]) * random.random((8 * count, 3))

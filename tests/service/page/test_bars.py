@@ -1,4 +1,4 @@
-"""Bars of the view of a design: as long as the values that they stand for, on a screen and on paper."""
+"""Bars in the view of a design: as long as their values, on a screen and on paper."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def shared(browser: Browser, service: str) -> Iterator[Shared]:
 
 @pytest.fixture
 def opened(shared: Shared, solved: Solved) -> Opened:
-    """Return what opens a design as if for the first time and waits for its mechanism."""
+    """Return a function that opens a design as if for the first time and waits for its mechanism."""
     page, expected = shared
 
     def opening(

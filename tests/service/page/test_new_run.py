@@ -25,7 +25,7 @@ READY = "Ready to start."
 
 @pytest.fixture
 def form(open_page: Open) -> Open:
-    """Return what opens the form for a reader who prefers less motion: the sketch stands still, which saves time."""
+    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
     return partial(open_page, reduced_motion="reduce")
 
 

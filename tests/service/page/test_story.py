@@ -1,4 +1,4 @@
-"""A whole story as somebody lives it who opens no terminal: from a shipped job to files for CAD and the review."""
+"""The whole story of a user without a terminal: from a shipped job to files for CAD and review."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ _FINER = 3  # a screen rounds small letters to whole dots
 
 @cache
 def figures() -> dict[str, tuple[Figure, Inset, Image]]:
-    """Return each figure of a report with its place and the picture of it (h, w, 3), from 0 to 1, on paper."""
+    """Return each figure of a report with its place and its picture on paper (h, w, 3), 0 to 1."""
     front = fronts.front(designs=20)
     result = result_of(front, "kept")
     report = design_report(subject_of(front.problem, result, 3, run="kept", versions={}), made=0.0)
@@ -49,7 +49,7 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
 
 
 def screen(figure: Figure, scale: float) -> Image:
-    """Return a figure as matplotlib draws it on a screen, (h, w, 3), in dots a third as large as those of the paper."""
+    """Return a figure as matplotlib draws it on a screen, (h, w, 3). Its dots are a third as large as the paper's."""
     figure.set_dpi(_FINER * DOTS * scale)
     figure.canvas.draw()
     dots: Image = np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0  # type: ignore[attr-defined]

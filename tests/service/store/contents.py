@@ -1,4 +1,4 @@
-"""What the tests put into a store, made by hand, and what they do to it behind its back."""
+"""Contents that the tests put into a store, made by hand, and changes made behind its back."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
 
 
 def search_record(number: int) -> Record:
-    """Return what a search keeps of a round, like no other, with values that only an exact copy keeps."""
+    """Return a unique record of a round of a search, with values that only an exact copy keeps."""
     random = np.random.default_rng(number)
     floats = np.array([*random.random(9), np.nan, np.inf, 1e-300, -0.0])
     return Record(Identity("0f" * 16, '{"slidercrank": "1"}'), number, number, 0.1 * number, floats.view(np.int64))
@@ -56,7 +56,7 @@ def progress(number: int) -> Progress:
 
 
 def result(status: str = "done", rows: list[Row] | None = None) -> Result:
-    """Return what a search found."""
+    """Return the result of a search."""
     rows = ROWS if rows is None else rows
     return Result(
         run="job",

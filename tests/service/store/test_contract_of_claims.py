@@ -1,4 +1,4 @@
-"""What a claim allows in every store, whatever database it is in, and what is left of a job when it ends."""
+"""Contract of claims in every store, whatever its database: their rights, and the job at its end."""
 
 from __future__ import annotations
 

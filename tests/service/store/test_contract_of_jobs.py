@@ -1,4 +1,4 @@
-"""What every store does with jobs, whatever database it is in."""
+"""Contract of every store on jobs, whatever its database."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every store does with runs of the command line, names of run folders, limits and summaries."""
+"""Contract of every store on runs of the command line, names of run folders, limits and summaries."""
 
 from __future__ import annotations
 

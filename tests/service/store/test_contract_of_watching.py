@@ -1,4 +1,4 @@
-"""What every store tells to those who look after many jobs at once."""
+"""Contract of every store on watching many jobs at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The store keeps designs as the search left them: dimensions in SI and slopes, bit for bit; and opens older stores."""
+"""Designs in the store as the search left them: SI dimensions and slopes, bit for bit; older stores are opened."""
 
 import tomllib
 from pathlib import Path

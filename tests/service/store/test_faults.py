@@ -27,7 +27,7 @@ Start = Callable[[], BaseProcess]
 
 @pytest.fixture
 def start(address: str) -> Iterator[Start]:
-    """Return what starts a worker on the store; all are gone after the test."""
+    """Return a function that starts a worker on the store; all are gone after the test."""
     context = get_context("forkserver")  # the imports are done once for all workers
     context.set_forkserver_preload([main.__module__])
     started: list[BaseProcess] = []

@@ -1,4 +1,4 @@
-"""What is wrong in a database is found, on both kinds; what is right is not."""
+"""Inspection of a database, on both kinds: damage is found, and nothing else."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
 
 
 def found(address: str) -> list[str]:
-    """Return what is wrong."""
+    """Return the damage that is found."""
     database = Database(address)
     wrong = damages(database)
     database.close()

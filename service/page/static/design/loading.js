@@ -1,4 +1,4 @@
-/** What the view needs of the API. */
+/** Requests of the view to the API. */
 
 import { get } from "../lib/api.js";
 import { withResultants } from "./panels.js";

@@ -1,4 +1,4 @@
-/** Which curves of the API are shown, and which are made of several of them. */
+/** Curves of the API that are shown, and those made of several of them. */
 
 const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
@@ -7,7 +7,7 @@ const RESULTANTS = [
 ];
 const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
 
-/** Return {curves, columns} with the sizes of the joint forces beside their components. @param {Pick<Api.Cycle, "curves" | "columns">} cycle */
+/** Return {curves, columns} with the sizes of the joint forces next to their components. @param {Pick<Api.Cycle, "curves" | "columns">} cycle */
 export function withResultants({ curves, columns }) {
   /** @type {Api.Curves} */
   const more = { ...curves };

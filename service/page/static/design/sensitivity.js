@@ -1,4 +1,4 @@
-/** How much each objective changes with each dimension, as a tornado. */
+/** Sensitivity of each objective to each dimension, as a tornado. */
 
 import { tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";

@@ -1,4 +1,4 @@
-/** What surrounds a design: the values of the whole front. */
+/** Surroundings of a design: the values of the whole front. */
 
 import { get } from "../lib/api.js";
 

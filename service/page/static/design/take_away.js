@@ -1,4 +1,4 @@
-/** What can be taken away of a design: drawings, motion, report, its sheet, a link. */
+/** Downloads of a design: drawings, motion, report, its sheet, a link. */
 
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";

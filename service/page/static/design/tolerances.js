@@ -1,4 +1,4 @@
-/** What tolerances do to the slider's position: the spread of random machines, the worst case, and what it comes from. */
+/** Effect of tolerances on the slider's position: spread of random machines, worst case, and its sources. */
 
 import { histogram, tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";

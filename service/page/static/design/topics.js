@@ -1,4 +1,4 @@
-/** What takes a moment: sensitivity and tolerances of a design, computed when the reader comes to it. */
+/** Slow topics: sensitivity and tolerances of a design, computed when the reader comes to it. */
 
 import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";

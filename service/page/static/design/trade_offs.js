@@ -1,4 +1,4 @@
-/** What one objective costs in the others at a design, in words. */
+/** Cost of one objective in the others at a design, in words. */
 
 import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";

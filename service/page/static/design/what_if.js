@@ -1,4 +1,4 @@
-/** What if the lengths were others? Sliders, and where the change leaves the front. */
+/** Sliders for other lengths ("What if?"), and where the change leaves the front. */
 
 import { isAbort, post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";

@@ -1,4 +1,4 @@
-/** What was typed, kept in this tab until the run is started or started over. */
+/** Draft of the form, kept in this tab until the run is started or started over. */
 
 const KEY = "new-run";
 

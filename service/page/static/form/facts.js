@@ -1,4 +1,4 @@
-/** What the ranges allow, beside the form, in the reader's units. */
+/** Values that the ranges allow, beside the form, in the reader's units. */
 
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";

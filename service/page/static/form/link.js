@@ -1,4 +1,4 @@
-/** What a link weighs: nothing, by its mass, or by its section. */
+/** Mass of a link: nothing, by its mass, or by its section. */
 
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";

@@ -1,4 +1,4 @@
-/** What is wanted of a quantity: a check box, and whether to minimise, to maximise, or to come near a value. */
+/** Objective on a quantity: a check box, and whether to minimise, to maximise, or to come near a value. */
 
 import { h } from "../lib/dom.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";

@@ -1,4 +1,4 @@
-/** Where a dimension may lie: from one length to another, fixed, or one of several. */
+/** Range of a dimension: from one length to another, fixed, or one of several. */
 
 import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";

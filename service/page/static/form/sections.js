@@ -71,7 +71,7 @@ function requirements(form, names) {
   return names.map((name) => requirement(form, form.quantity(name)));
 }
 
-/** Return the quantities beside the usual ones that the job has requirements on. @param {Form.Whole} form */
+/** Return the quantities besides the usual ones that the job has requirements on. @param {Form.Whole} form */
 function others(form) {
   const usual = new Set(asked(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));

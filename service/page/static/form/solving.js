@@ -1,4 +1,4 @@
-/** How to search: number of designs, seed, method; and what the service may spend on it. */
+/** Settings of the search: number of designs, seed, method; and its limits. */
 
 import { h } from "../lib/dom.js";
 import { byschema, number, numberInput } from "./controls.js";

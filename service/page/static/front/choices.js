@@ -1,4 +1,4 @@
-/** What is chosen in the explorer of a front, to and from the address. */
+/** Choices in the explorer of a front, to and from the address. */
 
 /**
  * @typedef {{ key: string, flipped: boolean }} Axis

@@ -1,4 +1,4 @@
-/** Which quantities are shown: a list of ticks that opens. */
+/** Choice of the shown quantities: a list of ticks that opens. */
 
 import { h } from "../lib/dom.js";
 

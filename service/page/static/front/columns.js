@@ -1,4 +1,4 @@
-/** What the columns of a table of designs are called where the service does not say it beside them. */
+/** Titles of columns of a table of designs where the service does not give them. */
 
 import { link } from "../lib/address.js";
 import { unitOf, withUnit } from "../lib/numbers.js";

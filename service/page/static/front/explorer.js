@@ -46,7 +46,7 @@ function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
   return keys.filter((key) => key !== "");
 }
 
-/** What is chosen in a front, and the parts that show it; they tell it what the reader does. */
+/** Choices in a front, and the parts that show it; they tell it what the reader does. */
 export class Explorer {
   /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given */
   constructor(place, { job, data, chosen, limits, signal }) {

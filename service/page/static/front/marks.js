@@ -1,4 +1,4 @@
-/** What is worth a look in a front: the extremes, the knee with its trade-offs, and what weights choose. */
+/** Marked designs of a front: the extremes, the knee with its trade-offs, and the choice by weights. */
 
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";

@@ -1,4 +1,4 @@
-/** What can be done with a job: cancel, resume, clone, delete. */
+/** Actions on a job: cancel, resume, clone, delete. */
 
 import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";

@@ -1,4 +1,4 @@
-/** What can be taken away of a run. */
+/** Downloads of a run. */
 
 import { address, get, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";

@@ -1,4 +1,4 @@
-/** What became of a run that gave no whole front, and what to do about it. */
+/** Outcome of a run that gave no whole front, with the remedy. */
 
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";

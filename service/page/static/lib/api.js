@@ -2,7 +2,7 @@
 
 const PREFIX = "api/v1";
 
-/** What the service refused, in its own sentence; status 0 is no answer at all. */
+/** Refusal of the service, in its own sentence; status 0 is no answer at all. */
 export class Problem extends Error {
   /** @param {number} status @param {string} detail */
   constructor(status, detail) {
@@ -16,7 +16,7 @@ export function isAbort(error) {
   return error instanceof Error && error.name === "AbortError";
 }
 
-/** Return what is wrong, as a sentence. @type {(error: unknown) => string} */
+/** Return an error as a sentence. @type {(error: unknown) => string} */
 export function sentenceOf(error) {
   return error instanceof Error ? error.message : String(error);
 }

@@ -1,4 +1,4 @@
-/** What happens to a job, as it happens. */
+/** Events of a job, as they happen. */
 
 import { address } from "./api.js";
 

@@ -1,4 +1,4 @@
-/** What of a mechanism has to be seen, and where that is on the screen. */
+/** Extent of a mechanism that must be visible, and its place on the screen. */
 
 import { extremes } from "../charts/cycle.js";
 

@@ -1,4 +1,4 @@
-/** What of a mechanism stands still: bearing, guide, centre lines, paths of the pins, dead centres, offset. */
+/** Fixed parts of a mechanism: bearing, guide, centre lines, paths of the pins, dead centres, offset. */
 
 import { svg } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
