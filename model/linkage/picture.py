@@ -15,7 +15,7 @@ _WIDTH, _HEIGHT, _ROOM = 320.0, 180.0, 18.0  # px of the SVG
 
 @dataclass(frozen=True)
 class Pose:
-    """Crank pin and slider pin at a crank angle, and the ends of the stroke on the slider line, m; NaN without one."""
+    """Pins at a crank angle, and ends of the stroke on the slider line, m; NaN without a stroke."""
 
     pin: tuple[float, float]
     slider: tuple[float, float]

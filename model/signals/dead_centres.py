@@ -37,7 +37,7 @@ def _torques(raw: Any, columns: Any, designs: Any, load_kind: Any, load_datum: A
 
 
 def torque_at_dead_centres(mechanism: Mechanism, designs: Array) -> Array:
-    """Return the drive torque, N m, at the inner and the outer dead centre of designs (n, 3 + k): (n, 2).
+    """Return the drive torque (n, 2), N m, at inner and outer dead centre of designs (n, 3 + k).
 
     The slider stands there, so loads along the stroke take no torque: one that changes with the stroke makes a kink of
     the curve and no jump. Without friction. Raises `AssemblyError` for designs that do not turn fully.

@@ -1,4 +1,4 @@
-"""Curves of one design over a turn of the crank, with their names, titles and units: for tables, CSV and the page."""
+"""Curves of one design over a turn of the crank, with names, titles and units."""
 
 from __future__ import annotations
 

@@ -26,12 +26,13 @@ or lie between it and the next sample. Of 600,000 random machines with loads tha
 def evaluate_quantities(
     mechanism: Mechanism, quantities: Sequence[Quantity], designs: object, *, gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return values (..., q), SI, and the Jacobian (..., q, 3 + k) of designs (..., 3 + k), or None in its place.
+    """Return values (..., q), SI, and the Jacobian (..., q, 3 + k) of designs (..., 3 + k).
 
-    Columns of a design: crank, rod, offset, m, and the values of the machine's k varying numbers, SI. Rows of designs
-    that do not turn fully, or that are not finite, are NaN; a quantity is infinite where friction locks the linkage.
-    Peaks come from the vectorised search of `screening`, and from the exact one of `peaks` where that does not take the
-    signal or the torque has its peak on a kink. At a tie of two peaks the slope is that of one of them.
+    Without `gradients` the Jacobian is None. Columns of a design: crank, rod, offset, m, and the values of the
+    machine's k varying numbers, SI. Rows of designs that do not turn fully, or that are not finite, are NaN; a
+    quantity is infinite where friction locks the linkage. Peaks come from the vectorised search of `screening`, and
+    from the exact one of `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie
+    of two peaks the slope is that of one of them.
     Raises `InputError` for arrays of another width, and for the gradient of a quantity that has none.
     """
     rows, shape = _rows(mechanism, designs)

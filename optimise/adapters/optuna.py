@@ -18,7 +18,7 @@ _FAR = 1e30
 
 
 def optuna_objective(problem: Problem, *, eliminate: bool = True) -> Callable[[Trial], tuple[float, ...]]:
-    """Return what `study.optimize` takes: the objectives of a trial as minimised, its requirements as constraints.
+    """Return an objective for `study.optimize`: those of a trial as minimised, its requirements as constraints.
 
     Create the study with a direction "minimize" for each objective. eliminate: equality constraints are eliminated, see
     `standard_form`; the parameters then run from 0 to 1. Each trial has its design as user attribute "design", crank,

@@ -1,4 +1,4 @@
-"""A problem as other optimisers take it: bounds, objectives to be minimised, requirements as G <= 0 and H = 0."""
+"""Standard form of a problem for other optimisers: bounds, objectives as minimised, G <= 0 and H = 0."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ _KEPT = 0.02
 
 
 class Arrays(NamedTuple):
-    """Values of n designs as minimised, F (n, m), G (n, g) <= 0 and H (n, h) = 0, and their Jacobians (n, ., 3 + k).
+    """Objectives and requirements of n designs, and their Jacobians.
 
-    The Jacobians are empty, (n, ., 0), unless asked for.
+    F (n, m) as minimised, G (n, g) <= 0, H (n, h) = 0. The Jacobians (n, ., 3 + k) are empty, (n, ., 0), unless asked
+    for.
     """
 
     F: Array
@@ -116,7 +117,7 @@ class StandardForm:
         return Arrays(F, G, H, dF, dG, dH)
 
     def scipy(self, objective: str | None = None, *, keep_feasible: bool = False) -> ScipyForm:
-        """Return what `scipy.optimize` takes: `minimize(**form.scipy()._asdict(), method="SLSQP")`.
+        """Return arguments for `scipy.optimize`: `minimize(**form.scipy()._asdict(), method="SLSQP")`.
 
         objective: which one, where the problem has several. keep_feasible: have every iterate turn fully; needed by
         trust-constr, not known to SLSQP. Raises `InputError` if the objective is not said, or not one of them, and for

@@ -17,7 +17,7 @@ _WIDTH, _HEIGHT, _ROOM = 320.0, 200.0, 30.0  # px of the SVG
 
 
 def svg(values: Array, labels: Sequence[str]) -> str:
-    """Return the first two columns (n, 2) as an SVG element that needs nothing else; the row number of one alone."""
+    """Return an SVG scatter of the first two columns; of a single column over its row number."""
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]

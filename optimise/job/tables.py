@@ -61,7 +61,7 @@ def _with(item: Quantity, given: Mapping[str, Function]) -> Quantity:
 
 
 def _plain(value: object) -> object:
-    """Return tables and lists as dicts and lists of Python's own numbers, so that the caller's are left as they are."""
+    """Return tables and lists as dicts and lists of Python's own numbers, copied."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

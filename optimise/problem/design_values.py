@@ -41,7 +41,7 @@ def evaluate(
     gradients: bool = False,
     own: Sequence[Quantity] = (),
 ) -> Array | tuple[Array, Array]:
-    """Return quantities (n, q) of designs (n, 3 + k), and with `gradients` their Jacobian (n, q, 3 + k) too; all in SI.
+    """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
     A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
     before the last: one design (3 + k,) gives (q,). quantities: names as in job files. own: quantities that may be

@@ -252,11 +252,11 @@ class Problem:
     def evaluate(
         self, designs: ArrayLike, quantities: Sequence[str] | None = None, *, gradients: bool = False
     ) -> Array | tuple[Array, Array]:
-        """Return quantities (n, q) of designs (n, 3 + k), and with `gradients` their Jacobian (n, q, 3 + k); SI.
+        """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
-        quantities: names; the objectives if None. Values are those of the quantities, not yet turned into what is
-        minimised. Rows of designs that do not turn fully are NaN. See `design_values.evaluate`. Raises `InputError` for
-        a problem with choices: ask its `parts`.
+        The Jacobian is (n, q, 3 + k). quantities: names; the objectives if None. Values are those of the quantities,
+        not yet turned into what is minimised. Rows of designs that do not turn fully are NaN. See
+        `design_values.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
         """
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities

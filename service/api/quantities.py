@@ -72,7 +72,7 @@ class UnitTable(BaseModel):
 
 @router.get("/units")
 def list_units() -> UnitTable:
-    """Give what values of the API are in inches, pounds and what is made of them, and the units of every kind."""
+    """List the units of every kind, and what the units of the API are in inches and pounds."""
     from ...objectives.kinds import KINDS, SHOWN, TIME, shown_in
     from ...optimise.job.units import per_si
 

@@ -1,4 +1,4 @@
-"""What a notebook shows: short texts, pictures that need nothing else and cannot break the page, figures."""
+"""Texts, pictures and figures of a notebook; no text can break its page."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""A quantity is named in its own file: nowhere else is its name a string, in Python, in the page or in a job file.
+"""A quantity is named in its own file: nowhere else is its name a string.
 
 Counted are string literals of Python that are the name, and strings of the page and keys of its objects. Not counted
 are examples, in `examples=` and `EXAMPLE =`; attributes, arguments and prose, where the names are terms of the field;

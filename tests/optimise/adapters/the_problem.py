@@ -1,4 +1,4 @@
-"""The problem that every adapter solves: the best transmission angle at a stroke of 100 mm and a time ratio of 1.25."""
+"""Best transmission angle at a stroke of 100 mm and a time ratio of 1.25: the problem of every adapter."""
 
 import math
 
