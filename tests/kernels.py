@@ -23,6 +23,7 @@ from tests.model.cases import SMOOTH, random_designs, random_friction, random_ma
 from tests.optimise.problems import problem
 
 _DESIGNS = random_designs(4, seed=1, least_margin=0.5)
+_CRANK, _ROD, _OFFSET = _DESIGNS[0].tolist()
 
 
 def smooth() -> None:
@@ -38,12 +39,12 @@ def rubbing() -> None:
     for quantity in reversed(QUANTITIES.values()):
         quantity.evaluate(machine, _DESIGNS, gradients=True)
     locking_margin(random_friction(random), _DESIGNS)
-    cycle(machine, Linkage(*_DESIGNS[0], machine.branch), np.linspace(0.0, 6.0, 8))
+    cycle(machine, Linkage(_CRANK, _ROD, _OFFSET, machine.branch), np.linspace(0.0, 6.0, 8))
 
 
 def search() -> None:
     """Solve a small job."""
-    cycle(SMOOTH, Linkage(*_DESIGNS[0], SMOOTH.branch), np.linspace(0.0, 6.0, 8))
+    cycle(SMOOTH, Linkage(_CRANK, _ROD, _OFFSET, SMOOTH.branch), np.linspace(0.0, 6.0, 8))
     solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=6, samples=128))
 
 
