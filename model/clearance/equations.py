@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.segments import find_pieces, load_on_slider
+from ..dynamics.segments import find_pieces, load_on_slider, with_formulas
 from ..kernel.arithmetic import inlined, kernel
 from ..kinematics.position import Motion
 from ..machine.parameters import design_at
@@ -175,7 +175,11 @@ def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, lo
     find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
     # The block was derived for unit speed: velocity per unit of crank angle is then the velocity.
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
-    return float(d.branch * load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift))
+    force = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
+    moving = d.branch * p.x_t > 0.0
+    if moving != outward:  # near a dead centre the loose slider lags: what opposes its motion turns with the motion
+        force += with_formulas(0.0, m, d, block, 0, moving, loads) - with_formulas(0.0, m, d, block, 0, outward, loads)
+    return float(d.branch * force)
 
 
 @kernel

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from ...model.cycle.cycle import Cycle, cycle
@@ -16,6 +16,9 @@ from ...model.machine.mechanism import Mechanism
 from ...model.signals.follow import third_derivative
 from ..kinds import Face
 from ..quantity import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LEAST, MOST = 4, 100_000
 _ANGLE = Face("rad", "_rad"), Face("deg", "_deg", 57.29577951308232)
@@ -94,6 +97,8 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     theta = even_angles(angles) if isinstance(angles, int) else np.asarray(angles, dtype=np.float64)
     if theta.ndim != 1:
         raise InputError(f"crank angles are a list of numbers, rad; got an array of shape {theta.shape}")
+    import pandas as pd
+
     return pd.DataFrame(
         {curve.name + curve.si.suffix: curve.values for curve in cycle_curves(mechanism, linkage, theta)}
     )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...objectives.quantity import Array
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.gradients import without_gradient
 from ..problem.problem import Constraint, Objective, Problem
 from ..search.elimination import Sheet, sheets
@@ -285,7 +286,7 @@ def _sides(constraint: Constraint) -> list[str]:
 
 def _share(asked: tuple[Constraint, ...]) -> float:
     """Share of the rod that crank + |offset| may take."""
-    floor = next((c.lower for c in asked if c.quantity == "transmission_angle" and c.lower is not None), None)
+    floor = next((c.lower for c in asked if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _KEPT if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 

@@ -8,7 +8,6 @@ from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
@@ -21,6 +20,7 @@ from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_an
 from .causes import undefined_because, zero_because
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 _PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque")
@@ -70,6 +70,8 @@ class Analysis(Mapping[str, float]):
             }
             for item in self.quantities
         }
+        import pandas as pd
+
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:

@@ -26,7 +26,8 @@ TERMS = {
     "service/page/static/form/start.js": "the job that a new form begins with",
     "service/preview/": "the answer of the preview has these keys",
     "service/api/preview.py": "the answer of the preview has these keys",
-    "service/designs/cycle_table.py": "curves over the cycle, not quantities",
+    "objectives/tables/cycle_curves.py": "curves over the cycle, not quantities",
+    "service/designs/cycle_file.py": "curves over the cycle, not quantities",
     "service/page/static/design/panels.js": "curves over the cycle, not quantities",
 }
 

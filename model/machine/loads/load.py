@@ -72,8 +72,8 @@ class Table:
 class Load:
     """A load on the slider along its line; forces are positive outward.
 
-    enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1 in
-    the outward stroke, -1 in the inward one) and the two numbers of the load's own, zero where both are zero;
+    enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
+    while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
     `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
     proportional to. slots: place in the numbers of a load and SI unit of each field that designs can vary. tables: of
     job files.

@@ -42,7 +42,7 @@ def test_every_command_of_the_page_does_what_it_says(store: Store, tmp_path: Pat
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     assert store.job(2).state == "done"
     assert store.job(3).name == "Heavier feeder"
-    assert (tmp_path / "feeder.csv").read_text().startswith("crank_mm,")
+    assert (tmp_path / "feeder.csv").read_text().startswith("number,crank_mm,")
     assert '"state":"done"' in done.stdout
     for name in ("linkage.dxf", "linkage.svg", "motion.html", "report.html"):
         assert (tmp_path / name).stat().st_size > 5_000, name

@@ -132,7 +132,7 @@ def test_sentences_exports_and_figures_follow_the_units_of_the_reader(open_page:
     page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Designs as CSV").click()
-    assert download.value.path().read_text().startswith("crank_in,rod_in,offset_in")
+    assert download.value.path().read_text().startswith("number,crank_in,rod_in,offset_in")
     figure = page.get_by_role("link", name=re.compile("as SVG")).first
     expect(figure).to_have_attribute("href", re.compile("units=inch"))
     page.reload()
