@@ -1,8 +1,8 @@
-"""Slider motion: greatest speed and acceleration over the cycle."""
+"""Slider motion: greatest speed, acceleration and jerk over the cycle."""
 
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
-from .kinds import ACCELERATION
+from .kinds import ACCELERATION, JERK
 from .kinds import SPEED as VELOCITY
 from .needs import MOTION, SPEED
 from .quantity import Group
@@ -38,4 +38,18 @@ PEAK_SLIDER_ACCELERATION = CyclePeak(
     picture="acceleration",
     needs=(MOTION,),
     on_sheet=True,
+)
+PEAK_SLIDER_JERK = CyclePeak(
+    name="peak_slider_jerk",
+    title="peak slider jerk",
+    kind=JERK,
+    signal=Signal.SLIDER_JERK,
+    place=195,
+    group=Group.MOTION,
+    sentence="The greatest jerk of the slider within a turn: how fast its acceleration changes.",
+    advice="It grows with the cube of the crank speed; a high one makes a machine shake and its joints knock.",
+    formula="max |x''' omega^3 + 3 x'' omega alpha|",
+    section=_SECTION,
+    picture="acceleration",
+    needs=(SPEED,),
 )

@@ -35,6 +35,19 @@ analytic: Callable[[Function], Function] = register_jitable(**_OPTIONS)
 """Marks a formula that runs on floats, complex numbers and arrays from Python, and inline in compiled kernels."""
 
 
+def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Function]:
+    """Mark a formula that compiles to one of two by the type of its first argument: `alone` where that is a tuple."""
+
+    def marked(function: Function) -> Function:
+        @overload(function, jit_options=dict(_OPTIONS), strict=False)
+        def choose(*arguments: Any) -> Any:
+            return alone if isinstance(arguments[0], types.BaseTuple) else together
+
+        return function
+
+    return marked
+
+
 def inlined(function: Function) -> Function:
     """Compile a step of a kernel into it.
 

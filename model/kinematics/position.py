@@ -70,3 +70,16 @@ def motion_of(sine: Any, cosine: Any, r: Any, across: Any, along: Any) -> Motion
     x_1 = -r * sine - across * rod_1
     x_2 = -r * cosine - along * rod_1 * rod_1 - across * rod_2
     return Motion(along, across, per_along, tangent, rod_1, rod_2, x, x_1, x_2)
+
+
+@analytic
+def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
+    """Return x''', the third derivative of the slider position by the crank angle, m/rad^3.
+
+    With a = l cos(phi), b = l sin(phi): phi''' = (r cos(theta) + a phi'^3 + 3 b phi' phi'') / a and
+    x''' = r sin(theta) + b phi'^3 - 3 a phi' phi'' - b phi'''.
+    """
+    cube = m.rod_1 * m.rod_1 * m.rod_1
+    bent = m.rod_1 * m.rod_2
+    rod_3 = (r * cosine + m.along * cube + 3.0 * m.across * bent) * m.per_along
+    return r * sine + m.across * cube - 3.0 * m.along * bent - m.across * rod_3

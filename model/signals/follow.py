@@ -15,9 +15,8 @@ from ..dynamics.contact import rubs, sides_of
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import Forces
-from ..kernel.arithmetic import analytic, kernel
+from ..kernel.arithmetic import kernel
 from ..kernel.batches import in_chunks
-from ..kinematics.position import Motion
 from ..machine.mechanism import Mechanism
 from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
 from .signals import design_motion
@@ -25,19 +24,6 @@ from .signals import design_motion
 Complex = NDArray[np.complex128]
 
 _WIDE = len(Forces._fields) + 1
-
-
-@analytic
-def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
-    """Return x''', the third derivative of the slider position by the crank angle, m/rad^3.
-
-    With a = l cos(phi), b = l sin(phi): phi''' = (r cos(theta) + a phi'^3 + 3 b phi' phi'') / a and
-    x''' = r sin(theta) + b phi'^3 - 3 a phi' phi'' - b phi'''.
-    """
-    cube = m.rod_1 * m.rod_1 * m.rod_1
-    bent = m.rod_1 * m.rod_2
-    rod_3 = (r * cosine + m.along * cube + 3.0 * m.across * bent) * m.per_along
-    return r * sine + m.across * cube - 3.0 * m.along * bent - m.across * rod_3
 
 
 @kernel

@@ -343,7 +343,7 @@ def find_peaks(
 
     def work(begin: int, end: int) -> None:
         _find(
-            int(kind),
+            kind.code,
             raw,
             columns,
             designs[begin:end],

@@ -7,8 +7,8 @@ from typing import Any
 
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
-from ..kernel.arithmetic import analytic, magnitude, root
-from ..kinematics.position import motion
+from ..kernel.arithmetic import analytic, chosen_by_type, magnitude, root
+from ..kinematics.position import motion, third_derivative
 from ..machine.parameters import Design
 from .position_error import influences, root_sum_square, worst_case
 
@@ -17,7 +17,7 @@ class Signal(IntEnum):
     """A signal that is watched over the cycle by its size.
 
     Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
-    shaking force (N) and shaking moment (N m).
+    shaking force (N), shaking moment (N m) and slider jerk (m/s^3).
     """
 
     TORQUE = 0
@@ -33,11 +33,20 @@ class Signal(IntEnum):
     REFLECTED_INERTIA = 10
     SHAKING_FORCE = 11
     SHAKING_MOMENT = 12
+    SLIDER_JERK = 13
 
     @property
     def needs_forces(self) -> bool:
         """Whether it follows from the joint forces, and with them from loads and friction."""
         return self <= Signal.GUIDE_FORCE or self == Signal.POWER
+
+    @property
+    def code(self) -> int | tuple[int]:
+        """Number by which kernels know the signal; in a tuple for one with kernels of its own.
+
+        A branch more in the formula of all would make the compiler group the others anew, and move their last digits.
+        """
+        return int(self) if self <= Signal.SHAKING_MOMENT else (int(self),)
 
 
 _TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST, _RSS = range(9)
@@ -45,11 +54,8 @@ _POWER, _INERTIA, _SHAKING_FORCE = range(9, 12)
 
 
 @analytic
-def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
-    """Return the signal at one crank angle for the load on the slider (N, outward).
-
-    sides: signs of the sliding where there is friction (`rubbing.Sides`).
-    """
+def _together(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+    """Return a signal of the formula that is compiled for all up to the shaking moment."""
     if kind <= _GUIDE or kind == _POWER:
         f = joint_forces(sine, cosine, m, d, load, sides)
         if kind == _TORQUE:
@@ -76,6 +82,22 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, side
     if kind == _WORST:
         return worst_case(i, d)
     return root_sum_square(i, d)
+
+
+@analytic
+def _alone(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+    """Return a signal with kernels of its own: the slider jerk."""
+    third = third_derivative(sine, cosine, m, d.r)
+    return magnitude((third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
+
+
+@chosen_by_type(together=_together, alone=_alone)
+def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+    """Return the signal of a `Signal.code` at one crank angle for the load on the slider (N, outward).
+
+    sides: signs of the sliding where there is friction (`rubbing.Sides`).
+    """
+    return (_alone if isinstance(kind, tuple) else _together)(kind, sine, cosine, m, d, load, sides)
 
 
 @analytic

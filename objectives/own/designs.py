@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
-from ...model.kinematics.position import Motion, motion
+from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.follow import follow_forces, third_derivative
+from ...model.signals.follow import follow_forces
 
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike
 
 from ...model.cycle.cycle import Cycle, cycle
 from ...model.errors import InputError
-from ...model.kinematics.position import motion
+from ...model.kinematics.position import motion, third_derivative
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.follow import third_derivative
 from ..kinds import Face
 from ..quantity import Array
 
