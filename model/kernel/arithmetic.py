@@ -36,7 +36,7 @@ analytic: Callable[[Function], Function] = register_jitable(**_OPTIONS)
 
 
 def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Function]:
-    """Mark a formula that compiles to one of two by the type of its first argument: `alone` where that is a tuple."""
+    """Mark a formula that compiles to `alone` where its first argument is a tuple, else to `together`."""
 
     def marked(function: Function) -> Function:
         @overload(function, jit_options=dict(_OPTIONS), strict=False)
