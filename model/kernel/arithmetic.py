@@ -39,7 +39,7 @@ def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Functio
     """Mark a formula that compiles to `alone` where its first argument is a tuple, else to `together`."""
 
     def marked(function: Function) -> Function:
-        @overload(function, jit_options=dict(_OPTIONS), strict=False)
+        @overload(function, jit_options=_OPTIONS, strict=False)
         def choose(*arguments: Any) -> Any:
             return alone if isinstance(arguments[0], types.BaseTuple) else together
 
