@@ -1,4 +1,4 @@
-"""Number of sampled angles a turn that the peak search needs: the origin of `model.peaks.ANGLES`."""
+"""Number of sampled angles a turn that the peak search needs: the origin of `model.signals.peaks.ANGLES`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Balance: what the moving masses do to the frame, without gravity and load (`model.inertia`), over the cycle."""
+"""Balance: effect of the moving masses on the frame over the cycle, without gravity and load.
+
+See `model.dynamics.inertia`.
+"""
 
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage

@@ -118,7 +118,8 @@ class Evaluator:
         """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) of points of the unit box.
 
         The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
-        violate a constraint by more than `band` have NaN objectives. Peaks are screened (see `model.screening`).
+        violate a constraint by more than `band` have NaN objectives. Peaks are screened
+        (see `model.signals.screening`).
         """
         dimensions = self.sheet.dimensions(u)
         rows, found, violation = self.ledger.step(

@@ -5,7 +5,7 @@
 over the counterweight's moment c (within `most`) and what is added to the rod. F and M are affine in them
 (`shaking_rows`), so that |F(theta)| <= tau is a second-order cone at every crank angle and the root mean square the
 norm of an affine vector. Peaks are over the continuum of angles: the programme is solved with a few, the exact peaks of
-what it leaves (`model.peaks`, no grid) are added, until none exceeds those it has.
+what it leaves (`model.signals.peaks`, no grid) are added, until none exceeds those it has.
 
 What is added to the rod is any body within a distance R of the crank pin: mass m, first moment b and inertia I are
 those of such a body exactly if

@@ -1,8 +1,8 @@
 """Shaking force and moment as affine functions of the masses that balance them, with exact peaks and means.
 
-At constant crank speed w (`model.inertia`, alpha = 0), with C the first moment of what is fixed to the crank, in its
-axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia about the crank
-pin:
+At constant crank speed w (`model.dynamics.inertia`, alpha = 0), with C the first moment of what is fixed to the crank,
+in its axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia about
+the crank pin:
 
     force  = w^2 R(theta) C + m r w^2 (cos theta, sin theta) - S_tt - m_slider a_B
     moment = -(A x S_tt + S x a_A + I phi_tt) + e m_slider a_B,    a_A = -w^2 A.
@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 NAMES = ("c along", "c across", "m", "b along", "b across", "I")
 """Columns: counterweight's moment along and across the crank, kg m; of what is added to the rod, mass, kg, first moment
 along and across it, kg m, and inertia, kg m^2, about the crank pin."""
-_NODES = 192  # of the means, as in `model.averages`
+_NODES = 192  # of the means, as in `model.signals.averages`
 
 
 def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
     minimise  sum_i c_i(t_i)   with   error(theta; t) <= limit at every crank angle of the working stroke,
                                       least_i <= t_i <= greatest_i,
 
-c_i(t) = a_i + b_i / t^k_i (`costs`), with the first-order influences s_i(theta) of `model.position_error`. Put
+c_i(t) = a_i + b_i / t^k_i (`costs`), with the first-order influences s_i(theta) of `model.signals.position_error`. Put
 y_i = t_i^p with p = 1 for the worst case and p = 2 for the root-sum-square. Both limits are then linear,
 
     sum_i |s_i(theta)|^p y_i <= limit^p - F(theta),
@@ -11,7 +11,7 @@ y_i = t_i^p with p = 1 for the worst case and p = 2 for the root-sum-square. Bot
 where F holds what is given (clearances, tolerances without a cost), the bounds stay bounds, and the costs
 b_i y_i^(-k_i / p) are strictly convex: one convex programme for both, with one solution. Its constraints are one for
 each crank angle of a continuum. They are exchanged: the programme is solved with a few angles, the exact local peaks of
-the error that it leaves (`model.peaks`, no grid) are added, until none exceeds the limit (R. Hettich and K. O.
+the error that it leaves (`model.signals.peaks`, no grid) are added, until none exceeds the limit (R. Hettich and K. O.
 Kortanek, "Semi-infinite programming", SIAM Review 35(3), 1993, on exchange methods). The cone solver tells which angles
 and bounds are active, but finds tolerances of little weight in the cost to 1e-4 only; the optimality conditions
 

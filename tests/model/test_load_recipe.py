@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.recipes import code_of
 
 # Without compilation: the kernels are the same Python functions, and no machine code is made for a load of one test.
 FOLLOWED = """
@@ -48,10 +49,7 @@ print("followed")
 
 def test_a_load_in_one_file_is_taken_up_by_kernels_and_job_files(pytestconfig: pytest.Config, tmp_path: Path) -> None:
     root = pytestconfig.rootpath
-    section = (root / "docs" / "architecture.md").read_text(encoding="utf-8").split("## A new load")[1]
-    block = re.search(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
-    assert block is not None
-    (tmp_path / "cushion.py").write_text(block[1], encoding="utf-8")
+    (tmp_path / "cushion.py").write_text(code_of(root, "A new load"), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", FOLLOWED.format(folder=str(tmp_path))],
         env=os.environ | {"NUMBA_DISABLE_JIT": "1"},

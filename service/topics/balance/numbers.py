@@ -15,8 +15,8 @@ CURVES = (("shaking_force", "N", "SHAKING_FORCE"), ("shaking_moment", "Nm", "SHA
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
 
-    Inertia forces only: gravity and load are left out (`model.inertia`). The values without counterweight are None if
-    the machine has none.
+    Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The values without counterweight are
+    None if the machine has none.
     """
     import numpy as np
 

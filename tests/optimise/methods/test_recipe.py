@@ -2,41 +2,19 @@
 
 from __future__ import annotations
 
-import os
-import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.recipes import code_of, require_taken_up
+
 SUITES = ("test_ledger.py", "methods/test_registry.py", "test_enumeration.py")
-PLUGIN = """
-import slidercrank.optimise.methods as package
-package.__path__.append({folder!r})
-"""
 
 
 def test_a_method_in_one_file_is_taken_up_by_the_suites_of_all_methods(
     pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
     root = pytestconfig.rootpath
-    section = (root / "docs" / "architecture.md").read_text(encoding="utf-8").split("## A new method")[1]
-    block = re.search(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
-    assert block is not None
-    (tmp_path / "methods").mkdir()
-    (tmp_path / "methods" / "halton.py").write_text(block[1], encoding="utf-8")
-    (tmp_path / "added.py").write_text(PLUGIN.format(folder=str(tmp_path / "methods")), encoding="utf-8")
+    code = code_of(root, "A new method")
     suites = [f"tests/optimise/{name}" for name in SUITES]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "added", "-p", "no:cacheprovider", "-k", "halton", *suites],
-        cwd=root,
-        env=os.environ | {"PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    passed = re.search(r"(\d+) passed", done.stdout)
-    assert passed is not None
-    assert int(passed[1]) >= 5
+    require_taken_up(root, tmp_path, code, "optimise.methods", "halton", suites)
