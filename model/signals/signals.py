@@ -17,7 +17,8 @@ class Signal(IntEnum):
     """A signal that is watched over the cycle by its size.
 
     Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
-    shaking force (N), shaking moment (N m) and slider jerk (m/s^3).
+    shaking force (N), shaking moment (N m), slider jerk (m/s^3), and the component along the slider line
+    of the force between rod and slider (N).
     """
 
     TORQUE = 0
@@ -34,11 +35,12 @@ class Signal(IntEnum):
     SHAKING_FORCE = 11
     SHAKING_MOMENT = 12
     SLIDER_JERK = 13
+    LINE_FORCE = 14
 
     @property
     def needs_forces(self) -> bool:
         """Whether it follows from the joint forces, and with them from loads and friction."""
-        return self <= Signal.GUIDE_FORCE or self == Signal.POWER
+        return self <= Signal.GUIDE_FORCE or self in (Signal.POWER, Signal.LINE_FORCE)
 
     @property
     def code(self) -> int | tuple[int]:
@@ -51,6 +53,7 @@ class Signal(IntEnum):
 
 _TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST, _RSS = range(9)
 _POWER, _INERTIA, _SHAKING_FORCE = range(9, 12)
+_JERK = int(Signal.SLIDER_JERK)
 
 
 @analytic
@@ -86,9 +89,11 @@ def _together(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, s
 
 @analytic
 def _alone(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
-    """Return a signal with kernels of its own: the slider jerk."""
-    third = third_derivative(sine, cosine, m, d.r)
-    return magnitude((third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
+    """Return a signal with kernels of its own."""
+    if kind[0] == _JERK:
+        third = third_derivative(sine, cosine, m, d.r)
+        return magnitude((third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
+    return magnitude(joint_forces(sine, cosine, m, d, load, sides).slider_pin_x)
 
 
 @chosen_by_type(together=_together, alone=_alone)

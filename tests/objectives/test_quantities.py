@@ -78,12 +78,13 @@ def test_quantity_is_the_greatest_of_its_pieces(quantity: Quantity, machine: Mec
     assert pieces.values.shape == pieces.labels.shape == (200, k)
     assert pieces.gradients.shape == (200, k, 3)
     exact = quantity.evaluate(machine, DESIGNS, gradients=True)
-    np.testing.assert_allclose(pieces.values.max(axis=1), exact.values, rtol=1e-13)
-    greatest = np.argmax(pieces.values, axis=1)
+    sign = -1.0 if pieces.least else 1.0  # the least of its pieces is the greatest of the negative ones
+    np.testing.assert_allclose((sign * pieces.values).max(axis=1), sign * exact.values, rtol=1e-13)
+    greatest = np.argmax(sign * pieces.values, axis=1)
     assert exact.gradients is not None
     np.testing.assert_array_equal(pieces.gradients[np.arange(200), greatest], exact.gradients)
     there = np.isfinite(pieces.values)
-    assert np.all(pieces.values[~there] == -np.inf)
+    assert np.all(sign * pieces.values[~there] == -np.inf)
     assert np.all(np.isfinite(pieces.gradients))
     assert np.all(np.isfinite(pieces.labels[there]))
 

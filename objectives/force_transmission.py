@@ -1,0 +1,84 @@
+"""Force transmission: the greatest force that moves the slider, over the greatest force that the rod must give it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.machine.dissipation import linkage_loaded
+from ..model.machine.mechanism import Mechanism
+from ..model.signals.peaks import Peaks, find_peaks
+from ..model.signals.signals import Signal
+from .kinds import RATIO
+from .needs import Need
+from .quantity import Array, Group, Pieces, Quantity, Values
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceTransmission(Quantity):
+    """max |B_x| / max |B| over the cycle, B being the force between rod and slider, x along the slider line.
+
+    A rod without mass under a constant force: the least |B_x| / |B| of the cycle, which is the sine of the least
+    transmission angle. In general that least ratio would be 0 for nearly every machine: inertia turns B_x round within
+    the turn while the rod's own mass keeps B_y. The ratio of the peaks says in every case how much of the force that
+    sizes rod and pin is of use. Each peak is exact over continuous crank angle; -inf where friction locks.
+    """
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        found = [
+            find_peaks(mechanism, signal, dimensions, gradients=gradients, kept=1)
+            for signal in (Signal.LINE_FORCE, Signal.SLIDER_PIN_FORCE)
+        ]
+        values, slopes = _ratios(*found)
+        return Values(values[:, 0], slopes[:, 0] if gradients else None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the ratios to the highest local peaks of |B|, the least of which is the quantity; see `Quantity`."""
+        along = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, kept=1)
+        found = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
+        return Pieces(*_ratios(along, found), found.angles, least=True)
+
+
+def _ratios(along: Peaks, whole: Peaks) -> tuple[Array, Array]:
+    """Return ratios (n, k) and their gradients: +inf for absent peaks, -inf where friction locks."""
+    there = np.isfinite(whole.values)
+    below = np.where(there & (whole.values > 0.0), whole.values, np.nan)
+    ratios = along.values / below
+    values = np.where(there, ratios, -whole.values)
+    if along.gradients is None or whole.gradients is None:
+        return values, np.empty(0)
+    slopes = (along.gradients - ratios[:, :, None] * whole.gradients) / below[:, :, None]
+    return values, np.where(there[:, :, None], slopes, 0.0)
+
+
+def _pulled(machine: Mechanism) -> bool:
+    m = machine.fullest
+    inert = m.slider_mass > 0.0 and (m.speed != 0.0 or m.acceleration != 0.0 or m.gravity[0] != 0.0)
+    worked = any(m.speed != 0.0 or not load.speed_power for load in m.loads)
+    return inert or worked or (m.friction.acts and linkage_loaded(m))
+
+
+FORCE_TRANSMISSION = ForceTransmission(
+    name="force_transmission",
+    title="force transmission",
+    kind=RATIO,
+    place=300,
+    group=Group.PROPORTIONS,
+    sentence="The greatest force that moves the slider, over the greatest force that the rod must give it for that.",
+    advice="1 is ideal; the rest only presses the slider against its guide. The rod's own inertia lowers it.",
+    formula="max |B_x| / max |B|; sin(mu_min) for a constant force and a rod without mass",
+    section="8. Dynamics",
+    picture="slider pin force",
+    example=0.5,
+    better="high",
+    needs=(
+        Need(
+            _pulled,
+            "it comes from forces along the slider line; got none; add for example "
+            '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
+            without="undefined",
+        ),
+    ),
+)
