@@ -13,8 +13,8 @@ run: $(VENV)/.installed
 # Tests start hundreds of processes, and each would compile all sources.
 export PYTHONDONTWRITEBYTECODE :=
 
-# One more than processors, since many tests wait for processes and pages; at most 8: each one loads its own numba.
-WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# Two a processor, since many tests wait for processes and pages; at most 8: each one loads its own numba.
+WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
 test: $(VENV)/.installed-test
 	@$(BIN)/python -m tests.kernels

@@ -14,6 +14,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+pytestmark = pytest.mark.slow
 DEVELOPMENT = {"test", "benchmark", "docs"}  # extras of those who work on the project
 COMMAND = "from slidercrank.service.cli import main; main()"
 LENGTHS = ("--crank", "50 mm", "--rod", "200 mm", "--offset", "10 mm")

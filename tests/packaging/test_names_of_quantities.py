@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,7 @@ def words(path: Path) -> Iterator[str]:
         yield from (literal or key for literal, key in re.findall(r"""["'`]([a-z_]+)["'`]|\b([a-z_]+):""", text))
 
 
+@cache
 def named_in() -> dict[str, set[str]]:
     """Return the files that name each quantity."""
     found: dict[str, set[str]] = {name: set() for name in FACTS}
@@ -64,15 +66,13 @@ def named_in() -> dict[str, set[str]]:
     return found
 
 
-FOUND = named_in()
-
-
 @pytest.mark.parametrize("name", FACTS)
 def test_a_quantity_is_named_in_its_own_file_and_at_most_one_other(name: str) -> None:
-    own = [path for path in FOUND[name] if path.startswith("objectives/")]
+    found = named_in()[name]
+    own = [path for path in found if path.startswith("objectives/")]
     assert len(own) == 1, own
-    assert len(FOUND[name]) <= 2, FOUND[name]
+    assert len(found) <= 2, found
 
 
 def test_the_search_for_names_finds_one_that_is_written_down() -> None:
-    assert "objectives/proportions.py" in FOUND["stroke"]
+    assert "objectives/proportions.py" in named_in()["stroke"]
