@@ -13,7 +13,7 @@ from .engine.engine import Engine
 from .feasibility.best import Best, best_of
 from .feasibility.infeasibility import diagnose
 from .front.front import ParetoFront
-from .front.progress import REPEATING, Progress
+from .front.progress import REPEATING, Progress, progress_bar
 from .front.stationarity import Array
 from .methods.auto.deliver import deliver, searched_by
 from .methods.auto.so_far import so_far
@@ -34,7 +34,7 @@ from .search.search import Archive, Callback, Run, zoom
 def solve(
     problem: Problem,
     *,
-    progress: Callback | None = None,
+    progress: Callback | bool | None = None,
     stages: Callback | None = None,
     fronts: Callable[[Array], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
@@ -44,10 +44,10 @@ def solve(
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
-    progress: called after every round. stages: called about twice a second in a long stage between two rounds, or after
-    the last. fronts: called just before `progress` with the objectives of the front so far, see `Run.front_so_far`.
-    cancelled: asked many times a second; when it says so, what was found so far is
-    returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
+    progress: called after every round; True shows a live bar, in a notebook too. stages: called about twice a second in
+    a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of the
+    front so far, see `Run.front_so_far`. cancelled: asked many times a second; when it says so, what was found so far
+    is returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
     many; the run goes on from them and gives what it would have given without a stop, bit for bit.
@@ -55,21 +55,34 @@ def solve(
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
     """
+    if progress is True:
+        with progress_bar() as tell:
+            return solve(
+                problem,
+                progress=tell,
+                stages=stages or tell,
+                fronts=fronts,
+                cancelled=cancelled,
+                resume=resume,
+                keep=keep,
+                engine=engine,
+            )
+    told = progress or None
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)
     ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
-    run = Run(problem, 1, progress, ledger, stages=stages)
+    run = Run(problem, 1, told, ledger, stages=stages)
     if fronts is not None:
 
-        def told(entry: Progress) -> None:
+        def with_front(entry: Progress) -> None:
             fronts(run.front_so_far())
-            if progress is not None:
-                progress(entry)
+            if told is not None:
+                told(entry)
 
-        run.progress = told
+        run.progress = with_front
     if resume:
         run.stand(REPEATING, 0, 1, now=True)
     try:

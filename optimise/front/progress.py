@@ -1,8 +1,11 @@
-"""Progress of a search, as it is told while it runs."""
+"""Progress of a search, as it is told while it runs: in numbers, in words, and as a live bar."""
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 LOADING = "loading"
 """Stage before a search: what it computes with, its job, and what is kept of an earlier run are read."""
@@ -34,3 +37,28 @@ class Progress:
     def prepares(self) -> bool:
         """Whether nothing new is searched yet: the search loads, or repeats what an earlier run of it did."""
         return self.stage in (LOADING, REPEATING)
+
+
+def standing(progress: Mapping[str, Any]) -> str:
+    """Return the stage of a search and how far it is: "polishing 12/66", "selecting designs 1,200/3,000".
+
+    progress: fields of `Progress`; those of early stores have no steps.
+    """
+    of = progress.get("steps", 0)
+    done, of = (progress["step"], of) if of else (progress["round"], progress["rounds"])
+    return f"{progress['stage']} {done:,}/{of:,}"
+
+
+@contextlib.contextmanager
+def progress_bar() -> Iterator[Callable[[Progress], None]]:
+    """Show a live bar while entered, on standard error or in a notebook; yield the callback that moves it."""
+    from tqdm.auto import tqdm
+
+    with tqdm(desc="starting", unit="", bar_format="{desc} {bar:24} {unit} {elapsed}", total=1, leave=False) as bar:
+
+        def tell(at: Progress) -> None:
+            bar.total, bar.n = at.steps or at.rounds, at.step if at.steps else at.round
+            bar.unit = f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}"
+            bar.set_description_str(standing(vars(at)))
+
+        yield tell

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
+from ...optimise.front.progress import standing
 from ..jobs.job_names import Name, find_job, store_that_is_there
 from ..jobs.stores import Address, has_store, store_address, tell_idle
 from ..text.screen import console, give, say
-from ..text.search_progress import standing
 from .optimise import Json
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import StoreError
+from ...optimise.front.progress import standing
 from ..jobs.job_names import Name, find_job, store_that_is_there
 from ..jobs.stores import Address, open_store, tell_idle
 from ..resources.sizes import size_of
 from ..text.screen import console, give, progress_bar, say
-from ..text.search_progress import standing
 from ..text.streams import reader_left
 from .optimise import EXIT_CODES, Json
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
-
-from .search_progress import standing
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -51,33 +49,8 @@ def waiting(text: str) -> contextlib.AbstractContextManager[object]:
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 
 
-@contextlib.contextmanager
-def progress_bar() -> Iterator[Callable[[Progress], None]]:
-    """Show a live bar on standard error if it is a terminal; yield the callback for each round."""
-    screen = error_console()
-    if not screen.is_terminal:
-        yield lambda _: None
-        return
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bar
+def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:
+    """Return a context with a live bar on standard error if that is a terminal, and the callback for each round."""
+    from ...optimise.front.progress import progress_bar as bar
 
-    with Bar(
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=24),
-        TextColumn("{task.fields[found]}"),
-        TimeElapsedColumn(),
-        console=screen,
-        transient=True,
-    ) as bar:
-        task = bar.add_task("starting", total=None, found="")
-
-        def tell(at: Progress) -> None:
-            bar.update(
-                task,
-                description=standing(vars(at)),
-                completed=at.step if at.steps else at.round,
-                total=at.steps or at.rounds,
-                found=f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}",
-            )
-
-        yield tell
+    return bar() if sys.stderr.isatty() else contextlib.nullcontext(lambda _: None)

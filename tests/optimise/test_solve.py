@@ -151,3 +151,14 @@ def test_rates_are_the_slope_of_the_front() -> None:
     error, ratio = front.designs["position_error_mm"], front.designs["time_ratio"]
     slope = (error[low] - error[high]) / (ratio[low] - ratio[high])
     assert front.rates(int(here))[0, 1] == pytest.approx(slope, rel=0.02)
+
+
+def test_a_bar_shows_a_search_and_leaves_the_front_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    given = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=8, samples=128)
+    silent = solve(given)
+    assert capsys.readouterr().err == ""
+    shown = solve(given, progress=True)
+    told = capsys.readouterr().err
+    assert "feasible, hypervolume" in told
+    assert "polishing" in told
+    assert shown.designs.equals(silent.designs)
