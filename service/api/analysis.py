@@ -18,7 +18,7 @@ from ..text.options import lengths_of, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .fronts import ColumnModel
-from .given_jobs import given_problem
+from .job_requests import given_problem
 from .models import Whole
 from .problems import problem_responses
 from .state import SettingsDep

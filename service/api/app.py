@@ -12,7 +12,6 @@ from ..page import router as page
 from ..store import Store
 from . import (
     analysis,
-    columns,
     design_files,
     designs,
     events,
@@ -28,14 +27,14 @@ from . import (
     what_if,
 )
 from .event_feed import Feed
-from .metrics import Metrics, Timed
+from .health import Metrics, Timed
 from .openapi import describe
 from .problems import answer_problems, problem_responses
-from .rate_limit import RateLimit
 from .security import Guard
 from .settings import DEFAULT, Settings
 from .stored_fronts import StoredFronts
 from .strict_input import StrictInput
+from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (
@@ -45,7 +44,6 @@ _PARTS = (
     events,
     fronts,
     designs,
-    columns,
     analysis,
     what_if,
     design_files,

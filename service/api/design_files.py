@@ -133,11 +133,4 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
 
 
 def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:
-    """Return a drawn file from those kept with the front; draw and keep it if it is not there yet."""
-    found = shown.found
-    content = found.image(shown.key, kind)
-    if content is None:
-        with DRAWING.turn():
-            content = found.image(shown.key, kind) or make()  # by whoever was first
-            found.keep_image([shown.key], kind, content)
-    return content
+    return shown.found.made(shown.key, kind, lambda: ([shown.key], make()), DRAWING)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Response
@@ -117,17 +117,11 @@ def _made(
 ) -> bytes:
     from ..figures.style import image
 
-    kept = f"{kind} {units}"
-    drawn = found.image(key, kept)
-    if drawn is not None:
-        return drawn
-    with DRAWING.turn():
-        drawn = found.image(key, kept)  # by whoever was first
-        if drawn is None:
-            named = figure()
-            drawn = image(named.draw(), kind)
-            found.keep_image(named.names, kept, drawn)
-        return drawn
+    def draw() -> tuple[Sequence[str], bytes]:
+        named = figure()
+        return named.names, image(named.draw(), kind)
+
+    return found.made(key, f"{kind} {units}", draw, DRAWING)
 
 
 def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:

@@ -1,11 +1,11 @@
-"""Requests that submit or copy jobs: JSON with options or a job file, and the content they may have."""
+"""Jobs that clients send: JSON with options or a job file, the content they may have, and the problem they state."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import Header, Request
 from fastapi.exceptions import RequestValidationError
@@ -13,10 +13,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
+from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
 from .strict_input import GIVEN, in_turn, read_json, require_moderate
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -158,3 +162,28 @@ def require_no_file(tables: Mapping[str, Any]) -> None:
             f"target_motion.file: the service opens no file that a client names; got {shown(file)}; give the points "
             "as crank_angles and positions"
         )
+
+
+def given_problem(
+    tables: Mapping[str, Any], allowed: Collection[str], values: Mapping[str, Any] | None = None
+) -> Problem:
+    """Return the problem that a job states.
+
+    allowed: functions, "module:function", that it may name as quantities. values: numbers to put in place of those
+    that it gives, by their paths. Raises `JobError`, also for a job that names a file.
+    """
+    require_no_file(tables)
+    return bounded(parse_allowed(tables, allowed, values), LONGEST_ANSWER)
+
+
+def merged(value: Any, changes: Any) -> Any:
+    """Return a value with changes applied (RFC 7396): tables key by key; null removes a key; all else replaces it."""
+    if not isinstance(changes, Mapping):
+        return changes
+    kept = dict(value) if isinstance(value, Mapping) else {}
+    for key, change in changes.items():
+        if change is None:
+            kept.pop(key, None)
+        else:
+            kept[key] = merged(kept.get(key), change)
+    return kept

@@ -16,15 +16,12 @@ from ..jobs.record import job_record
 from ..jobs.submission import submit
 from ..store import Job, State, Store
 from .exports import formats
-from .given_jobs import given_problem
-from .job_requests import Asked, Clone, IdempotencyKey, asked_for, within
-from .merge_patch import merged
+from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
 from .problems import problem_responses
-from .rate_limit import limit_submissions
 from .settings import Settings
 from .state import SettingsDep, StoreDep
-from .throttle import READING
+from .throttle import READING, limit_submissions
 
 router = APIRouter(tags=["jobs"])
 _SUBMITTED: dict[str, Any] = {

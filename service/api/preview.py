@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
-from .given_jobs import given_problem
+from .job_requests import given_problem
 from .schema import Understood, understood
 from .state import SettingsDep
 from .throttle import READING

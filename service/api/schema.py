@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
 
-from .given_jobs import given_problem
-from .job_requests import Asked, asked_for
+from .job_requests import Asked, asked_for, given_problem
 from .problems import problem_responses
 from .state import SettingsDep
 from .throttle import READING

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
@@ -18,6 +19,7 @@ from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..store import Job, Store
 from .models import JobNumber, Whole
+from .throttle import Turns
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -26,8 +28,7 @@ if TYPE_CHECKING:
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
-_MOST_IMAGES = 24  # of a front, 100 kB each
-_MOST_ANSWERS = 8_000_000  # bytes of a front's answers that are kept, and one if it is longer
+_MOST_KEPT = 10_000_000  # bytes of a front's figures, files and columns, and one if it is longer
 
 DesignNumber = Annotated[
     Whole, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
@@ -41,9 +42,8 @@ class StoredFront:
         """Take a job, what it found, and what reads the problem that it stated."""
         self.job = job
         self.result = result
-        self._images: OrderedDict[tuple[str, str], bytes] = OrderedDict()
-        self._answers: OrderedDict[tuple[str, str], bytes] = OrderedDict()
-        self._answering = threading.Lock()
+        self._kept: OrderedDict[tuple[str, str], bytes] = OrderedDict()
+        self._keeping = threading.Lock()
         self._read = problem
 
     @cached_property
@@ -70,28 +70,25 @@ class StoredFront:
 
         return minimised_values(self.result)
 
-    def image(self, name: str, kind: str) -> bytes | None:
-        """Return a figure that was drawn lately."""
-        return self._images.get((name, kind))
+    def made(
+        self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]], turns: Turns | None = None
+    ) -> bytes:
+        """Return what was made of the front lately under a name; else make it, in turn, and keep it for who asks next.
 
-    def keep_image(self, names: Sequence[str], kind: str, content: bytes) -> None:
-        """Take in a figure that was drawn, under its names."""
-        for name in names:
-            self._images[name, kind] = content
-        while len(self._images) > _MOST_IMAGES:
-            self._images.popitem(last=False)
-
-    def answer(self, name: str, kind: str) -> bytes | None:
-        """Return an answer of many designs that was made lately."""
-        with self._answering:
-            return self._answers.get((name, kind))
-
-    def keep_answer(self, name: str, kind: str, content: bytes) -> None:
-        """Take in an answer that was made, under its name."""
-        with self._answering:
-            self._answers[name, kind] = content
-            while len(self._answers) > 1 and sum(map(len, self._answers.values())) > _MOST_ANSWERS:
-                self._answers.popitem(last=False)
+        make: gives all names of what it made, and the content.
+        """
+        content = self._kept.get((name, kind))
+        if content is not None:
+            return content
+        with turns.turn() if turns else nullcontext():
+            content = self._kept.get((name, kind))  # by whoever was first
+            if content is None:
+                names, content = make()
+                with self._keeping:
+                    self._kept.update({(one, kind): content for one in names})
+                    while len(self._kept) > 1 and sum(map(len, self._kept.values())) > _MOST_KEPT:
+                        self._kept.popitem(last=False)
+        return content
 
     def row(self, number: int) -> Row:
         """Return a design by its number, counted from 1. Raises `NotFound`."""

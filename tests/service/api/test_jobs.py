@@ -13,8 +13,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.api.job_requests import EXAMPLE
-from slidercrank.service.api.merge_patch import merged
+from slidercrank.service.api.job_requests import EXAMPLE, merged
 from slidercrank.service.jobs.record import job_record
 from slidercrank.service.store import Artefact, Limits, Store
 from tests.service import fronts

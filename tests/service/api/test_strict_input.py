@@ -10,8 +10,8 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.service.api.job_requests import EXAMPLE
-from slidercrank.service.api.rate_limit import RateLimit
 from slidercrank.service.api.strict_input import read_json
+from slidercrank.service.api.throttle import RateLimit
 from tests.service.api.serving import refused
 
 JSON = {"Content-Type": "application/json"}
