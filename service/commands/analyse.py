@@ -10,7 +10,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.judged_rules import judged, rule_in
+from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
@@ -120,7 +120,7 @@ def analyse(
             lenient=ALL in (show or ()),
         )
     told = [topic for topic in found.topics if topic.name in found.found]
-    rules = [] if problem is None else [rule_in(rule, units) for rule in judged(problem, row)]
+    rules = [] if problem is None else judged(problem, row, units)
     if json:
         record = record_in(found.record(), units)
         give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
@@ -187,7 +187,7 @@ def _draw(
 
 def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, object]) -> StoredDesign:
     """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides."""
-    from ..designs.numbering import require_alone
+    from ..designs.picking_options import require_alone
     from ..designs.stored_designs import stored_design
     from ..jobs.find_run import find_run
     from ..runs.run_folder import runs_place
@@ -209,7 +209,7 @@ def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, 
 
 
 def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
-    from ..designs.cycle_file import cycle_csv
+    from ..designs.cycle_table import cycle_csv
 
     if str(file) == "-":
         raise InputError("--cycle writes a file; got -; name one")

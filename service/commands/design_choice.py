@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
-from ..designs.numbering import require_alone
-from ..designs.picking_options import picked_row
+from ..designs.picking_options import picked_row, require_alone
 from ..designs.selection import chosen_rows, none_meets
 from ..runs.result import Result
 from ..text.screen import say

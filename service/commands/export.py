@@ -141,7 +141,7 @@ def _made(
     result: Result, folder: Path, number: int, files: dict[str, Path | None], angle: float, units: System
 ) -> dict[Path, bytes]:
     """Return the contents of the files that are asked for of one design."""
-    from ..designs.cycle_file import cycle_csv
+    from ..designs.cycle_table import cycle_csv
     from ..designs.stored_designs import stored_design
 
     found = stored_design(problem_of(folder, result), result, number)

@@ -10,7 +10,6 @@ import typer
 
 from ...model.errors import SlidercrankError
 from ...objectives.kinds import System
-from ..designs.numbering import require_alone
 from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text
 from ..runs.run_folder import runs_place
@@ -82,7 +81,7 @@ def front(
     --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
     """
     from ..designs.columns import find_columns, key_in
-    from ..designs.picking_options import picked_row
+    from ..designs.picking_options import picked_row, require_alone
     from ..designs.selection import chosen_rows, none_meets, part_of
 
     folder = find_run(run, runs_place(runs))

@@ -1,15 +1,24 @@
-"""The curves of one design over a turn of the crank, as the API and the page's files have them."""
+"""The curves of one design over a turn of the crank: as CSV, and as the API and the page's files have them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...objectives.kinds import System
+from ..runs.result import csv_text, rows_of
+from .shown_units import rows_in
+
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
 
 LEAST, MOST = 4, 3600
+_ANGLES = 360
+_MOTION = (
+    *("crank_angle", "slider_position", "slider_velocity", "slider_acceleration", "slider_jerk"),
+    *("rod_angle", "transmission_angle"),
+)
 _LEFT_OUT = ("slider_jerk", "rod_angle", "power")
 
 
@@ -36,3 +45,19 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
         for curve in curves
         if curve.name not in _LEFT_OUT
     ]
+
+
+def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric", *, machine: bool = True) -> str:
+    """Return a row for each of 360 crank angles, a column for each curve of `cycle_curves`; empty where not defined.
+
+    machine: whether masses, loads and tolerances are known; else only the motion is given.
+    """
+    from ...objectives.tables.cycle_curves import cycle_curves, even_angles
+
+    curves = cycle_curves(mechanism, linkage, even_angles(_ANGLES))
+    columns = {
+        curve.field: (curve.shown.factor * curve.values).tolist()
+        for curve in curves
+        if machine or curve.name in _MOTION
+    }
+    return csv_text(rows_in(rows_of(columns), system))

@@ -1,4 +1,4 @@
-"""Options that choose one design of a stored run: `--knee`, `--topsis`, `--lexicographic`."""
+"""Options that choose one design of a stored run: `--design`, `--knee`, `--topsis`, `--lexicographic`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,15 @@ if TYPE_CHECKING:
 
 _TOPSIS = '--topsis "peak_torque=2, transmission_angle=1"'
 _LEXICOGRAPHIC = '--lexicographic "peak_torque: 5 %, transmission_angle"'
+
+
+def require_alone(design: int, result: Result, run: str, *, others: bool) -> None:
+    """Raise `InputError` for a number that the run does not have, and for one given with another way of choosing."""
+    if others:
+        raise InputError("a design is chosen in one way; got --design and another; keep one of them")
+    if not 1 <= design <= len(result.designs):
+        count = len(result.designs)
+        raise InputError(f"the run has designs 1 to {count}; got {design}; see slidercrank front {run}")
 
 
 def picked_row(

@@ -1,15 +1,17 @@
-"""Requirements of a job on one of its designs: ranges of the dimensions, and constraints."""
+"""Requirements of a job on a design: ranges of the dimensions, constraints, and by how much each is missed."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..runs.result import Row
+from ...objectives.kinds import System, shown_in
+from ..runs.result import Cell, Row
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
-    from ...optimise.problem.problem import Problem, Range
+    from ...optimise.problem.problem import Problem
 
 _RPM = 9.549296585513721  # in one rad/s
 MET = 1e-8
@@ -39,6 +41,24 @@ class Requirement:
         return isinstance(slack, float) and slack >= -MET * size
 
 
+@dataclass(frozen=True, kw_only=True)
+class JudgedRule:
+    """A rule of a job at one design, in the unit of its quantity.
+
+    lower, upper: None leaves a side open. value: None where the design does not have the quantity. missed_by: zero
+    where the rule is met, None without a value.
+    """
+
+    quantity: str
+    title: str
+    unit: str
+    lower: float | None
+    upper: float | None
+    value: float | None
+    met: bool
+    missed_by: float | None
+
+
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
     from ...optimise.search.evaluation import constraints_of
@@ -53,7 +73,8 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 def ranges_of(part: Problem) -> dict[str, tuple[float, float]]:
     """Return where crank, rod and offset may lie, mm, by column."""
-    return {f"{name}_mm": (1e3 * of.lower, 1e3 * of.upper) for name, of in _dimensions(part).items()}
+    dimensions = {"crank": part.crank, "rod": part.rod, "offset": part.offset}
+    return {f"{name}_mm": (1e3 * of.lower, 1e3 * of.upper) for name, of in dimensions.items()}
 
 
 def names_of(part: Problem) -> dict[str, str]:
@@ -79,5 +100,40 @@ def speed_rpm(mechanism: Mechanism) -> float:
     return _RPM * float(mechanism.speed)
 
 
-def _dimensions(part: Problem) -> dict[str, Range]:
-    return {"crank": part.crank, "rod": part.rod, "offset": part.offset}
+def judged(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
+    """Return the ranges of crank, rod and offset and the constraints of a job, judged at a design's metric row.
+
+    system: of the units of the answer.
+    """
+    found = []
+    for name in ("crank", "rod", "offset"):
+        column = f"{name}_mm"
+        ranges = dict.fromkeys(ranges_of(part)[column] for part in problem.parts())  # of several, where it is chosen
+        each = [_judged(Requirement(name, column, name, "mm", *ends), row[column], system) for ends in ranges]
+        found.append(min(each, key=lambda rule: rule.missed_by or 0.0))
+    return found + [_judged(rule, row.get(rule.column), system) for rule in requirements_of(problem)]
+
+
+def _judged(rule: Requirement, value: Cell, system: System) -> JudgedRule:
+    number = float(value) if isinstance(value, int | float) and not math.isnan(value) else None
+    missed = None
+    if number is not None:
+        below = 0.0 if rule.lower is None else rule.lower - number
+        above = 0.0 if rule.upper is None else number - rule.upper
+        missed = max(0.0, below, above)
+        if missed <= MET * max(abs(rule.lower or 0.0), abs(rule.upper or 0.0)):
+            missed = 0.0
+    unit, factor = shown_in(rule.unit, system)
+    lower, upper, shown, missed = (
+        None if item is None else item * factor for item in (rule.lower, rule.upper, number, missed)
+    )
+    return JudgedRule(
+        quantity=rule.quantity,
+        title=rule.title,
+        unit=unit,
+        lower=lower,
+        upper=upper,
+        value=shown,
+        met=missed == 0.0,
+        missed_by=missed,
+    )

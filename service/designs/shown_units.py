@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def row_in(row: Mapping[str, Any], system: System) -> Row:
     """Return a design with keys and values of a system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
-    return {name: _scaled(value, factor) for name, factor, value in _items(row, system)}
+    return rows_in([dict(row)], system)[0]
 
 
 def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
@@ -39,7 +39,8 @@ def record_in(record: Any, system: System) -> Any:
     if system == "metric":
         return record
     if isinstance(record, Mapping):
-        return {name: _scaled(record_in(value, system), factor) for name, factor, value in _items(record, system)}
+        keys = {key: key_in(key, system) for key in record}
+        return {name: _scaled(record_in(record[key], system), factor) for key, (name, factor) in keys.items()}
     return [record_in(item, system) for item in record] if isinstance(record, list | tuple) else record
 
 
@@ -76,10 +77,6 @@ def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
         return trade_offs_of(front_of(problem, result), result.knee, design, system)
     except SlidercrankError:  # nothing is to be said of them
         return []
-
-
-def _items(record: Mapping[str, Any], system: System) -> list[tuple[str, float, Any]]:
-    return [(*key_in(key, system), value) for key, value in record.items()]
 
 
 def _scaled(value: Any, factor: float) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ...model.errors import RunError
@@ -13,8 +14,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import Varying
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem, Range, Variant, choice_field
-from ..runs.exact import Exact
-from ..runs.result import Cell, Result, Row
+from ..runs.result import Cell, Exact, Result, Row
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -26,13 +26,22 @@ _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 class StoredDesign:
     """A design of a stored front. values: crank, rod, offset, m, and of each varying number, SI.
 
-    part: the problem that it answers, with the choices that it made in place. mechanism: with its varying numbers.
+    part: the problem that it answers, with the choices that it made in place.
     """
 
     part: Problem
     values: tuple[float, ...]
-    mechanism: Mechanism
-    linkage: Linkage
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The machine, with the varying numbers of the design."""
+        return self.part.mechanism.at(self.values[3:])
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The linkage, on the branch of the machine."""
+        crank, rod, offset = self.values[:3]
+        return Linkage(crank, rod, offset, self.mechanism.branch)
 
 
 def design_of(problem: Problem, row: Row) -> StoredDesign:
@@ -41,14 +50,7 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
     Raises `RunError` for a row that does not belong to the problem.
     """
     values = _values(row, _factors(problem.mechanism))
-    return _stored(problem, values, _variant(problem, row, values))
-
-
-def _stored(problem: Problem, values: tuple[float, ...], variant: int) -> StoredDesign:
-    part = problem.part(variant)
-    mechanism = part.mechanism.at(values[3:])
-    crank, rod, offset = values[:3]
-    return StoredDesign(part, values, mechanism, Linkage(crank, rod, offset, mechanism.branch))
+    return StoredDesign(problem.part(_variant(problem, row, values)), values)
 
 
 def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
@@ -56,7 +58,7 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
     if result.exact is None:
         return design_of(problem, result.designs[number - 1])
     variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
-    return _stored(problem, values, variants[number - 1] if variants else 0)
+    return StoredDesign(problem.part(variants[number - 1] if variants else 0), values)
 
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:

@@ -37,9 +37,9 @@ class Variation:
 
 def with_lengths(design: StoredDesign, lengths: tuple[float, float, float]) -> StoredDesign:
     """Return a design with other lengths, m: choices and varying numbers stay. Raises `InputError` for lengths."""
-    linkage = Linkage(*lengths, design.mechanism.branch)
-    linkage.require_full_rotation()
-    return replace(design, values=(*lengths, *design.values[3:]), linkage=linkage)
+    changed = replace(design, values=(*lengths, *design.values[3:]))
+    changed.linkage.require_full_rotation()
+    return changed
 
 
 def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Variation:
@@ -75,11 +75,9 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     from ...optimise.front.constant import spread
 
     own = minimised_values(replace(result, designs=[row], exact=None))[0]
-    if not len(minimised) or not np.isfinite(own).all():
-        return {"dominated_by": [], "dominates": []}
     finite = np.where(np.isfinite(minimised), minimised, math.inf)
     bounded = np.isfinite(finite).all(axis=1)
-    if not bounded.any():
+    if not bounded.any() or not np.isfinite(own).all():
         return {"dominated_by": [], "dominates": []}
     span = spread(finite[bounded], size=sizes_of(result))
     gain = (own - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better

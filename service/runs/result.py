@@ -10,10 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from .exact import Exact, exact_of
-
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
+    from ...optimise.front.stationarity import Array
 
 Cell = float | str | None
 Row = dict[str, Cell]
@@ -39,6 +38,35 @@ class Wanted:
         if self.target is not None:
             return abs(value - self.target)
         return -value if self.sense == "maximise" else value
+
+
+@dataclass(frozen=True)
+class Exact:
+    """Designs of a front as the search left them: dimensions and slopes, SI; the fields are those of `ParetoFront`.
+
+    dimensions: (n, 3 + v). variants: n, empty if nothing was to be chosen. goals: for each design, objective index (p,)
+    and gradient (p, f) of every active piece. active: gradients (a, f) of its active constraints.
+    """
+
+    dimensions: Array
+    variants: tuple[int, ...]
+    goals: tuple[tuple[Array, Array], ...]
+    active: tuple[Array, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse, with ValueError, parts of fronts of different length."""
+        count = len(self.dimensions)
+        if not count == len(self.goals) == len(self.active) or len(self.variants) not in (0, count):
+            raise ValueError(f"dimensions of {count} designs, slopes of {len(self.goals)}, {len(self.active)}")
+
+    def of(self, rows: Sequence[int]) -> Exact:
+        """Return those of some designs, in the order given."""
+        return Exact(
+            self.dimensions[list(rows)],
+            tuple(self.variants[row] for row in rows) if self.variants else (),
+            tuple(self.goals[row] for row in rows),
+            tuple(self.active[row] for row in rows),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,23 +102,9 @@ class Result:
 
     def record(self) -> dict[str, Any]:
         """Return the result for JSON: finite numbers only, null for undefined values."""
-        return {
-            "run": self.run,
-            "name": self.name,
-            "status": self.status,
-            "message": self.message,
-            "objectives": [wanted_record(wanted) for wanted in self.objectives],
-            "designs": [finite(row) for row in self.designs],
-            "hypervolume": finite(self.hypervolume),
-            "evaluations": self.evaluations,
-            "seconds": finite(self.seconds),
-            "seed": self.seed,
-            "extremes": self.extremes,
-            "knee": self.knee,
-            "trade_offs": self.trade_offs,
-            "warnings": list(self.warnings),
-            "strokes_differ": self.strokes_differ,
-        }
+        fields = {name: finite(value) for name, value in vars(self).items() if name != "exact"}
+        wanted = [wanted_record(wanted) for wanted in self.objectives]
+        return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
 
 
 def wanted_of(front: ParetoFront) -> list[Wanted]:
@@ -99,16 +113,8 @@ def wanted_of(front: ParetoFront) -> list[Wanted]:
     for objective in front.objectives:
         of = front.problem.quantity(objective.quantity)
         target = None if objective.target is None else objective.target * of.unit.factor
-        wanted.append(
-            Wanted(
-                quantity=of.name,
-                sense=objective.sense,
-                column=of.field,
-                title=of.title,
-                unit=of.unit.symbol,
-                target=target,
-            )
-        )
+        names = {"quantity": of.name, "column": of.field, "title": of.title, "unit": of.unit.symbol}
+        wanted.append(Wanted(**names, sense=objective.sense, target=target))
     return wanted
 
 
@@ -134,7 +140,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
         warnings=(*front_warnings(front), *idle_rules(front.problem)),
-        exact=exact_of(front),
+        exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )
 
 
@@ -153,14 +159,7 @@ def _cell(value: Any) -> Cell:
 
 def wanted_record(wanted: Wanted) -> dict[str, Any]:
     """Return an objective as JSON has it."""
-    record = {
-        "quantity": wanted.quantity,
-        "sense": wanted.sense,
-        "column": wanted.column,
-        "title": wanted.title,
-        "unit": wanted.unit,
-    }
-    return record if wanted.target is None else {**record, "target": wanted.target}
+    return {name: value for name, value in vars(wanted).items() if value is not None}
 
 
 def finite(value: Any) -> Any:

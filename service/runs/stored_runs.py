@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
-from .exact import Exact
-from .result import Result, Row, Wanted, finite, rows_from_csv
+from .result import Exact, Result, Row, Wanted, finite, rows_from_csv
 from .run_folder import MARK
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import zipfile
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from ..runs.exact import Exact
+from ..runs.result import Exact
 
 if TYPE_CHECKING:
     from ...optimise.front.stationarity import Array

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ..designs.judged_rules import JudgedRule
+    from ..designs.requirements import JudgedRule
 
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""

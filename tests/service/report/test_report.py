@@ -151,10 +151,9 @@ def test_a_rule_that_is_not_met_is_said() -> None:
 
 def test_without_certificate_and_tolerances_it_says_so_or_leaves_out() -> None:
     found = subject()
-    mechanism = replace(found.design.mechanism, tolerances=type(found.design.mechanism.tolerances)())
-    plain = design_report(
-        replace(found, certificate=None, versions={}, design=replace(found.design, mechanism=mechanism))
-    )
+    part = found.design.part
+    part = replace(part, mechanism=replace(part.mechanism, tolerances=type(part.mechanism.tolerances)()))
+    plain = design_report(replace(found, certificate=None, versions={}, design=replace(found.design, part=part)))
     assert any(text.startswith("No certificate") for text in texts(plain))
     assert "not recorded" in texts(plain)
     assert "Tolerances" not in [section.title for section in plain.sections]

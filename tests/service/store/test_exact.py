@@ -13,8 +13,7 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.designs.selection import part_of
 from slidercrank.service.designs.stored_designs import design_of, front_of, stored_design
 from slidercrank.service.designs.trade_offs import trade_offs_of
-from slidercrank.service.runs.exact import Exact
-from slidercrank.service.runs.result import Result, result_of
+from slidercrank.service.runs.result import Exact, Result, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.exact_bytes import packed_exact, unpacked_exact
