@@ -17,7 +17,7 @@ from ..runs.result import Row, finite
 from ..text.options import lengths_of, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
-from .fronts import ColumnModel
+from .fronts import ColumnModel, OfDesign
 from .job_requests import given_problem
 from .models import Whole
 from .problems import problem_responses
@@ -51,11 +51,8 @@ class AnalysisModel(BaseModel):
     notes: list[str] = Field(examples=[[]])
 
 
-class StoredAnalysisModel(AnalysisModel):
+class StoredAnalysisModel(OfDesign, AnalysisModel):
     """All numbers of a design of a front."""
-
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
 
 
 class CycleModel(BaseModel):
@@ -74,11 +71,8 @@ class CycleModel(BaseModel):
     )
 
 
-class CurvesModel(CycleModel):
+class CurvesModel(OfDesign, CycleModel):
     """Curves of a design of a front over a turn of the crank."""
-
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
 
 
 class WhatIf(BaseModel):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
 
@@ -14,6 +14,7 @@ from ..drawings.linkage_drawing import linkage_drawing
 from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
+from .exports import of_type
 from .figures import require_figures
 from .models import UnitsAsked
 from .problems import problem_responses
@@ -39,10 +40,6 @@ CrankAngle = Annotated[
 ]
 
 
-def _kind(media_type: str) -> dict[str, Any]:
-    return {"response_class": Response, "responses": {200: {"content": {media_type: {}}}}}
-
-
 def _file(
     shown: ShownDesign, ending: str, media_type: str, content: bytes, *, policy: str = _SEALED, label: str = ""
 ) -> Response:
@@ -56,19 +53,19 @@ def _drawing(shown: ShownDesign, crank_angle_deg: float) -> Drawing:
     return linkage_drawing(of.mechanism, of.linkage, name=name, design=shown.words, crank_angle=angle)
 
 
-@router.get("/linkage.dxf", **_kind("image/vnd.dxf"))
+@router.get("/linkage.dxf", **of_type("image/vnd.dxf"))
 def draw_dxf(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
     """Give the linkage of a design at true scale for CAD, in millimetres: see docs/drawings.md for its layers."""
     return _file(shown, "dxf", "image/vnd.dxf", dxf_file(_drawing(shown, crank_angle_deg)))
 
 
-@router.get("/linkage.svg", **_kind("image/svg+xml"))
+@router.get("/linkage.svg", **of_type("image/svg+xml"))
 def draw_linkage(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
     """Give the same drawing as SVG."""
     return _file(shown, "svg", "image/svg+xml", svg_file(_drawing(shown, crank_angle_deg)))
 
 
-@router.get("/motion.html", **_kind("text/html"))
+@router.get("/motion.html", **of_type("text/html"))
 def show_motion(shown: ShownDep) -> Response:
     """Give the moving linkage as one HTML file with its own script, which fetches nothing."""
     from ..motion.player_page import player_page
@@ -78,7 +75,7 @@ def show_motion(shown: ShownDep) -> Response:
     return _file(shown, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
-@router.get("/motion.gif", dependencies=[Depends(require_figures)], **_kind("image/gif"))
+@router.get("/motion.gif", dependencies=[Depends(require_figures)], **of_type("image/gif"))
 def animate_linkage(shown: ShownDep) -> Response:
     """Give the moving linkage as an animated GIF of one turn of the crank."""
     from ..motion.animated_gif import animated_gif
@@ -88,7 +85,7 @@ def animate_linkage(shown: ShownDep) -> Response:
     return _file(shown, "gif", "image/gif", content, label="-motion")
 
 
-@router.get("/report.html", dependencies=[Depends(require_figures)], **_kind("text/html"))
+@router.get("/report.html", dependencies=[Depends(require_figures)], **of_type("text/html"))
 def report_design(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric") -> Response:
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
@@ -97,7 +94,7 @@ def report_design(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric"
     return _file(shown, "html", "text/html; charset=utf-8", content, label="-report")
 
 
-@router.get("/report.pdf", dependencies=[Depends(require_figures)], **_kind("application/pdf"))
+@router.get("/report.pdf", dependencies=[Depends(require_figures)], **of_type("application/pdf"))
 def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric") -> Response:
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file

@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from ..designs.columns import Column, find_columns
 from ..designs.selection import chosen_rows
 from ..runs.result import finite
-from .fronts import Cells, ColumnModel, Where, column_model
+from .fronts import Cells, ColumnModel, OfDesign, Where, column_model
 from .models import Whole
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep, StoredFront
@@ -41,11 +41,9 @@ class DesignsModel(BaseModel):
     designs: list[Cells] = Field(examples=[[_EXAMPLE]])
 
 
-class DesignModel(BaseModel):
+class DesignModel(OfDesign):
     """A design with all its numbers."""
 
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
     columns: list[ColumnModel]
     design: Cells = Field(examples=[_EXAMPLE])
 

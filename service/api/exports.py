@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 from fastapi import APIRouter, Response
 
@@ -23,16 +24,18 @@ def formats() -> list[str]:
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
+def of_type(media_type: str, *refusals: int) -> dict[str, Any]:
+    """Return the options of an endpoint that gives a file, and may refuse with further statuses."""
+    responses = {200: {"content": {media_type: {}}}, **problem_responses(*refusals)}
+    return {"response_class": Response, "responses": responses}
+
+
 def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
     name = f"{slug(found.result.name)}-{found.job.id}.{ending}"
     return Response(content, media_type=media_type, headers={"Content-Disposition": f'attachment; filename="{name}"'})
 
 
-@router.get(
-    "/jobs/{number}/export.csv",
-    response_class=Response,
-    responses={200: {"content": {"text/csv": {}}}},
-)
+@router.get("/jobs/{number}/export.csv", **of_type("text/csv"))
 def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give every design with its number and all its quantities at full precision.
 
@@ -42,11 +45,7 @@ def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     return _file(found, "csv", "text/csv; charset=utf-8", content)
 
 
-@router.get(
-    "/jobs/{number}/export.json",
-    response_class=Response,
-    responses={200: {"content": {"application/json": {}}}},
-)
+@router.get("/jobs/{number}/export.json", **of_type("application/json"))
 def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give the whole front, as `slidercrank export --json` does but in one line."""
     from pydantic_core import to_json  # a tenth of the time of json's
@@ -55,11 +54,7 @@ def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     return _file(found, "json", "application/json", to_json(result.record(), inf_nan_mode="null"))
 
 
-@router.get(
-    "/jobs/{number}/export.parquet",
-    response_class=Response,
-    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **problem_responses(501)},
-)
+@router.get("/jobs/{number}/export.parquet", **of_type("application/vnd.apache.parquet", 501))
 def export_parquet(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
     import pandas as pd

@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
+from .exports import of_type
 from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
@@ -70,22 +71,14 @@ def list_figures(found: FrontDep) -> FiguresModel:
     return FiguresModel(job=found.job.id, figures=listed)
 
 
-@router.get(
-    "/jobs/{number}/figures/{name}.png",
-    response_class=Response,
-    responses={200: {"content": {"image/png": {}}}},
-)
+@router.get("/jobs/{number}/figures/{name}.png", **of_type("image/png"))
 def draw_png(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
     content, headers = _image(found, name, "png", lengths, units)
     return Response(content, media_type="image/png", headers=headers)
 
 
-@router.get(
-    "/jobs/{number}/figures/{name}.svg",
-    response_class=Response,
-    responses={200: {"content": {"image/svg+xml": {}}}},
-)
+@router.get("/jobs/{number}/figures/{name}.svg", **of_type("image/svg+xml"))
 def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
     content, headers = _image(found, name, "svg", lengths, units)

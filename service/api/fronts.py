@@ -79,10 +79,16 @@ class FrontModel(BaseModel):
     warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
 
 
-class PickedModel(BaseModel):
-    """A design that was chosen. number: counted from 1."""
+class OfDesign(BaseModel):
+    """Part of every answer about a design of a front. number: counted from 1."""
 
     job: int = Field(examples=[7])
+    number: int = Field(examples=[3])
+
+
+class PickedModel(OfDesign):
+    """A design that was chosen. number: counted from 1."""
+
     number: int = Field(examples=[42])
     design: Cells = Field(examples=[{"crank_mm": 40.0, "peak_torque_Nm": 1.8, "slow_stroke": "inward"}])
 

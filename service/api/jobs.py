@@ -12,7 +12,6 @@ from fastapi import Path as InPath
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
-from ..jobs.record import job_record
 from ..jobs.submission import submit
 from ..store import Job, State, Store
 from .exports import formats
@@ -59,13 +58,13 @@ def list_jobs(
     """Return jobs, latest first."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
     page = found[:limit]
-    return {"jobs": [job_record(job) for job in page], "next": page[-1].id if len(found) > limit else None}
+    return {"jobs": [job.record() for job in page], "next": page[-1].id if len(found) > limit else None}
 
 
 @router.get("/jobs/{number}", response_model=JobShown)
 def show_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Return where a job stands."""
-    return job_record(store.job(number))
+    return store.job(number).record()
 
 
 @router.delete("/jobs/{number}", status_code=HTTPStatus.NO_CONTENT, responses=problem_responses(409))
@@ -78,14 +77,14 @@ def delete_job(number: JobNumber, store: StoreDep) -> None:
 @router.post("/jobs/{number}/cancel", response_model=JobShown)
 def cancel_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Cancel a job; it keeps what it found, and can go on. One that has ended stays as it is."""
-    return job_record(store.cancel(number))
+    return store.cancel(number).record()
 
 
 @router.post("/jobs/{number}/resume", response_model=JobShown, responses=problem_responses(409))
 def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Queue a cancelled or failed job again, to go on from where it was."""
     with _as_it_stands():
-        return job_record(store.resume(number))
+        return store.resume(number).record()
 
 
 @router.post("/jobs/{number}/clone", **_SUBMITTED)
@@ -141,7 +140,7 @@ def _submitted(asked: Asked, store: Store, settings: Settings, response: Respons
         checked=problem.name,
     )
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-    return job_record(job)
+    return job.record()
 
 
 @contextlib.contextmanager

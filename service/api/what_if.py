@@ -16,7 +16,7 @@ from ..designs.trade_offs import trade_offs_of
 from ..designs.variation import variation_of, with_lengths
 from ..runs.result import finite
 from .analysis import CycleModel, cycle_model
-from .fronts import Cells, ColumnModel, column_model
+from .fronts import Cells, ColumnModel, OfDesign, column_model
 from .models import UnitsAsked
 from .problems import problem_responses
 from .shown_designs import LONGEST, Length
@@ -43,15 +43,13 @@ class RequirementModel(BaseModel):
     slack: str = Field(examples=["slack_least_transmission_angle_deg"])
 
 
-class RequirementsModel(BaseModel):
+class RequirementsModel(OfDesign):
     """The requirements of a job on a design, with the choices that the design made.
 
     ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
     names: of quantities, as in job files, by column. tolerances: whether the machine has any.
     """
 
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
     requirements: list[RequirementModel]
     slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
@@ -60,14 +58,12 @@ class RequirementsModel(BaseModel):
     names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
 
 
-class TradeOffsModel(BaseModel):
+class TradeOffsModel(OfDesign):
     """Trade-offs of a design: the cost of one objective in the others, in words.
 
     note: why there is nothing, or empty.
     """
 
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
     trade_offs: list[str] = Field(examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]])
     note: str = Field(examples=[""])
 
@@ -88,7 +84,7 @@ class OtherLengths(BaseModel):
     hold: Literal["crank", "rod", "offset"] | None = None
 
 
-class WhatIfModel(BaseModel):
+class WhatIfModel(OfDesign):
     """A design with other lengths, beside its front.
 
     design: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: columns
@@ -97,8 +93,6 @@ class WhatIfModel(BaseModel):
     no curves were asked for.
     """
 
-    job: int = Field(examples=[7])
-    number: int = Field(examples=[3])
     columns: list[ColumnModel]
     design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
     broken: list[str] = Field(examples=[["stroke_mm"]])

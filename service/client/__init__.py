@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, ServiceError
 from ..runs.result import Result, Row
-from ..runs.run_folder import write_bytes
+from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
 from .connection import Connection
 from .events import followed
@@ -266,7 +266,7 @@ class Client:
             raise InputError(
                 f"the file ends in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
             )
-        write_bytes(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
+        write_file(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
         return file
 
 

@@ -13,7 +13,7 @@ from ...objectives.kinds import System
 from ..designs.selection import chosen_rows, none_meets, numbered, part_of
 from ..jobs.find_run import find_run
 from ..runs.result import Result, csv_text, json_text
-from ..runs.run_folder import runs_place, write_bytes, write_file
+from ..runs.run_folder import runs_place, write_file
 from ..runs.stored_runs import problem_of, read_run
 from ..text.options import Units, value_option
 from ..text.screen import give, say, waiting
@@ -114,7 +114,7 @@ def export(
             write_file(Path(target), text)
             say(f"{target}: {len(chosen)} designs")
     for file, content in made.items():
-        write_bytes(file, content)
+        write_file(file, content)
         say(f"{file}: design {number}")
 
 

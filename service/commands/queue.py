@@ -9,8 +9,7 @@ import typer
 
 from ...model.errors import InputError
 from ...optimise.front.progress import standing
-from ..jobs.job_names import Name, find_job, store_that_is_there
-from ..jobs.stores import Address, has_store, store_address, tell_idle
+from ..jobs.stores import Address, Name, find_job, has_store, store_address, store_that_is_there, tell_idle
 from ..text.screen import console, give, say
 from .optimise import Json
 
@@ -31,7 +30,6 @@ def jobs(
     json: Json = False,
 ) -> None:
     """List the jobs of a store, the latest first, with what they found."""
-    from ..jobs.record import job_record
     from ..runs.result import json_text
     from ..store import State
 
@@ -47,7 +45,7 @@ def jobs(
             if any(job.state == "queued" for job in found):
                 tell_idle(opened)
     if json:
-        give(json_text([job_record(job) for job in found]))
+        give(json_text([job.record() for job in found]))
     elif found:
         _show(console(), found)
     else:
@@ -82,11 +80,10 @@ def delete(job: Name, store: Address = None, json: Json = False) -> None:
 
 
 def _tell(job: Job, json: bool, what: str = "") -> None:
-    from ..jobs.record import job_record
     from ..runs.result import json_text
 
     text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)
-    give(json_text(job_record(job)) if json else f"job {job.id}: {job.name}, {text}\n")
+    give(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
 
 
 def _show(screen: Console, found: list[Job]) -> None:

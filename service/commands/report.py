@@ -11,7 +11,7 @@ import typer
 from ...model.errors import InputError, RunError
 from ...objectives.kinds import System
 from ..jobs.find_run import find_run
-from ..runs.run_folder import runs_place, slug, write_bytes
+from ..runs.run_folder import runs_place, slug, write_file
 from ..runs.stored_runs import problem_of, read_run
 from ..text.options import Units
 from ..text.screen import say, waiting
@@ -60,7 +60,7 @@ def report(
     with waiting("writing the report"):
         made = _report(folder, result, number, units)
         content = _content(made, pdf=pdf)
-    write_bytes(file, content)
+    write_file(file, content)
     say(f"report: {file}")
 
 

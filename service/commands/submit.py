@@ -12,8 +12,7 @@ import typer
 
 from ...model.errors import StoreError
 from ...optimise.front.progress import standing
-from ..jobs.job_names import Name, find_job, store_that_is_there
-from ..jobs.stores import Address, open_store, tell_idle
+from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
 from ..resources.sizes import size_of
 from ..text.screen import console, give, progress_bar, say
 from ..text.streams import reader_left
@@ -53,7 +52,6 @@ def submit(
     """
     from ...optimise.job import load_job, read_job
     from ..jobs.allowed_quantities import functions_of
-    from ..jobs.record import job_record
     from ..jobs.submission import submit as put_in
     from ..runs.result import json_text
     from ..store import Limits
@@ -75,7 +73,7 @@ def submit(
             allowed_quantities=functions,
         )
         if not (watch and json):
-            give(json_text(job_record(queued)) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
+            give(json_text(queued.record()) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
         if queued.state == "queued":
             _tell_of(functions, job)
             tell_idle(opened)

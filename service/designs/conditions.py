@@ -45,13 +45,7 @@ class Condition:
         if math.isnan(cell):
             return False
         same = cell == self.value or abs(cell - self.value) <= _TOLERANCE * abs(self.value)
-        return same if self.comparison == "==" else _compare(cell, self.comparison, self.value, same)
-
-
-def _compare(cell: float, comparison: str, value: float, same: bool) -> bool:
-    if same:
-        return comparison in (">=", "<=")
-    return _OPERATORS[comparison](cell, value)
+        return self.comparison in (">=", "<=", "==") if same else _OPERATORS[self.comparison](cell, self.value)
 
 
 def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition:
@@ -70,14 +64,10 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     column = find_column(name, keys)
     comparison = _SAME.get(comparison, comparison)
     if isinstance(example[column.key], str):
-        return Condition(column, _of_words(column, comparison), value.strip("\"'"))
+        if comparison not in ("==", "!="):
+            raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
+        return Condition(column, comparison, value.strip("\"'"))
     return Condition(column, comparison, _number(text, column, value))
-
-
-def _of_words(column: Column, comparison: str) -> str:
-    if comparison not in ("==", "!="):
-        raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
-    return comparison
 
 
 def _number(text: str, column: Column, value: str) -> float:

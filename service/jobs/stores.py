@@ -1,18 +1,21 @@
-"""Choice of the store that the command line uses."""
+"""Store that the command line uses, and jobs in it by the names that people give them: a number, or "latest"."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ...model.errors import InputError, NotFound
 from ..runs.run_folder import disk, runs_place
 from ..text.screen import say
 
 if TYPE_CHECKING:
-    from ..store import Store
+    from ..store import Job, Store
 
 STORE_VARIABLE = "SLIDERCRANK_STORE"
 FILE = "slidercrank.db"
@@ -26,6 +29,7 @@ Address = Annotated[
         f"{FILE} where runs are kept]",
     ),
 ]
+Name = Annotated[str, typer.Argument(metavar="JOB", help='The job: its number, or "latest".')]
 
 
 def store_address(option: str | None, runs: Path | None = None) -> str:
@@ -62,3 +66,26 @@ def tell_idle(store: Store) -> None:
     """Say that jobs wait if no worker is there to solve them."""
     if not store.workers_at_work():
         say("slidercrank: no worker is at work, so jobs wait; start one with: slidercrank serve")
+
+
+@contextmanager
+def store_that_is_there(option: str | None) -> Iterator[Store]:
+    """Give the store, closed at the end. Raises `NotFound` for a file that is not there: looking makes none."""
+    if not has_store(option):
+        raise NotFound(
+            f"there is no store at {store_address(option)}; submit a job first, or name another with --store"
+        )
+    with open_store(option) as store:
+        yield store
+
+
+def find_job(store: Store, name: str) -> Job:
+    """Return the job of a name. Raises `NotFound` if there is none, `InputError` for what is no name."""
+    if name == "latest":
+        latest = store.jobs(limit=1)
+        if not latest:
+            raise NotFound(f"there is no job in {store.name} yet; submit one")
+        return latest[0]
+    if not (name.isascii() and name.isdecimal() and len(name) <= 18):
+        raise InputError(f'a job is called by its number, or "latest"; got {name[:80]!r}; list the jobs')
+    return store.job(int(name))

@@ -168,13 +168,7 @@ class RunFolder:
         self._release()
 
 
-def write_file(path: Path, text: str) -> None:
-    """Write a text file as a whole or not at all. Raises `RunError` when the disk refuses."""
-    with disk(path.parent):
-        _write(path, text)
-
-
-def write_bytes(path: Path, content: bytes) -> None:
+def write_file(path: Path, content: str | bytes) -> None:
     """Write a file as a whole or not at all. Raises `RunError` when the disk refuses."""
     with disk(path.parent):
         _write(path, content)

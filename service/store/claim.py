@@ -10,18 +10,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from sqlalchemy import ColumnElement, Connection, Double, and_, case, cast, delete, insert, literal, select, update
+from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, select, update
 
 from ...model.errors import LeaseLost
 from ..runs.result import Result, finite
 from .claiming import MOST_DELAY
-from .clock import JUMP, now
+from .clock import JUMP, later, now
 from .database import Database, Full, Unavailable
-from .events_log import Told, add_events, state_event
-from .exact_bytes import packed_exact
 from .records import NOT_DONE, Artefact, Job
+from .rows import Told, add_events, state_event
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_of, packed, plain, summary_of, text_of, unpacked
+from .serialisation import cells_of, packed, packed_exact, plain, summary_of, text_of, unpacked
 from .submitting import put_files
 
 if TYPE_CHECKING:
@@ -162,7 +161,7 @@ class Claim:
         attempts = 0 if self._kept else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
         if again and attempts < self.job.most_attempts:
-            self._end("queued", f"{reason}{tries}", {"due": _in(min(delay, MOST_DELAY)), "finished": None})
+            self._end("queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None})
         else:
             self._end("failed", f"{reason}{tries}", {})
 
@@ -176,8 +175,8 @@ class Claim:
         delay: after which it may be claimed, in s, at most a minute.
         """
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
-        later = {"due": _in(min(delay, MOST_DELAY))} if delay else {}
-        self._end("queued", reason, {"finished": None, "attempts": fewer, **later})
+        due = {"due": later(min(delay, MOST_DELAY))} if delay else {}
+        self._end("queued", reason, {"finished": None, "attempts": fewer, **due})
 
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
         reason = plain(reason)
@@ -196,7 +195,7 @@ class Claim:
             values: dict[str, Any] = {
                 "writes": self._writes + 1,
                 "events": jobs.c.events + len(told),
-                "lease_until": _in(self.lease),
+                "lease_until": later(self.lease),
                 "records": self._records + len(rows),
             }
             if rows:
@@ -264,7 +263,3 @@ class Claim:
             f"only the holder of a lease writes of a job; claim {self.job.fence} of job {self.job.id} has lost it; "
             "leave the job: another worker goes on from what was committed"
         )
-
-
-def _in(seconds: float) -> ColumnElement[float]:
-    return now() + cast(literal(seconds), Double)

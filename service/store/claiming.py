@@ -5,8 +5,8 @@ from __future__ import annotations
 from sqlalchemy import Connection, and_, exists, func, not_, or_, select, update
 
 from .clock import JUMP, Jumps, now
-from .events_log import add_events, state_event
 from .records import SHOWN, Job, job_of
+from .rows import add_events, become, state_event
 from .schema import jobs, workers
 from .submitting import in_hand
 
@@ -21,7 +21,7 @@ _DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
 
 # Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
-    select(jobs.c.id, jobs.c.state, jobs.c.attempts, jobs.c.most_attempts, jobs.c.worker)
+    select(*SHOWN)
     .where(
         or_(
             and_(jobs.c.state == "queued", _DUE),
@@ -59,7 +59,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
         if found is None:
             return None
         if found.state == "running" and found.attempts >= found.most_attempts:
-            _set_aside(connection, found.id, found.attempts, found.worker)
+            _set_aside(connection, job_of(found))
             continue
         told = [state_event("running", f"claimed by {worker}")]
         if found.state == "running":
@@ -74,20 +74,8 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
         return job_of(row)
 
 
-def _set_aside(connection: Connection, job: int, attempts: int, worker: str) -> None:
-    times = "once" if attempts == 1 else f"{attempts} times in a row"
-    reason = f"set aside: its worker stopped without a word {times}, the last one was {worker}; resume it to try again"
-    last = connection.execute(
-        update(jobs)
-        .where(jobs.c.id == job)
-        .values(
-            state="failed",
-            reason=reason,
-            worker=None,
-            lease_until=None,
-            finished=now(),
-            events=jobs.c.events + 1,
-        )
-        .returning(jobs.c.events)
-    ).scalar_one()
-    add_events(connection, job, last, [state_event("failed", reason)])
+def _set_aside(connection: Connection, job: Job) -> None:
+    times = "once" if job.attempts == 1 else f"{job.attempts} times in a row"
+    end = f"its worker stopped without a word {times}, the last one was {job.worker}"
+    left = {"worker": None, "lease_until": None, "finished": now()}
+    become(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from sqlalchemy import Double
+from sqlalchemy import ColumnElement, Double, cast, literal
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import FunctionElement
@@ -46,6 +46,11 @@ class now(FunctionElement[float]):
 
     inherit_cache = True
     type = Double()
+
+
+def later(seconds: float) -> ColumnElement[float]:
+    """Return the time in so many seconds from now on."""
+    return now() + cast(literal(seconds), Double)
 
 
 @compiles(now, "sqlite")

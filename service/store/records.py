@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 from sqlalchemy import Row as Found
@@ -82,6 +83,18 @@ class Job:
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None
 
+    def record(self) -> dict[str, Any]:
+        """Return the job as JSON, the same everywhere: times in seconds since 1970, memory in bytes."""
+        # Not `asdict`: it copies what is within, which takes most of the time of a list.
+        record = {
+            field.name: getattr(self, field.name) for field in fields(Job) if field.name not in ("fence", "limits")
+        }
+        seconds, evaluations, memory = self.limits.seconds, self.limits.evaluations, self.limits.memory
+        record["limits"] = {"seconds": seconds, "evaluations": evaluations, "memory_bytes": memory}
+        if self.progress is not None:
+            record["progress"] = {"step": 0, "steps": 0, **self.progress, "front": self.progress.get("front")}
+        return record
+
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
@@ -123,6 +136,11 @@ class Worker:
     def at_work(self) -> bool:
         """Whether it was heard of lately."""
         return self.silent <= SILENT
+
+
+def event_of(row: Found[*tuple[Any, ...]]) -> Event:
+    """Return an event from its row."""
+    return Event(job=row.job, number=row.number, at=row.at, kind=row.kind, data=json.loads(row.data))
 
 
 def job_of(row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:

@@ -1,16 +1,21 @@
-"""One job in a transaction: reading its row, changing its state."""
+"""One job in a transaction: reading its row, changing its state, adding to its events."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Connection, select, update
+from sqlalchemy import Connection, insert, select, update
 
 from ...model.errors import InputError, NotFound, RunError
-from .events_log import add_events, state_event
+from .clock import now
 from .records import RESUMABLE, SHOWN, Job, State, job_of
-from .schema import jobs
+from .schema import events, jobs
+from .serialisation import text_of
+
+Told = tuple[str, Mapping[str, Any]]
+"""Kind and data of an event."""
 
 
 def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
@@ -53,3 +58,15 @@ def the_record(connection: Connection, job: Job) -> dict[str, Any]:
 def damaged(number: int, error: Exception) -> RunError:
     """Return the error of a result that cannot be read."""
     return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")
+
+
+def add_events(connection: Connection, job: int, last: int, told: Sequence[Told]) -> None:
+    """Add events, of which the last has the number `last`, to a job whose row was updated in this transaction."""
+    for number, (kind, data) in enumerate(told, last - len(told) + 1):
+        row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
+        connection.execute(insert(events).values(row))
+
+
+def state_event(state: str, reason: str = "") -> Told:
+    """Return the event of a job that comes into a state."""
+    return "state", {"state": state, "reason": reason}

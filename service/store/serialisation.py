@@ -1,4 +1,4 @@
-"""Records, designs and tables of a job as bytes and text, and back, without losing a bit."""
+"""Records, designs, exact ones too, and tables of a job as bytes and text, and back, without losing a bit."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import json
 import math
 import zipfile
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import RunError
-from ..runs.result import Cell, Result, Row, finite
+from ..runs.result import Cell, Exact, Result, Row, finite
 
 if TYPE_CHECKING:
+    from numpy.lib.npyio import NpzFile
+
     from ...optimise.search.checkpoints import Record
 
 _LONGEST = 4000
@@ -24,17 +27,13 @@ def packed(record: Record) -> bytes:
     """Return a record of a search as a file of NumPy's .npz form, without pickles."""
     import numpy as np
 
-    out = io.BytesIO()
-    np.savez(
-        out,
-        form=np.array(_FORM),
+    return _saved(
         problem=np.array(record.identity.problem),
         versions=np.array(record.identity.versions),
         counts=np.array([record.number, record.told], dtype=np.int64),
         seconds=np.array(record.seconds),
         words=record.words,
     )
-    return out.getvalue()
 
 
 def unpacked(content: bytes) -> Record:
@@ -44,9 +43,7 @@ def unpacked(content: bytes) -> Record:
     from ...optimise.search.checkpoints import Identity, Record
 
     try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as file:
-            if file["form"] != _FORM:
-                raise ValueError(f"its form is {file['form']}, not {_FORM}")
+        with _loaded(content) as file:
             number, told = file["counts"].tolist()
             words = file["words"]
             if words.dtype != np.int64 or words.ndim != 1:
@@ -57,6 +54,64 @@ def unpacked(content: bytes) -> Record:
         raise RunError(
             f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job anew"
         ) from error
+
+
+def packed_exact(exact: Exact) -> bytes:
+    """Return exact designs as a file like `packed`: slopes one after the other, with the shapes of each design's."""
+    import numpy as np
+
+    shapes = [(len(owner), len(edges), slopes.shape[1]) for (owner, slopes), edges in _slopes(exact)]
+    numbers = [part.ravel() for (owner, slopes), edges in _slopes(exact) for part in (owner, slopes, edges)]
+    return _saved(
+        dimensions=exact.dimensions,
+        variants=np.array(exact.variants, dtype=np.int64),
+        shapes=np.array(shapes, dtype=np.int64).reshape(-1, 3),
+        slopes=np.concatenate([np.zeros(0), *numbers]),
+    )
+
+
+def unpacked_exact(content: bytes) -> Exact:
+    """Return the designs that `packed_exact` packed. Raises ValueError if the content is damaged."""
+    import numpy as np
+
+    try:
+        with _loaded(content) as file:
+            dimensions, variants, slopes = file["dimensions"], file["variants"].tolist(), file["slopes"]
+            goals: list[Any] = []
+            active: list[Any] = []
+            at = 0
+            for pieces, edges, free in file["shapes"].tolist():
+                ends = np.cumsum([at, pieces, pieces * free, edges * free])
+                owner, slope, edge = (slopes[a:b] for a, b in pairwise(ends))
+                goals.append((owner, slope.reshape(pieces, free)))
+                active.append(edge.reshape(edges, free))
+                at = int(ends[-1])
+            if at != len(slopes):
+                raise ValueError(f"{len(slopes)} numbers of slopes, {at} expected")
+    except (OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{type(error).__name__}: {error}") from error
+    return Exact(dimensions, tuple(variants), tuple(goals), tuple(active))
+
+
+def _slopes(exact: Exact) -> zip[tuple[tuple[Array, Array], Array]]:
+    return zip(exact.goals, exact.active, strict=True)
+
+
+def _saved(**arrays: Any) -> bytes:
+    import numpy as np
+
+    out = io.BytesIO()
+    np.savez(out, form=np.array(_FORM), **arrays)
+    return out.getvalue()
+
+
+def _loaded(content: bytes) -> NpzFile:
+    import numpy as np
+
+    file: NpzFile = np.load(io.BytesIO(content), allow_pickle=False)
+    if file["form"] != _FORM:
+        raise ValueError(f"its form is {file['form']}, not {_FORM}")
+    return file
 
 
 def text_of(value: Any) -> str:

@@ -18,13 +18,11 @@ from .claim import Claim
 from .claiming import ENDED_LEASE, any_claimable, claim_next, running
 from .clock import Jumps, now
 from .database import Database
-from .events_log import add_events
-from .exact_bytes import unpacked_exact
-from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, job_of
-from .rows import become, damaged, require_resumable, the_job, the_record
+from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, event_of, job_of
+from .rows import add_events, become, damaged, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs, workers
 from .schema_version import upgrade
-from .serialisation import plain, rows_of
+from .serialisation import plain, rows_of, unpacked_exact
 from .submitting import add_job, in_hand, require_bounds, require_room, submitted_before, take_turns
 from .watching import News, longest_wait, news_of
 
@@ -196,10 +194,7 @@ class Store:
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
         with self._database.reading() as connection:
             the_job(connection, number)
-            found = connection.execute(query.order_by(events.c.number).limit(limit)).all()
-        return [
-            Event(job=number, number=row.number, at=row.at, kind=row.kind, data=json.loads(row.data)) for row in found
-        ]
+            return [event_of(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
         """Return the news of jobs after a given event of each, at most `limit` events a job."""

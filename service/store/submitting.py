@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from typing import Any
 
-from sqlalchemy import Connection, Double, cast, delete, func, insert, literal, select, text
+from sqlalchemy import Connection, delete, func, insert, select, text
 
 from ...model.errors import InputError, QueueFull
-from .clock import now
-from .events_log import add_events, state_event
+from .clock import later, now
 from .records import LIMITS, SHOWN, Artefact, Job, Limits, job_of
+from .rows import add_events, state_event
 from .schema import artefacts, jobs
 from .schema_version import LOCK
 from .serialisation import plain, text_of
@@ -86,7 +86,7 @@ def in_hand(worker: str, lease: float) -> dict[str, Any]:
         "attempts": jobs.c.attempts + 1,
         "started": func.coalesce(jobs.c.started, now()),
         "worker": worker,
-        "lease_until": now() + cast(literal(lease), Double),
+        "lease_until": later(lease),
         "fence": jobs.c.fence + 1,
         "writes": 0,
     }

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sqlalchemy import Connection, and_, func, or_, select
 
 from .clock import now
-from .records import ENDED, Event, State
+from .records import ENDED, Event, State, event_of
 from .schema import events, jobs
 
 _TOGETHER = 100  # jobs of one query: databases refuse very long ones
@@ -45,8 +44,7 @@ def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dic
         if fresh:
             query = select(events).where(or_(*fresh)).order_by(events.c.job, events.c.number)
             for row in connection.execute(query):
-                found = Event(job=row.job, number=row.number, at=row.at, kind=row.kind, data=json.loads(row.data))
-                news[row.job].events.append(found)
+                news[row.job].events.append(event_of(row))
     return news
 
 

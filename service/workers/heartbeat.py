@@ -62,12 +62,10 @@ class Heartbeat:
         self._memory = memory
         self._taken = taken or Memory()
         self._over = over or (lambda: "")
-        self._told: float | None = None
         self._stop = stop or (lambda: False)
         self._grace = grace
         self._patience = patience
-        self._cancelled: float | None = None
-        self._asked: float | None = None
+        self._since: dict[str, float] = {}
         self._end = threading.Event()
         beat = contextvars.copy_context().run  # so that its logs are about the same job
         self._thread = threading.Thread(
@@ -100,11 +98,15 @@ class Heartbeat:
             except StoreError:
                 pass  # the writes of the search find out whether it stays so
 
+    def _waited(self, what: str) -> float:
+        """Return for how long, in s, something has been so: since this was first asked."""
+        now = time.monotonic()
+        return now - self._since.setdefault(what, now)
+
     def _look_at_cancel(self) -> None:
         if self._patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
             return
-        self._cancelled = time.monotonic() if self._cancelled is None else self._cancelled
-        if time.monotonic() - self._cancelled >= self._patience:
+        if self._waited("cancelled") >= self._patience:
             self.claim.give_up()
             self.lost = "it was cancelled before its search began"
 
@@ -125,8 +127,7 @@ class Heartbeat:
         reason = NOT_DONE if self.claim.cancel_asked else self._over()
         if self._grace is None or not reason:
             return
-        self._told = time.monotonic() if self._told is None else self._told
-        if time.monotonic() - self._told < _HEARS or self._end.is_set():
+        if self._waited("told to end") < _HEARS or self._end.is_set():
             return
         _log.error("ended: its search did not within %g s of being told to", _HEARS)
         try:
@@ -138,10 +139,10 @@ class Heartbeat:
     def _look_at_stop(self) -> None:
         if self._grace is None or not self._stop():
             return
-        self._asked = time.monotonic() if self._asked is None else self._asked
+        waited = self._waited("worker stops")
         begun = self.claim.begun or self._patience is None
         grace = self._grace if begun else min(self._grace, self._patience or 0.0)
-        if time.monotonic() - self._asked < grace or self._end.is_set():
+        if waited < grace or self._end.is_set():
             return
         where = "in the middle of a round" if begun else "before its search began"
         _log.warning("handed back: its worker stopped %s", where)

@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
 from ..jobs.allowed_quantities import LONGEST_CALL, bounded, ending_own, parse_allowed
@@ -22,7 +22,6 @@ from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Heartbeat, Stop
-from .interim_front import front_so_far
 from .job_limits import Budget, within
 from .logs import about
 
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
     from ...optimise.front.progress import Progress
     from ...optimise.front.stationarity import Array
+    from ...optimise.problem.problem import Problem
     from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
@@ -38,6 +38,8 @@ _AWAY = 1.0  # s between two tries while the database cannot be reached
 _FULL = 10.0  # s until a job is tried again that found a disk full
 _PARTS = 2  # that are loaded before a search: what it computes with, then the job with its records
 _PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
+MOST = 64
+"""Designs of an interim front that are shown: enough for its shape, and some kB at most."""
 _DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
 
 
@@ -199,7 +201,8 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
 
 
 def _stumble(claim: Claim, error: Exception) -> None:
-    claim.put(Artefact(name="error.txt", media_type="text/plain", content=_trace(error)))
+    trace = "".join(traceback.format_exception(error)).encode(errors="replace")
+    claim.put(Artefact(name="error.txt", media_type="text/plain", content=trace))
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
     _log.warning("stopped by an error", exc_info=error)
@@ -244,6 +247,24 @@ def _solve(
     _log.info("%s: %s", result.status, result.message)
 
 
+def front_so_far(problem: Problem, values: Array) -> dict[str, Any]:
+    """Return at most `MOST` designs of a front, evenly spread along its first objective, as JSON has them.
+
+    values: objectives (n, m), SI, as they are minimised. columns: those of the objectives in tables of designs; points:
+    in their units, of an objective with a target the distance from that.
+    """
+    import numpy as np
+
+    quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
+    factors = [
+        of.unit.factor * (-1.0 if objective.sense == "maximise" else 1.0)
+        for of, objective in zip(quantities, problem.objectives, strict=True)
+    ]
+    ordered = values[np.argsort(values[:, 0], kind="stable")]
+    rows = np.linspace(0, len(ordered) - 1, min(len(ordered), MOST)).round().astype(int)
+    return {"columns": [of.field for of in quantities], "points": (ordered[rows] * factors).tolist()}
+
+
 def _load(claim: Claim, parts: int) -> None:
     """Report how much of a search is loaded, with the numbers and the front that the job had before."""
     from ...optimise.front.progress import LOADING, Progress
@@ -268,7 +289,3 @@ def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
     if stop():
         raise Stopped
     return False
-
-
-def _trace(error: Exception) -> bytes:
-    return "".join(traceback.format_exception(error)).encode(errors="replace")

@@ -16,7 +16,6 @@ import pytest
 
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.service.commands.submit import events_until_end
-from slidercrank.service.jobs.record import job_record
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
@@ -59,7 +58,7 @@ def test_a_job_is_queued_as_it_is_given(store: Store, job: Path, command: Comman
 def test_submitting_again_with_a_key_gives_the_same_job(store: Store, job: Path, command: Command) -> None:
     first = json.loads(command("submit", job, "--key", "one", "--json").stdout)
     again = json.loads(command("submit", job, "--key", "one", "--json").stdout)
-    assert first == again == job_record(store.job(1))
+    assert first == again == store.job(1).record()
     assert len(store.jobs()) == 1
 
 
@@ -147,7 +146,7 @@ def test_jobs_as_json_are_those_of_the_api(store: Store, job: Path, command: Com
         command("submit", job)
     command("cancel", 2)
     listed = json.loads(command("jobs", "--json", "--limit", 2).stdout)
-    assert listed == [job_record(store.job(3)), job_record(store.job(2))]
+    assert listed == [store.job(3).record(), store.job(2).record()]
     assert [one["id"] for one in json.loads(command("jobs", "--state", "cancelled", "--json").stdout)] == [2]
     assert json.loads(command("jobs", "--name", "nothing", "--json").stdout) == []
 
@@ -201,7 +200,7 @@ def test_a_job_is_cancelled_resumed_and_deleted(store: Store, job: Path, command
     assert command("cancel", "latest").stdout == "job 1: Short test [job], cancelled: cancelled before it was done\n"
     refused = command("submit", job).exit_code, command("delete", 2).stderr
     assert refused == (0, "slidercrank: only a job that has ended can be deleted; job 2 is queued; cancel it first\n")
-    assert json.loads(command("resume", 1, "--json").stdout) == job_record(store.job(1))
+    assert json.loads(command("resume", 1, "--json").stdout) == store.job(1).record()
     assert store.job(1).state == "queued"
     assert json.loads(command("cancel", 1, "--json").stdout)["state"] == "cancelled"
     assert json.loads(command("delete", 1, "--json").stdout) == {"deleted": 1}

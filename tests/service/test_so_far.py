@@ -13,8 +13,7 @@ import pytest
 
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.workers.interim_front import MOST, front_so_far
-from slidercrank.service.workers.worker import work
+from slidercrank.service.workers.worker import MOST, front_so_far, work
 from tests.service import fronts
 
 

@@ -14,7 +14,6 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.api.job_requests import EXAMPLE, merged
-from slidercrank.service.jobs.record import job_record
 from slidercrank.service.store import Artefact, Limits, Store
 from tests.service import fronts
 from tests.service.api.conftest import Serve
@@ -36,7 +35,7 @@ def submitted(client: httpx.Client, **more: Any) -> dict[str, Any]:
 def test_a_submitted_job_is_the_one_in_the_store(client: httpx.Client, store: Store) -> None:
     limits = {"seconds": 60, "evaluations": 1000, "memory_bytes": 10**9}
     job = submitted(client, priority=-3, limits=limits)
-    assert job == job_record(store.job(job["id"]))
+    assert job == store.job(job["id"]).record()
     assert store.job(job["id"]).limits == Limits(seconds=60, evaluations=1000, memory=10**9)
     assert job["limits"] == limits
     assert job["priority"] == -3
@@ -197,13 +196,13 @@ def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> No
     claim = taken(store)
     claim.tell(progress(1))
     running = client.get("/jobs/1").json()
-    assert running == job_record(store.job(1))
+    assert running == store.job(1).record()
     assert running["progress"]["round"] == 1
     assert running["worker"] == "first"
     assert client.post("/jobs/1/cancel").json()["cancel_asked"]
     claim.finish(result())
     done = client.get("/jobs/1").json()
-    assert done == job_record(store.job(1))
+    assert done == store.job(1).record()
     assert done["state"] == "done"
     assert done["summary"]["designs"] == 2
     assert client.delete("/jobs/1").status_code == 204

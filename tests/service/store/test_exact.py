@@ -16,8 +16,8 @@ from slidercrank.service.designs.trade_offs import trade_offs_of
 from slidercrank.service.runs.result import Exact, Result, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
-from slidercrank.service.store.exact_bytes import packed_exact, unpacked_exact
 from slidercrank.service.store.schema import exact as exact_table
+from slidercrank.service.store.serialisation import packed_exact, unpacked_exact
 from tests.service import test_variables
 from tests.service.store.contents import add
 
