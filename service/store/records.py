@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from sqlalchemy import Row as Found
@@ -86,9 +86,7 @@ class Job:
     def record(self) -> dict[str, Any]:
         """Return the job as JSON, the same everywhere: times in seconds since 1970, memory in bytes."""
         # Not `asdict`: it copies what is within, which takes most of the time of a list.
-        record = {
-            field.name: getattr(self, field.name) for field in fields(Job) if field.name not in ("fence", "limits")
-        }
+        record = {name: value for name, value in vars(self).items() if name not in ("fence", "limits")}
         seconds, evaluations, memory = self.limits.seconds, self.limits.evaluations, self.limits.memory
         record["limits"] = {"seconds": seconds, "evaluations": evaluations, "memory_bytes": memory}
         if self.progress is not None:

@@ -60,8 +60,9 @@ def packed_exact(exact: Exact) -> bytes:
     """Return exact designs as a file like `packed`: slopes one after the other, with the shapes of each design's."""
     import numpy as np
 
-    shapes = [(len(owner), len(edges), slopes.shape[1]) for (owner, slopes), edges in _slopes(exact)]
-    numbers = [part.ravel() for (owner, slopes), edges in _slopes(exact) for part in (owner, slopes, edges)]
+    found = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
+    shapes = [(len(owner), len(edges), slopes.shape[1]) for owner, slopes, edges in found]
+    numbers = [part.ravel() for parts in found for part in parts]
     return _saved(
         dimensions=exact.dimensions,
         variants=np.array(exact.variants, dtype=np.int64),
@@ -91,10 +92,6 @@ def unpacked_exact(content: bytes) -> Exact:
     except (OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise ValueError(f"{type(error).__name__}: {error}") from error
     return Exact(dimensions, tuple(variants), tuple(goals), tuple(active))
-
-
-def _slopes(exact: Exact) -> zip[tuple[tuple[Array, Array], Array]]:
-    return zip(exact.goals, exact.active, strict=True)
 
 
 def _saved(**arrays: Any) -> bytes:
