@@ -11,6 +11,7 @@ import contextlib
 import logging
 from collections import deque
 from collections.abc import AsyncIterator, Iterator
+from functools import partial
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
@@ -94,7 +95,7 @@ class Feed:
                 found = channel.since(position)
                 if found is None:
                     try:
-                        found = await run_sync(self._page, number, position)
+                        found = await run_sync(partial(self.store.events, number, after=position, limit=_PAGE))
                     except (StoreError, NotFound) as error:
                         _log.warning("job %d: its stream ends: %s", number, error)
                         return
@@ -106,9 +107,6 @@ class Feed:
                         return
                     if not await channel.news(heartbeat):
                         yield None
-
-    def _page(self, number: int, after: int) -> list[Event]:
-        return self.store.events(number, after=after, limit=_PAGE)
 
     @contextlib.contextmanager
     def _following(self, number: int, last: int) -> Iterator[Channel]:

@@ -124,7 +124,9 @@ def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
     listed = front_figures(found.front, units) if found.result.designs else []
     named = next((item for item in listed if name in item.names), None)
     if named is None:
-        raise _unknown(name, [name for item in listed for name in item.names])
+        names = [name for item in listed for name in item.names]
+        choice = f"choose from {', '.join(names)}, design_1 and so on" if names else "the front has no designs to draw"
+        raise NotFound(f"the front has no figure {name!r}; {choice}")
     return named
 
 
@@ -135,8 +137,3 @@ def _sheet(shown: ShownDesign, units: System) -> Figure:
     if variation is None:
         return sheet_of(front, shown.number - 1, shown.words, units)
     return sheet_of_changed(front, shown.design, variation.row, shown.words, units)
-
-
-def _unknown(name: str, names: list[str]) -> NotFound:
-    choice = f"choose from {', '.join(names)}, design_1 and so on" if names else "the front has no designs to draw"
-    return NotFound(f"the front has no figure {name!r}; {choice}")

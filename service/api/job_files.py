@@ -40,12 +40,7 @@ class Tables(BaseModel):
 @router.get("/presets")
 def list_presets() -> PresetList:
     """Give the shipped jobs, to start from."""
-    return PresetList(
-        presets=[
-            PresetModel(name=preset.name, title=preset.title, sentence=preset.sentence, job=dict(preset.job))
-            for preset in presets()
-        ]
-    )
+    return PresetList(presets=[PresetModel(**vars(preset)) for preset in presets()])
 
 
 @router.post("/parse", responses=problem_responses(415))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Annotated, Any
@@ -123,7 +124,8 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     """Return a file of a job, as it was given or made."""
     file = store.artefact(number, name)
     # Saved, never shown: what a job brought along must not run in a browser that has the token.
-    headers = {"Content-Disposition": f'attachment; filename="{_quoted(file.name)}"'}
+    saved_as = re.sub(r"[^A-Za-z0-9._-]", "_", file.name)
+    headers = {"Content-Disposition": f'attachment; filename="{saved_as}"'}
     return Response(file.content, media_type=file.media_type, headers=headers)
 
 
@@ -152,7 +154,3 @@ def _as_it_stands() -> Iterator[None]:
         raise
     except InputError as error:
         raise HTTPException(HTTPStatus.CONFLICT, str(error)) from None
-
-
-def _quoted(name: str) -> str:
-    return "".join(letter if letter.isascii() and (letter.isalnum() or letter in "._-") else "_" for letter in name)

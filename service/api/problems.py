@@ -65,14 +65,9 @@ def answer_problems(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http)
 
 
-def status_of(error: SlidercrankError) -> HTTPStatus:
-    """Return the status that says of which kind an exception is."""
-    return next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
-
-
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
-    status = status_of(error)
+    status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
     if status >= HTTPStatus.INTERNAL_SERVER_ERROR and _is_news(request.app.state.told, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None)

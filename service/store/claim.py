@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, select, update
@@ -200,21 +201,19 @@ class Claim:
             }
             if rows:
                 values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
-            self._commit({**values, **changes}, told, rows, rest)
+            self._commit(partial(self._change, {**values, **changes}, told, rows, rest))
             self._writes += 1
             self._records += len(rows)
             self._kept = self._kept[len(kept) :]
             self._attempts = 0 if rows else self._attempts
 
-    def _commit(
-        self, values: dict[str, Any], told: Sequence[Told], rows: list[dict[str, Any]], rest: Rest | None
-    ) -> None:
+    def _commit(self, change: Callable[[Connection, bool], None]) -> None:
         tried, told_why, began = False, False, time.monotonic()
         while True:
             started = time.monotonic()
             try:
                 with self._database.writing() as connection:
-                    self._change(connection, values, told, rows, rest, tried)
+                    change(connection, tried)
                 self._renewed, self.astray = started, False
                 return
             except Unavailable as error:
@@ -228,13 +227,14 @@ class Claim:
 
     def _change(
         self,
-        connection: Connection,
         values: dict[str, Any],
         told: Sequence[Told],
         rows: list[dict[str, Any]],
         rest: Rest | None,
+        connection: Connection,
         tried: bool,
     ) -> None:
+        """Write it all. tried: whether an earlier try may have taken effect already."""
         held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
         if self.age > self.lease:
             held = and_(held, jobs.c.lease_until > now())

@@ -38,7 +38,7 @@ def upgrade(database: Database) -> None:
                 f"a store must be a database of its own; {database.name} has tables of something else ({foreign}), and "
                 "gets none; name another one with --store"
             )
-        if version is not None and version not in {script.revision for script in scripts.walk_revisions()}:
+        if not _knows(scripts, version):
             raise StoreError(
                 f"the tables of a store must be of this release or an earlier one; {database.name} has version "
                 f"{version}, this software knows {latest}; install the release that made it"
@@ -52,8 +52,7 @@ def versions(database: Database) -> tuple[str | None, str | None, bool]:
     scripts = ScriptDirectory.from_config(_config())
     with database.reading() as connection:
         version = _version(connection)
-    known = version is None or version in {script.revision for script in scripts.walk_revisions()}
-    return version, scripts.get_current_head(), known
+    return version, scripts.get_current_head(), _knows(scripts, version)
 
 
 def _config() -> Config:
@@ -72,12 +71,15 @@ def strangers(database: Database) -> str:
 def _strangers(connection: Connection, scripts: ScriptDirectory) -> str:
     version, names = _version(connection), set(inspect(connection).get_table_names())
     if version is not None:
-        known = version in {script.revision for script in scripts.walk_revisions()}
-        found = set() if known or "jobs" in names else names
+        found = set() if "jobs" in names or _knows(scripts, version) else names
     else:  # a database on a server may be shared, a file is not
         found = names if connection.dialect.name == "sqlite" else names & set(metadata.tables)
     listed = sorted(found)[:3]
     return ", ".join(listed) + (" and more" if len(found) > 3 else "")
+
+
+def _knows(scripts: ScriptDirectory, version: str | None) -> bool:
+    return version is None or version in {script.revision for script in scripts.walk_revisions()}
 
 
 def _version(connection: Connection) -> str | None:

@@ -19,6 +19,14 @@ _log = logging.getLogger(__name__)
 WORKER = (sys.executable, "-m", "slidercrank.service.workers.worker_process")
 _LOOK = 0.1  # s between two looks at the processes
 _FIRST, _LONGEST = 0.5, 30.0  # s before a process that ended soon is started again: doubled from one to the other
+_REASONS = {
+    0: "it left",
+    EXHAUSTED: "its job took more memory than it may",
+    DEAF: "its job did not end when it was told to",
+    STALE: "earlier jobs left memory in it",
+    REFUSED: "it could do nothing as it was started, see above",
+}
+"""Why a process ended, by its exit code."""
 _SOON = 60.0  # s; one that ran for longer is started again as if it had never ended
 
 
@@ -145,17 +153,9 @@ def _release(process: subprocess.Popen[bytes]) -> None:
 
 def reason_of(code: int) -> str:
     """Return why a process ended, from its exit code."""
-    if code == EXHAUSTED:
-        return "its job took more memory than it may"
-    if code == DEAF:
-        return "its job did not end when it was told to"
-    if code == STALE:
-        return "earlier jobs left memory in it"
-    if code == REFUSED:
-        return "it could do nothing as it was started, see above"
     if code < 0:
         try:
             return f"killed by {signal.Signals(-code).name}"
         except ValueError:
             return f"killed by signal {-code}"
-    return "it left" if code == 0 else f"exit code {code}"
+    return _REASONS.get(code, f"exit code {code}")
