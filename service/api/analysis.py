@@ -21,7 +21,7 @@ from .fronts import ColumnModel, OfDesign
 from .job_requests import given_problem
 from .models import Whole
 from .problems import problem_responses
-from .state import SettingsDep
+from .settings import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
 from .throttle import READING, SIMULATING
 

@@ -18,8 +18,8 @@ from .exports import of_type
 from .figures import require_figures
 from .models import UnitsAsked
 from .problems import problem_responses
+from .settings import StoreDep
 from .shown_designs import ShownDep, ShownDesign
-from .state import StoreDep
 from .throttle import DRAWING
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from ..store import Event, Store
 from ..store.records import ENDED
 from .event_feed import Feed
 from .models import LARGEST, EventPage, JobNumber, Whole
-from .state import StoreDep
+from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
 HEARTBEAT = 15.0

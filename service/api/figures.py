@@ -15,8 +15,8 @@ from ..runs.run_folder import slug
 from .exports import of_type
 from .models import UnitsAsked
 from .problems import problem_responses
+from .settings import SettingsDep
 from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
-from .state import SettingsDep
 from .stored_fronts import FrontDep, StoredFront
 from .throttle import DRAWING
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from ..figures.front import FrontFigure
 
+Kind = Literal["png", "svg"]
+_MEDIA = {"png": "image/png", "svg": "image/svg+xml"}
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
@@ -74,23 +76,17 @@ def list_figures(found: FrontDep) -> FiguresModel:
 @router.get("/jobs/{number}/figures/{name}.png", **of_type("image/png"))
 def draw_png(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
-    content, headers = _image(found, name, "png", lengths, units)
-    return Response(content, media_type="image/png", headers=headers)
+    return _image(found, name, "png", lengths, units)
 
 
 @router.get("/jobs/{number}/figures/{name}.svg", **of_type("image/svg+xml"))
 def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other lengths."""
-    content, headers = _image(found, name, "svg", lengths, units)
-    # Opened by itself it is a document: it runs nothing and fetches nothing.
-    policy = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"}
-    return Response(content, media_type="image/svg+xml", headers={**headers, **policy})
+    return _image(found, name, "svg", lengths, units)
 
 
-def _image(
-    found: StoredFront, name: str, kind: Literal["png", "svg"], lengths: Lengths | None, units: System
-) -> tuple[bytes, dict[str, str]]:
-    """Return a figure and the headers that name its file; what was drawn before is kept with the front."""
+def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, units: System) -> Response:
+    """Return a figure, the sheet of a design with the name of its file; what was drawn is kept with the front."""
     from ..figures.front import FrontFigure
 
     single = _DESIGN.fullmatch(name)
@@ -98,16 +94,19 @@ def _image(
         if lengths is not None:
             rule = "other lengths are those of a single design"
             raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-        return _made(found, name, kind, units, lambda: _of_front(found, name, units)), {}
-    shown = shown_design(found, int(single[1]), lengths)
-    file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
-    drawn = _made(found, shown.key, kind, units, lambda: FrontFigure((shown.key,), "", lambda: _sheet(shown, units)))
-    return drawn, {"Content-Disposition": f'inline; filename="{file}"'}
+        drawn, headers = _made(found, name, kind, units, lambda: _of_front(found, name, units)), {}
+    else:
+        shown = shown_design(found, int(single[1]), lengths)
+        sheet = FrontFigure((shown.key,), "", lambda: _sheet(shown, units))
+        drawn = _made(found, shown.key, kind, units, lambda: sheet)
+        file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
+        headers = {"Content-Disposition": f'inline; filename="{file}"'}
+    if kind == "svg":  # Opened by itself it is a document: it runs nothing and fetches nothing.
+        headers["Content-Security-Policy"] = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+    return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 
-def _made(
-    found: StoredFront, key: str, kind: Literal["png", "svg"], units: System, figure: Callable[[], FrontFigure]
-) -> bytes:
+def _made(found: StoredFront, key: str, kind: Kind, units: System, figure: Callable[[], FrontFigure]) -> bytes:
     from ..figures.style import image
 
     def draw() -> tuple[Sequence[str], bytes]:

@@ -14,7 +14,7 @@ from ..designs.selection import chosen_rows, none_meets
 from ..runs.result import finite
 from .models import JobNumber
 from .problems import problem_responses
-from .state import StoreDep
+from .settings import StoreDep
 from .stored_fronts import FrontDep
 
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..store import State, Store
 from .models import Count, Shown
-from .state import StoreDep
+from .settings import StoreDep
 
 router = APIRouter(tags=["service"])
 _BOUNDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)

@@ -19,8 +19,7 @@ from .exports import formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
 from .problems import problem_responses
-from .settings import Settings
-from .state import SettingsDep, StoreDep
+from .settings import Settings, SettingsDep, StoreDep
 from .throttle import READING, limit_submissions
 
 router = APIRouter(tags=["jobs"])

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from .job_requests import given_problem
 from .schema import Understood, understood
-from .state import SettingsDep
+from .settings import SettingsDep
 from .throttle import READING
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 
 from .job_requests import Asked, asked_for, given_problem
 from .problems import problem_responses
-from .state import SettingsDep
+from .settings import SettingsDep
 from .throttle import READING
 
 if TYPE_CHECKING:

@@ -101,11 +101,9 @@ class Guard:
         if not self._knows(connection):
             if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
                 return locked_page(connection)
-            return problem(
-                HTTPStatus.UNAUTHORIZED,
-                "a request carries the token of the service; got none or a wrong "
-                "one; send it as Authorization: Bearer TOKEN, or open the address that the service printed",
-                {"WWW-Authenticate": "Bearer"},
+            return _unauthorised(
+                "a request carries the token of the service; got none or a wrong one; "
+                "send it as Authorization: Bearer TOKEN, or open the address that the service printed"
             )
         return None
 
@@ -116,11 +114,9 @@ class Guard:
         if len(given) != 1 or not self._right(given[0]):
             if "text/html" in connection.headers.get("accept", ""):
                 return locked_page(connection, wrong=True)
-            return problem(
-                HTTPStatus.UNAUTHORIZED,
-                "the address carries the token of the service; got a wrong one; "
-                "open the address that the service printed last",
-                {"WWW-Authenticate": "Bearer"},
+            return _unauthorised(
+                "the address carries the token of the service; got a wrong one; open the address that the service "
+                "printed last"
             )
         response = RedirectResponse("/", HTTPStatus.SEE_OTHER)
         secure = scope.get("scheme") == "https"
@@ -138,6 +134,10 @@ class Guard:
     def _right(self, token: str) -> bool:
         """Whether it is the token, found out in a time that tells nothing about it."""
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
+
+
+def _unauthorised(text: str) -> Response:
+    return problem(HTTPStatus.UNAUTHORIZED, text, {"WWW-Authenticate": "Bearer"})
 
 
 def _made_of(token: bytes, purpose: str) -> str:

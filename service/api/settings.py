@@ -1,10 +1,13 @@
-"""Settings of the API, chosen by its operator."""
+"""Settings of the API, chosen by its operator, and how requests get at these and at the store."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from ..store import NO_LIMITS, Limits
+from fastapi import Depends, Request
+
+from ..store import NO_LIMITS, Limits, Store
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 """Names of this machine for itself."""
@@ -32,3 +35,20 @@ class Settings:
 
 
 DEFAULT = Settings()
+
+
+async def _store(request: Request) -> Store:
+    store: Store = request.app.state.store
+    return store
+
+
+async def _settings(request: Request) -> Settings:
+    settings: Settings = request.app.state.settings
+    return settings
+
+
+StoreDep = Annotated[Store, Depends(_store)]
+"""The store; its calls block, so endpoints that use it are plain functions, which run in a thread of their own."""
+
+SettingsDep = Annotated[Settings, Depends(_settings)]
+"""Settings of the API, chosen by its operator."""
