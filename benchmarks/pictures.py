@@ -17,7 +17,7 @@ from playwright.sync_api import Page, expect
 
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.figures import draw_front
+from slidercrank.service.figures.front import draw_front
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work

@@ -1,8 +1,8 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
 They are the test files that differ, and those named after a source file that differs or after the folder that it is in,
-wherever they are in the mirror of its folder at the top: `service/topics/clearance/text.py` has all `test_text*.py` and
-`test_clearance*.py` under `tests/service/`.
+wherever they are in the mirror of its folder at the top: `service/topics/clearance/analysis.py` has all
+`test_analysis*.py` and `test_clearance*.py` under `tests/service/`.
 """
 
 from __future__ import annotations

@@ -7,30 +7,28 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
 from ...model.linkage.linkage import Linkage
-from ..figures.panels import Line, Panel, Sheet, draw_sheet
-from ..figures.style import save
-from ..topics.clearance.figure import draw_clearance_speeds
-from ..topics.polygons.figure import both_branches, polygon_sheet
+from ..figures.panels import save_sheet
+from ..figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, over_turn
+from ..topics.clearance.figure import speed_runs, speeds_figure
+from ..topics.polygons.analysis import both_branches, polygon_sheet
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)
-_CRANK_ANGLE = "crank angle, deg"
 
 
 def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
     """Write the figures of the cases, case_<number>_<what>.png; yield each file as soon as it is written."""
     folder.mkdir(parents=True, exist_ok=True)
     for number in numbers:
-        for name, make, size in FIGURES[number]:
+        for name, make in FIGURES[number].items():
             path = folder / f"case_{number}_{name}.png"
-            save(draw_sheet(make(), width=size[0], height=size[1]), path)
+            save_sheet(make(), path)
             yield path
-        if number == 2:  # simulated, which takes some 20 s
-            yield draw_clearance_speeds(case_2.LOOSE, case_2.SIEVE, folder / "case_2_clearance.png")
 
 
 def polygon_figure() -> Sheet:
@@ -57,7 +55,7 @@ def sieve_figure() -> Sheet:
         ("slider acceleration, m/s²", at.slider_acceleration),
         ("rod angular acceleration, rad/s²", at.rod_acceleration),
     )
-    panels = tuple(Panel(title, _CRANK_ANGLE, (Line("", degrees, y),), turns=True) for title, y in curves)
+    panels = tuple(over_turn(title, Line("", degrees, y)) for title, y in curves)
     return Sheet(
         "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)",
         "crank 140, rod 310, offset −60 mm, 300 rpm",
@@ -80,7 +78,7 @@ def sensitivity_figure() -> Sheet:
                 Line(name, np.degrees(_TURN), factor * getattr(of.at(_TURN, speed=case_2.SPEED), field), style)
                 for style, (name, of) in enumerate((("as designed", case_2.SIEVE), (label, linkage)))
             )
-            panels.append(Panel(title, _CRANK_ANGLE, lines, turns=True))
+            panels.append(over_turn(title, *lines))
     return Sheet(
         "Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)",
         "crank 140, rod 310, offset −60 mm, 300 rpm",
@@ -103,21 +101,19 @@ def in_line_figure() -> Sheet:
             (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1)),
             equal=True,
         ),
-        Panel("slider position, mm", _CRANK_ANGLE, (Line("", degrees, x),), turns=True),
-        Panel(
+        over_turn("slider position, mm", Line("", degrees, x)),
+        over_turn(
             "angular velocities, rad/s",
-            _CRANK_ANGLE,
-            (Line("crank", degrees, np.full_like(x, case_3.SPEED)), Line("rod", degrees, at.rod_velocity, 1)),
-            turns=True,
+            Line("crank", degrees, np.full_like(x, case_3.SPEED)),
+            Line("rod", degrees, at.rod_velocity, 1),
         ),
-        Panel("slider velocity, m/s", _CRANK_ANGLE, (Line("", degrees, at.slider_velocity),), turns=True),
-        Panel(
+        over_turn("slider velocity, m/s", Line("", degrees, at.slider_velocity)),
+        over_turn(
             "static forces, N",
-            _CRANK_ANGLE,
-            (Line("rod, compression", degrees, forces.rod_force), Line("guide", degrees, forces.guide_reaction, 1)),
-            turns=True,
+            Line("rod, compression", degrees, forces.rod_force),
+            Line("guide", degrees, forces.guide_reaction, 1),
         ),
-        Panel("crank torque, N m", _CRANK_ANGLE, (Line("", degrees, forces.crank_torque),), turns=True),
+        over_turn("crank torque, N m", Line("", degrees, forces.crank_torque)),
     )
     return Sheet(
         "Case 3: in-line slider-crank, motion and static forces (its formulas for one example)",
@@ -144,7 +140,7 @@ def position_error_figure() -> Sheet:
     panels = tuple(
         Panel(
             f"position error {titles[name]}, mm",
-            _CRANK_ANGLE,
+            CRANK_ANGLE,
             (Line("exact", fine, exact[name]), Line("printed", at, printed[columns[name]], points=True)),
         )
         for name in case_4.COLUMNS
@@ -175,56 +171,31 @@ def offset_figure() -> Sheet:
 
     centred = case_5.linkage(0.0)
     panels = (
-        Panel(
-            "slider acceleration, exact, m/s²",
-            _CRANK_ANGLE,
-            over_offsets(lambda offset: acceleration(case_5.linkage(offset))),
-            turns=True,
+        over_turn(
+            "slider acceleration, exact, m/s²", *over_offsets(lambda offset: acceleration(case_5.linkage(offset)))
         ),
-        Panel(
+        over_turn(
             "slider acceleration, e = 0, m/s²",
-            _CRANK_ANGLE,
-            (
-                Line("exact", degrees, acceleration(centred)),
-                Line("series, Eq. 52", degrees, series_acceleration(centred, theta, speed=case_5.SPEED), 1),
-            ),
-            turns=True,
+            Line("exact", degrees, acceleration(centred)),
+            Line("series, Eq. 52", degrees, series_acceleration(centred, theta, speed=case_5.SPEED), 1),
         ),
-        Panel(
-            "inertia torque, exact, N m",
-            _CRANK_ANGLE,
-            over_offsets(lambda offset: case_5.exact_torque(offset, theta)),
-            turns=True,
-        ),
-        Panel(
-            "torque by k F tan(alpha), N m",
-            _CRANK_ANGLE,
-            over_offsets(lambda offset: case_5.formula_torque(offset, theta)),
-            turns=True,
-        ),
-        Panel(
+        over_turn("inertia torque, exact, N m", *over_offsets(lambda offset: case_5.exact_torque(offset, theta))),
+        over_turn("torque by k F tan(alpha), N m", *over_offsets(lambda offset: case_5.formula_torque(offset, theta))),
+        over_turn(
             "inertia torque, e = 0, N m",
-            _CRANK_ANGLE,
-            (
-                Line("exact", degrees, case_5.exact_torque(0.0, theta)),
-                Line(
-                    "series, Eq. 53",
-                    degrees,
-                    series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=reciprocating),
-                    1,
-                ),
-                Line("k F tan(alpha)", degrees, case_5.formula_torque(0.0, theta), 2),
+            Line("exact", degrees, case_5.exact_torque(0.0, theta)),
+            Line(
+                "series, Eq. 53",
+                degrees,
+                series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=reciprocating),
+                1,
             ),
-            turns=True,
+            Line("k F tan(alpha)", degrees, case_5.formula_torque(0.0, theta), 2),
         ),
-        Panel(
+        over_turn(
             "inertia torque, e = 20 mm, N m",
-            _CRANK_ANGLE,
-            (
-                Line("exact", degrees, case_5.exact_torque(0.020, theta)),
-                Line("k F tan(alpha)", degrees, case_5.formula_torque(0.020, theta), 2),
-            ),
-            turns=True,
+            Line("exact", degrees, case_5.exact_torque(0.020, theta)),
+            Line("k F tan(alpha)", degrees, case_5.formula_torque(0.020, theta), 2),
         ),
     )
     return Sheet(
@@ -232,13 +203,19 @@ def offset_figure() -> Sheet:
         "crank 40, rod 64 mm, 251 rad/s; 1.05 kg with the slider, 0.35 kg at the crank pin; offset −e",
         panels,
         columns=2,
+        height=2.5,
     )
 
 
-FIGURES: dict[int, tuple[tuple[str, Callable[[], Sheet], tuple[float, float]], ...]] = {
-    1: (("polygons", polygon_figure, (4.6, 4.2)),),
-    2: (("motion", sieve_figure, (6.2, 2.35)), ("sensitivity", sensitivity_figure, (6.2, 2.35))),
-    3: (("motion_and_forces", in_line_figure, (6.2, 2.35)),),
-    4: (("position_error", position_error_figure, (6.2, 2.35)),),
-    5: (("offset", offset_figure, (6.2, 2.5)),),
+def clearance_figure() -> Figure:
+    """Return slider motion with a loose joint at three speeds (case 2); simulated, which takes some 20 s."""
+    return speeds_figure(speed_runs(case_2.LOOSE, case_2.SIEVE))
+
+
+FIGURES: dict[int, dict[str, Callable[[], Sheet | Figure]]] = {
+    1: {"polygons": polygon_figure},
+    2: {"motion": sieve_figure, "sensitivity": sensitivity_figure, "clearance": clearance_figure},
+    3: {"motion_and_forces": in_line_figure},
+    4: {"position_error": position_error_figure},
+    5: {"offset": offset_figure},
 }

@@ -12,8 +12,6 @@ from ..runs.result import json_text
 from ..runs.run_folder import disk
 from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
-from ..topics.allocation.numbers import allocation_numbers
-from ..topics.allocation.text import show
 
 if TYPE_CHECKING:
     pass
@@ -43,6 +41,7 @@ def allocate(
     from ...objectives.kinds import LENGTH
     from ...optimise.job import load_job
     from ...optimise.sizing import tolerance_allocation as convex
+    from ..topics.allocation import analysis
 
     problem = load_job(job)
     if problem.costs is None:
@@ -56,17 +55,19 @@ def allocate(
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
-    numbers = allocation_numbers(found, linkage, problem.costs, mechanism)
+    numbers = analysis.numbers(found, linkage, problem.costs, mechanism)
     if json:
         give(json_text(numbers))
     else:
-        show(console(), numbers)
+        analysis.show(console(), numbers)
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:
-        from ..topics.allocation.figure import draw_allocation
+        from ..figures.style import save
+        from ..topics.allocation.figure import allocation_curves, allocation_figure
 
         with disk(figures), waiting("drawing the figure"):
             figures.mkdir(parents=True, exist_ok=True)
-            file = draw_allocation(found, linkage, problem.costs, mechanism, figures / "allocation.png")
+            file = figures / "allocation.png"
+            save(allocation_figure(allocation_curves(found, linkage, problem.costs, mechanism)), file)
         say(f"figure: {file}")

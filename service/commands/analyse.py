@@ -175,7 +175,7 @@ def _draw(
     folder: Path,
     units: System,
 ) -> None:
-    from ..figures import draw_design
+    from ..figures.sheet import draw_design
 
     title = "Design" if problem is None else problem.name
     with disk(folder), waiting("drawing the figures"):

@@ -12,8 +12,6 @@ from ..runs.result import json_text
 from ..runs.run_folder import disk
 from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
 from ..text.screen import console, give, say, waiting
-from ..topics.counterweight.numbers import balance_numbers
-from ..topics.counterweight.text import show
 
 if TYPE_CHECKING:
     from ...optimise.sizing.counterweight import RodSpace
@@ -60,6 +58,7 @@ def balance(
     from ...objectives.kinds import LENGTH, MASS
     from ...optimise.job import load_job
     from ...optimise.sizing import counterweight as balancing
+    from ..topics.counterweight import analysis
 
     problem = load_job(job)
     lengths = lengths_of(problem, crank, rod, offset)
@@ -81,19 +80,20 @@ def balance(
         most=None if heaviest is None else heaviest * at,
         rod=_space(given("--rod-radius", rod_radius, LENGTH), given("--rod-mass", rod_mass, MASS)),
     )
-    numbers = balance_numbers(found, words)
+    numbers = analysis.numbers(found, words)
     if json:
         give(json_text(numbers))
     else:
-        show(console(), numbers)
+        analysis.show(console(), numbers)
     if not found.converged:
         say(f"not proven to be the best: {found.objective:.6g} N, and no less than {found.bound:.6g} N is possible")
     if figures is not None:
-        from ..topics.counterweight.figure import draw_balancing
+        from ..figures.panels import save_sheet
 
         with disk(figures), waiting("drawing the figure"):
             figures.mkdir(parents=True, exist_ok=True)
-            file = draw_balancing(found, figures / "balance.png", title=problem.name)
+            file = figures / "balance.png"
+            save_sheet(analysis.figure(found, title=problem.name), file)
         say(f"figure: {file}")
 
 

@@ -269,7 +269,7 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
 
 
 def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
-    from ..figures import draw_front
+    from ..figures.front import draw_front
 
     with waiting("drawing the figures"), disk(run.figures):
         for file in draw_front(front, run.figures, units):

@@ -69,11 +69,14 @@ def sweep(
     else:
         show(table, axes, [problem.quantity(name) for name in names], units)
     if figures is not None:
-        from ..topics.sweep.figure import draw_sweep
+        from ..figures.style import save
+        from ..topics.sweep.figure import sweep_figure
 
         with disk(figures):
+            figures.mkdir(parents=True, exist_ok=True)
             of_names = [problem.quantity(name) for name in names]
-            file = draw_sweep(table, axes, of_names, figures, title=problem.name, system=units)
+            file = figures / "sweep.png"
+            save(sweep_figure(table, axes, of_names, title=problem.name, system=units), file)
         say(f"figure: {file}")
 
 

@@ -13,8 +13,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ..runs.result import Wanted
+from .numerals import unit_text, with_unit
 from .scatter import MOST
-from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, unit_text, with_unit, write
+from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, write
 from .triangle import triangle
 
 # Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).

@@ -18,7 +18,8 @@ from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ...objectives.kinds import System, shown_in
 from .drawing import least_transmission_crank_angle
-from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits, shown, with_unit
+from .numerals import shown, with_unit
+from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits
 
 Array = NDArray[np.float64]
 SAMPLES = 720

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import shutil
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
@@ -12,10 +14,13 @@ from matplotlib.figure import Figure
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
+from ...optimise.problem.robust import robust_quantities
 from .marks import marks
 from .parallel import parallel_coordinates
+from .robustness import robustness_figure
 from .scatter import scatter_matrix
 from .sheet import design_sheet
+from .style import save
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
@@ -50,6 +55,27 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
         for mark in marks(front)
     )
     return [*found, *sheets]
+
+
+def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
+    """Write the figures of a front that has designs; yield each file as soon as it is written.
+
+    Those of `front_figures`; what coincides is copied. robust.png for a robust problem of two objectives or more, for
+    which the nominal one is solved. system: of the units that they are in.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for item in front_figures(front, system):
+        first, *others = (folder / f"{name}.png" for name in item.names)
+        save(item.draw(), first)
+        yield first
+        for other in others:
+            shutil.copyfile(first, other)
+            yield other
+    if robust_quantities(front.problem) and len(front.objectives) > 1:
+        figure = robustness_figure(front)
+        if figure is not None:
+            save(figure, folder / "robust.png")
+            yield folder / "robust.png"
 
 
 def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric") -> Figure:

@@ -13,7 +13,8 @@ from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Objective
-from .style import INK, KNEE_MARKER, MARKERS, VERMILION, unit_text, with_unit
+from .numerals import unit_text, with_unit
+from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
 
 @dataclass(frozen=True)

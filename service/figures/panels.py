@@ -1,10 +1,10 @@
-"""A sheet of panels with lines, as data and as a figure, for the analyses and the published cases."""
+"""A sheet of panels with curves as a figure."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,91 +14,90 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from .style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, TITLE, VERMILION, dress, limits, new_figure, place, write
+from .sheets import DASHED, DOTS, FAINT, THIN, Line, Panel, Sheet
+from .style import (
+    BLUE,
+    FRAME,
+    INK,
+    MUTED,
+    SHADE,
+    SMALL,
+    TEXT,
+    VERMILION,
+    dress,
+    heading,
+    limits,
+    new_figure,
+    place,
+    save,
+    title_panel,
+)
 
 Array = NDArray[np.float64]
 
 GREEN = "#009e73"  # of the same palette
 # Told apart by their dashes where colour is lost.
-_STYLES: tuple[dict[str, Any], ...] = (
-    {"color": BLUE, "linewidth": 1.6},
-    {"color": VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2))},
-    {"color": GREEN, "linewidth": 1.5, "linestyle": (0, (7, 2, 1.5, 2))},
-    {"color": INK, "linewidth": 1.4, "linestyle": (0, (1.2, 1.5))},
-    {"color": MUTED, "linewidth": 1.3, "linestyle": (0, (10, 3))},
-)
+_STYLES: dict[int, dict[str, Any]] = {
+    0: {"color": BLUE, "linewidth": 1.6, "zorder": 3},
+    1: {"color": VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2)), "zorder": 3},
+    2: {"color": GREEN, "linewidth": 1.5, "linestyle": (0, (7, 2, 1.5, 2)), "zorder": 3},
+    3: {"color": INK, "linewidth": 1.4, "linestyle": (0, (1.2, 1.5)), "zorder": 3},
+    4: {"color": MUTED, "linewidth": 1.3, "linestyle": (0, (10, 3)), "zorder": 3},
+    THIN: {"color": BLUE, "linewidth": 1.0, "zorder": 3},
+    DASHED: {"color": INK, "linewidth": 1.1, "linestyle": (0, (4, 2)), "zorder": 3},
+    FAINT: {"color": MUTED, "linewidth": 0.8, "linestyle": "--", "zorder": 2},
+    DOTS: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
+}
 _POINTS: dict[str, Any] = {
-    **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0},
+    **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4},
     **{"markerfacecolor": "white", "markeredgewidth": 1.4},
 }
+_LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
+_GAP, _ROOM = 0.5, 0.9  # between stacked panels, and between those with axes of their own
 
 
-@dataclass(frozen=True)
-class Line:
-    """A curve through (x, y), each (n,), as shown, with a gap where y is nan; single points if `points`.
-
-    style: which of the line styles.
-    """
-
-    label: str
-    x: Array
-    y: Array
-    style: int = 0
-    points: bool = False
-
-
-@dataclass(frozen=True)
-class Panel:
-    """Lines over a common axis. title, across: with unit. names: (text, x, y) of what is named in the drawing.
-
-    equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns.
-    """
-
-    title: str
-    across: str
-    lines: tuple[Line, ...]
-    names: tuple[tuple[str, float, float], ...] = ()
-    equal: bool = False
-    turns: bool = False
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """Panels row by row, `columns` in each row. subtitle: what the mechanism is."""
-
-    title: str
-    subtitle: str
-    panels: tuple[Panel, ...]
-    columns: int = 1
-
-
-def draw_sheet(sheet: Sheet, *, width: float = 6.2, height: float = 2.35) -> Figure:
-    """Return the figure; width, height: of a panel with its margins, inches."""
+def draw_sheet(sheet: Sheet) -> Figure:
+    """Return the figure of a sheet."""
+    widths = [sheet.width] * sheet.columns if isinstance(sheet.width, float) else list(sheet.width)
     rows = math.ceil(len(sheet.panels) / sheet.columns)
-    head = 0.72
-    figure = new_figure(sheet.columns * width, rows * height + head)
-    write(figure, 0.25, rows * height + head - 0.3, sheet.title, fontsize=TITLE, weight="bold")
-    write(figure, 0.25, rows * height + head - 0.52, sheet.subtitle, color=MUTED)
+    tall = sheet.height - (_GAP if sheet.stacked else _ROOM)
+    head = _HEAD + (_GAP - 0.3 if sheet.stacked and sheet.subtitle else 0.0)
+    figure = new_figure(sum(widths), rows * sheet.height + head)
+    heading(figure, sheet.title, sheet.subtitle)
     for index, panel in enumerate(sheet.panels):
         row, column = divmod(index, sheet.columns)
-        left, foot = column * width + 0.75, (rows - 1 - row) * height + 0.5
-        _draw(place(figure, left, foot, width - 1.0, height - 0.9), panel)
+        left, foot = sum(widths[:column]) + _LEFT, (rows - 1 - row) * sheet.height + _FOOT
+        axes = place(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
+        draw_panel(axes, panel, across=not sheet.stacked or row == rows - 1)
     return figure
 
 
-def _draw(axes: Axes, panel: Panel) -> None:
+def save_sheet(made: Sheet | Figure, path: Path) -> None:
+    """Write a sheet, or a figure drawn before, as PNG."""
+    save(draw_sheet(made) if isinstance(made, Sheet) else made, path)
+
+
+def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
+    """Draw a panel on axes. across: whether the axis below is told."""
     dress(axes, across=8)
+    for start, end in panel.shaded:
+        for shift in (-360.0, 0.0, 360.0) if panel.turns else (0.0,):
+            axes.axvspan(start + shift, end + shift, color=SHADE, linewidth=0, zorder=0)
     for line in panel.lines:
-        style = _POINTS if line.points else _STYLES[line.style % len(_STYLES)]
-        axes.plot(line.x, line.y, label=line.label, zorder=4 if line.points else 3, **style)
+        axes.plot(line.x, line.y, label=line.label, **(_POINTS if line.points else _STYLES[line.style]))
+    if panel.level is not None:
+        name, level = panel.level
+        axes.axhline(level, color=MUTED, linewidth=1.1, linestyle=(0, (6, 2, 1, 2)), label=name)
     _scale(axes, panel)
     _name(axes, panel)
-    axes.text(0.0, 1.04, panel.title, transform=axes.transAxes, va="bottom", fontsize=SMALL, color=INK, weight="bold")
-    axes.set_xlabel(panel.across, fontsize=TEXT)
-    labelled = [line for line in panel.lines if line.label]
-    if len(labelled) > 1:
+    title_panel(axes, panel.title, panel.note)
+    axes.tick_params(labelbottom=across)
+    if across:
+        axes.set_xlabel(panel.across, fontsize=TEXT)
+    named = [line.label for line in panel.lines if line.label]
+    if len(named) + (panel.level is not None) > 1:
         axes.legend(
-            **{"loc": "lower right", "bbox_to_anchor": (1.01, 0.99), "ncols": len(labelled), "frameon": False},
+            **{"loc": "lower right", "bbox_to_anchor": (1.01, 0.99), "ncols": len(named) + 1, "frameon": False},
             **{"fontsize": SMALL, "handlelength": 2.6, "columnspacing": 1.2, "borderaxespad": 0.2},
         )
 
@@ -155,20 +154,22 @@ def _dense(line: Line) -> Array:
 
 
 def _scale(axes: Axes, panel: Panel) -> None:
-    values = np.concatenate([line.y for line in panel.lines])
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.12)
         return
+    values = np.concatenate([*(line.y for line in panel.lines), [] if panel.level is None else [panel.level[1]]])
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     if low < 0.0 < high:
         axes.axhline(0.0, color=FRAME, linewidth=0.8, zorder=1)
     axes.set_ylim(limits(low, high))
     ends = np.concatenate([line.x for line in panel.lines])
+    left, right = float(ends.min()), float(ends.max())
     if any(line.points for line in panel.lines):
-        axes.set_xlim(limits(float(ends.min()), float(ends.max()), 0.03))
-    else:
-        axes.set_xlim(float(ends.min()), float(ends.max()))
+        axes.set_xlim(limits(left, right, 0.03))
+    elif right > left:
+        axes.set_xlim(left, right)
     if panel.turns:
         axes.set_xticks(_quarters(ends))
 

@@ -15,20 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .marks import Axis, dimension_axes, marks, objective_axis
-from .style import (
-    FRAME,
-    INK,
-    MUTED,
-    SMALL,
-    TEXT,
-    TITLE,
-    colours,
-    limits,
-    new_figure,
-    on_scale,
-    place,
-    write,
-)
+from .numerals import on_scale
+from .style import FRAME, INK, MUTED, SMALL, TEXT, TITLE, colours, limits, new_figure, place, write
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them

@@ -12,7 +12,7 @@ from ...optimise.problem.robust import robust_quantities
 from ...optimise.questions.price_of_robustness import robust_cost
 from ..runs.result import wanted_of
 from .comparison import Drawn, comparison_matrix
-from .style import unit_text
+from .numerals import unit_text
 
 
 def robustness_figure(front: ParetoFront) -> Figure | None:

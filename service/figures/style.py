@@ -7,18 +7,20 @@ matplotlib are touched, so that drawing never changes what a caller plots himsel
 from __future__ import annotations
 
 import io
-import math
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import ListedColormap
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
-
+from ...model.extras import NamingExtra
 from ...optimise.front.constant import is_constant
+from .numerals import on_scale
+
+with NamingExtra("figures need"):
+    import matplotlib
+    from matplotlib.axes import Axes
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 DPI = 130
 TITLE, TEXT, SMALL = 11.0, 8.5, 7.5  # points
@@ -72,6 +74,35 @@ def write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
     figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
 
 
+def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
+    """Write the title at the upper left of a figure, and below it what it is of."""
+    height = figure.get_size_inches()[1]
+    write(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")
+    write(figure, left, height - 0.5, subtitle, color=MUTED)
+
+
+def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> None:
+    """Write the title over the left end of a panel, and a note, in a colour, over the right one."""
+    style: dict[str, Any] = {"transform": axes.transAxes, "va": "bottom", "fontsize": SMALL}
+    axes.text(0.0, 1.04, title, ha="left", color=INK, **style)
+    axes.text(1.0, 1.04, note, ha="right", color=colour, **style)
+
+
+def over_turn(axes: Axes) -> None:
+    """Let axes show a turn of the crank, in deg."""
+    axes.set_xlim(0, 360)
+    axes.set_xticks(range(0, 361, 45))
+
+
+def legend_beside(axes: Axes, *, stacked: int = 0) -> None:
+    """Name at the right of axes what they show. stacked: of the first so many the last is on top."""
+    handles, labels = axes.get_legend_handles_labels()
+    order = [*reversed(range(stacked)), *range(stacked, len(handles))]
+    place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
+    looks: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handlelength": 2.4, "handleheight": 1.1}
+    axes.legend([handles[i] for i in order], [labels[i] for i in order], **place, **looks)
+
+
 def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
     """Give axes the common frame, grid and ticks; across, up: the most ticks along x and y."""
     for side, spine in axes.spines.items():
@@ -85,34 +116,6 @@ def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
     axes.yaxis.set_major_locator(MaxNLocator(up, steps=[1, 2, 2.5, 5, 10]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_xlim(), digits=6)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_ylim(), digits=6)))
-
-
-def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
-    return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
-
-
-def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
-    """Return a number for people: that many significant digits, no exponent where avoidable, a real minus sign.
-
-    zeros: keep those at the end, so that numbers below one another have the same precision.
-    """
-    if not math.isfinite(value):
-        return "∞" if value > 0.0 else "−∞" if value < 0.0 else "–"
-    text = f"{value:#.{digits}g}".rstrip(".") if zeros else f"{value:.{digits}g}"
-    if "e" in text and 1e-5 < abs(value) < 1e7:
-        text = f"{value:.0f}" if abs(value) >= 1.0 else f"{value:.{digits + 3}f}".rstrip("0")
-    return ("0" if float(text) == 0.0 else text).replace("-", "−")
-
-
-def unit_text(symbol: str) -> str:
-    """Return a unit as printed: m/s^2 with a raised 2."""
-    return symbol.replace("^2", "²").replace("^3", "³")
-
-
-def with_unit(title: str, symbol: str) -> str:
-    """Return an axis title with its unit."""
-    return f"{title}, {unit_text(symbol)}" if symbol else title
 
 
 def limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:

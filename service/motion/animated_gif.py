@@ -6,7 +6,6 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..drawings.painting import paint
 from ..drawings.parts import extent, moving, pins_at, proportions, scenery, sizes_of
 
 if TYPE_CHECKING:
@@ -38,6 +37,7 @@ def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]
     import numpy as np
     from PIL import Image
 
+    from ..figures.painting import paint, show_rectangle
     from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
 
     sizes = sizes_of(linkage)
@@ -49,13 +49,7 @@ def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]
     figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
     figure.set_dpi(_DOTS)
     axes = place(figure, 0.0, _FOOT, _WIDTH, height)
-    axes.axis("off")
-    scale = max(wide / _WIDTH, tall / height)  # mm an inch, the same in both directions
-    for limit, middle, inches in (
-        (axes.set_xlim, 0.5 * (left + right), _WIDTH),
-        (axes.set_ylim, 0.5 * (low + high), height),
-    ):
-        limit(middle - 0.5 * scale * inches, middle + 0.5 * scale * inches)
+    show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     write(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
     write(figure, 0.15, 0.12, "dead centres dashed", fontsize=SMALL, color=MUTED)
     paint(axes, scenery(linkage, sizes, look, below=True))

@@ -7,7 +7,7 @@ from html import escape
 
 from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn
-from ..figures.style import shown, unit_text
+from ..figures.numerals import shown, unit_text
 
 _WIDTH, _HEIGHT = 360.0, 64.0  # one unit a degree
 

@@ -15,7 +15,7 @@ from ..drawings import layers as on
 from ..drawings.parts import bar, block, extent, proportions, scenery, sizes_of
 from ..drawings.shapes import Circle, Layer, Shape
 from ..drawings.svg import elements, group
-from ..figures.style import unit_text
+from ..figures.numerals import unit_text
 from .curve_strip import curve_strip
 
 if TYPE_CHECKING:

@@ -130,7 +130,7 @@ def _optimality(subject: Subject) -> list[Block]:
 
 def _drawing(subject: Subject) -> Figure:
     from ..drawings.linkage_drawing import linkage_drawing
-    from ..drawings.painting import drawing_figure
+    from ..figures.painting import drawing_figure
 
     design = subject.design
     return drawing_figure(

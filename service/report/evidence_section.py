@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from ...objectives.kinds import System, shown_in
-from ..topics.tolerances.numbers import numbers
+from ..topics.tolerances.analysis import numbers
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 from .wording import rounded, with_unit

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..figures.style import shown, unit_text
+from ..figures.numerals import shown, unit_text
 from ..runs.result import Cell
 
 __all__ = ["as_stored", "rounded", "unit_text", "with_unit"]

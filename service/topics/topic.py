@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic, declared by its folder, which has the modules `numbers`, `text` and `figure`.
+    """A topic, declared by its folder, whose module `analysis` has the functions `numbers`, `show` and `figure`.
 
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
     the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. prepares:
-    whether `numbers.prepare` gives further options for numbers and figure.
+    whether `prepare` of that module gives further options for numbers and figure.
     """
 
     package: str
@@ -59,22 +59,24 @@ class TopicOfDesign:
 
     def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
         """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
-        module = self._module("numbers")
         if self.topic.prepares:
-            self.options.update(module.prepare(self.mechanism, self.linkage, cancelled))
-        found: dict[str, Any] = module.numbers(self.mechanism, self.linkage, **self.options)
+            self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
+        found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
         return found
 
     def show(self, screen: Console, numbers: dict[str, Any]) -> None:
         """Write the topic's numbers for people."""
-        self._module("text").show(screen, numbers)
+        self._analysis.show(screen, numbers)
 
     def draw(self, folder: Path) -> Path:
         """Write the topic's figure into a folder; return the file."""
+        from ..figures.panels import save_sheet
+
         options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
-        draw = getattr(self._module("figure"), f"draw_{self.name}")
-        file: Path = draw(self.mechanism, self.linkage, folder / f"{self.name}.png", **options)
+        file = folder / f"{self.name}.png"
+        save_sheet(self._analysis.figure(self.mechanism, self.linkage, **options), file)
         return file
 
-    def _module(self, part: str) -> Any:
-        return import_module(f"{self.topic.package}.{part}")
+    @property
+    def _analysis(self) -> Any:
+        return import_module(f"{self.topic.package}.analysis")

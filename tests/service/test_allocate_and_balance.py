@@ -22,7 +22,7 @@ from slidercrank.optimise.sizing.error_rows import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.topics.allocation.figure import allocation_curves, allocation_figure
-from slidercrank.service.topics.counterweight.figure import balancing_sheet
+from slidercrank.service.topics.counterweight import analysis as counterweight
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps
 
@@ -200,7 +200,7 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
 def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | None, job: Path) -> None:
     mechanism = load_job(job).mechanism
     found = balance(mechanism, LINKAGE, rod=space)
-    sheet = balancing_sheet(found, title="Sieve")
+    sheet = counterweight.figure(found, title="Sieve")
     assert len(sheet.panels) == (2 if space is None else 3)
     theta = np.radians(sheet.panels[1].lines[0].x)
     for n, machine in enumerate((mechanism, found.after)):
@@ -213,4 +213,4 @@ def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | No
         if space is not None:
             np.testing.assert_allclose(sheet.panels[2].lines[n].y, curves.moment, rtol=0, atol=1e-9 * size)
     assert sheet.panels[1].lines[1].y.max() == pytest.approx(found.shaking_after.peak_force, rel=1e-4)
-    assert overlaps(draw_sheet(sheet, width=5.0, height=4.4)) == []
+    assert overlaps(draw_sheet(sheet)) == []

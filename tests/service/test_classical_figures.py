@@ -10,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from slidercrank.model.classical.comparison import TORQUE, compare
 from slidercrank.model.classical.polygons import polygons
@@ -20,18 +21,14 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
-from slidercrank.service.figures.panels import Line, Panel, Sheet, draw_sheet
+from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.figures.sheets import Line, Panel, Sheet
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.text.screen import console
-from slidercrank.service.topics.approximations import numbers as approximations_analysis
-from slidercrank.service.topics.approximations import text as approximations_text
-from slidercrank.service.topics.approximations.figure import approximations_sheet, draw_approximations
-from slidercrank.service.topics.polygons import numbers as polygons_analysis
-from slidercrank.service.topics.polygons import text as polygons_text
-from slidercrank.service.topics.polygons.figure import both_branches, draw_polygons, polygon_sheet
-from slidercrank.service.topics.static_forces import numbers as static_analysis
-from slidercrank.service.topics.static_forces import text as static_forces_text
-from slidercrank.service.topics.static_forces.figure import draw_static_forces, static_forces_sheet
+from slidercrank.service.topics.approximations import analysis as approximations_analysis
+from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.polygons import analysis as polygons_analysis
+from slidercrank.service.topics.static_forces import analysis as static_analysis
 from tests.model.virtual_work import path
 from tests.service import fronts
 from tests.service.test_figures import overlaps
@@ -45,8 +42,8 @@ def line(panel: Panel, label: str) -> Line:
 
 
 def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
-    found = both_branches(LINKAGE, 0.5, speed=3.0, acceleration=2.0)
-    sheet = polygon_sheet(found, title="", subtitle="")
+    found = polygons_analysis.both_branches(LINKAGE, 0.5, speed=3.0, acceleration=2.0)
+    sheet = polygons_analysis.polygon_sheet(found, title="", subtitle="")
     position, velocity, acceleration = sheet.panels
     for branch in ("open", "crossed"):
         expected = polygons(Linkage(0.14, 0.31, 0.06, branch), 0.5, speed=3.0, acceleration=2.0)
@@ -61,7 +58,7 @@ def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
 
 @pytest.mark.parametrize("load", [None, -50.0])
 def test_static_force_panels_are_those_of_the_model(load: float | None) -> None:
-    forces, torque, advantage = static_forces_sheet(MACHINE, LINKAGE, load=load).panels
+    forces, torque, advantage = static_analysis.figure(MACHINE, LINKAGE, load=load).panels
     theta = np.radians(line(forces, "guide").x)
     applied = line(forces, "load, outward").y
     if load is not None:
@@ -102,7 +99,7 @@ def test_static_forces_of_a_dead_centre_have_no_finite_advantage() -> None:
 
 
 def test_approximation_panels_are_those_of_the_comparison() -> None:
-    acceleration, torque, of_acceleration, of_torque = approximations_sheet(MACHINE, LINKAGE).panels
+    acceleration, torque, of_acceleration, of_torque = approximations_analysis.figure(MACHINE, LINKAGE).panels
     found = compare(MACHINE, LINKAGE, np.radians(torque.lines[0].x))
     np.testing.assert_allclose(line(acceleration, "exact").y, found.acceleration, rtol=0, atol=1e-9)
     np.testing.assert_allclose(line(acceleration, "series").y, found.accelerations["series"], rtol=0, atol=1e-9)
@@ -121,7 +118,7 @@ def test_errors_of_a_massless_machine_are_not_defined() -> None:
     numbers = approximations_analysis.numbers(machine, LINKAGE)
     assert all(entry["error_percent"] is None for entry in numbers["torques"])
     assert numbers["accelerations"][0]["error_percent"] > 0.0
-    assert len(approximations_sheet(machine, LINKAGE).panels) == 3
+    assert len(approximations_analysis.figure(machine, LINKAGE).panels) == 3
 
 
 def test_polygon_numbers_are_the_vertices() -> None:
@@ -131,20 +128,11 @@ def test_polygon_numbers_are_the_vertices() -> None:
     np.testing.assert_allclose(numbers["open"]["acceleration_m_s2"]["b11"], expected.acceleration[3], rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("analysis", "words"),
-    [
-        (static_analysis, static_forces_text),
-        (approximations_analysis, approximations_text),
-        (polygons_analysis, polygons_text),
-    ],
-)
-def test_analyses_are_json_and_short_tables(
-    analysis: ModuleType, words: ModuleType, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("analysis", [static_analysis, approximations_analysis, polygons_analysis])
+def test_analyses_are_json_and_short_tables(analysis: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     numbers = analysis.numbers(MACHINE, LINKAGE)
     json_text(numbers)
-    words.show(console(), numbers)
+    analysis.show(console(), numbers)
     text = capsys.readouterr().out
     assert 8 <= len(text.splitlines()) <= 22
     assert "nan" not in text
@@ -206,22 +194,23 @@ def test_offset_panels_are_the_motion_and_virtual_work_of_the_feeder() -> None:
         np.testing.assert_allclose(line(formula, label).y, expected, rtol=0, atol=1e-8)
 
 
-SHEETS: dict[str, tuple[Callable[[], Sheet], tuple[float, float]]] = {
-    name: (make, size) for of_case in of_cases.FIGURES.values() for name, make, size in of_case
+SHEETS: dict[str, Callable[[], Sheet | Figure]] = {
+    name: make for of_case in of_cases.FIGURES.values() for name, make in of_case.items() if name != "clearance"
 } | {
-    "static forces": (lambda: static_forces_sheet(MACHINE, LINKAGE), (8.0, 2.35)),
-    "approximations": (lambda: approximations_sheet(MACHINE, LINKAGE), (7.6, 3.0)),
-    "feeder approximations": (lambda: approximations_sheet(case_5.MACHINE, case_5.linkage(0.02)), (7.6, 3.0)),
+    "static forces": lambda: static_analysis.figure(MACHINE, LINKAGE),
+    "approximations": lambda: approximations_analysis.figure(MACHINE, LINKAGE),
+    "feeder approximations": lambda: approximations_analysis.figure(case_5.MACHINE, case_5.linkage(0.02)),
 }
 
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_no_two_texts_of_a_sheet_overlap(name: str) -> None:
-    make, (width, height) = SHEETS[name]
-    assert overlaps(draw_sheet(make(), width=width, height=height)) == []
+    sheet = SHEETS[name]()
+    assert isinstance(sheet, Sheet)
+    assert overlaps(draw_sheet(sheet)) == []
 
 
-@pytest.mark.parametrize("draw", [draw_polygons, draw_static_forces, draw_approximations])
-def test_figures_are_written(draw: Callable[..., Path], tmp_path: Path) -> None:
-    file = draw(MACHINE, LINKAGE, tmp_path / "figure.png")
+@pytest.mark.parametrize("name", ["polygons", "static_forces", "approximations"])
+def test_figures_are_written(name: str, tmp_path: Path) -> None:
+    file = TOPICS[name].of(MACHINE, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")

@@ -6,7 +6,6 @@ import io
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,9 +18,9 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.service.topics.clearance.figure import draw_clearance, draw_clearance_speeds, loose_curves, speed_runs
-from slidercrank.service.topics.clearance.numbers import numbers, simulated
-from slidercrank.service.topics.clearance.text import show
+from slidercrank.service.figures.style import image
+from slidercrank.service.topics.clearance.analysis import figure, numbers, show, simulated
+from slidercrank.service.topics.clearance.figure import loose_curves, speed_runs, speeds_figure
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
 LINKAGE = Linkage(0.14, 0.31, -0.06)
@@ -123,12 +122,9 @@ def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
     assert np.all(curves.force[~curves.touching] == 0.0)
 
 
-def test_figures_are_drawn(run: ClearanceRun, tmp_path: Path) -> None:
-    for path in (
-        draw_clearance(MACHINE, LINKAGE, tmp_path / "one.png", run=run),
-        draw_clearance_speeds(MACHINE, LINKAGE, tmp_path / "several.png", runs=[run, run]),
-    ):
-        assert path.read_bytes().startswith(b"\x89PNG")
+def test_figures_are_drawn(run: ClearanceRun) -> None:
+    for drawn in (figure(MACHINE, LINKAGE, run=run), speeds_figure([run, run])):
+        assert image(drawn, "png").startswith(b"\x89PNG")
 
 
 def test_speeds_are_compared_in_the_direction_of_the_machine() -> None:

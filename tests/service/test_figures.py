@@ -21,13 +21,14 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Objective
-from slidercrank.service.figures import draw_front
 from slidercrank.service.figures.curves import Curves, cycle_curves
+from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.marks import marks
+from slidercrank.service.figures.numerals import shown
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
 from slidercrank.service.figures.sheet import design_sheet
-from slidercrank.service.figures.style import colours, dress, new_figure, place, shown
+from slidercrank.service.figures.style import colours, dress, new_figure, place
 from tests.service import fronts
 
 LINKAGES = {
@@ -308,7 +309,7 @@ def test_drawing_leaves_matplotlib_as_it_was(tmp_path: Path) -> None:
 def test_figures_do_without_pyplot(tmp_path: Path) -> None:
     script = (
         "import sys; from pathlib import Path; from tests.service import fronts; "
-        "from slidercrank.service.figures import draw_front; "
+        "from slidercrank.service.figures.front import draw_front; "
         f"list(draw_front(fronts.front(designs=2), Path({str(tmp_path)!r}))); "
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )

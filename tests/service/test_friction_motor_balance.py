@@ -22,15 +22,10 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.service.topics.balance import numbers as balance
-from slidercrank.service.topics.balance import text as balance_text
-from slidercrank.service.topics.balance.figure import balance_curves, draw_balance
-from slidercrank.service.topics.friction import numbers as friction
-from slidercrank.service.topics.friction import text as friction_text
-from slidercrank.service.topics.friction.figure import draw_friction, friction_curves
-from slidercrank.service.topics.motor import numbers as motor
-from slidercrank.service.topics.motor import text as motor_text
-from slidercrank.service.topics.motor.figure import draw_motor, motor_curves
+from slidercrank.service.topics.balance import analysis as balance
+from slidercrank.service.topics.discovery import TOPICS as DECLARED
+from slidercrank.service.topics.friction import analysis as friction
+from slidercrank.service.topics.motor import analysis as motor
 
 LINKAGE = Linkage(0.04, 0.1, 0.02)
 PIN = Pin(radius=0.01, coefficient=0.08)
@@ -45,12 +40,11 @@ MACHINE = Mechanism(
 )
 LOCKED = replace(MACHINE, friction=Friction(guide=1.5))
 TOPICS = (friction, motor, balance)
-TEXTS = {friction: friction_text, motor: motor_text, balance: balance_text}
 
 
 def written(topic: ModuleType, numbers: dict[str, Any]) -> str:
     stream = io.StringIO()
-    TEXTS[topic].show(Console(file=stream, width=140), numbers)
+    topic.show(Console(file=stream, width=140), numbers)
     return stream.getvalue()
 
 
@@ -120,32 +114,32 @@ def test_counterweight_is_compared_with_none() -> None:
 
 @pytest.mark.parametrize("machine", [MACHINE, LOCKED])
 def test_curves_of_the_figures_are_those_of_the_model(machine: Mechanism) -> None:
-    data = friction_curves(machine, LINKAGE)
-    theta = np.radians(data.angles)
+    data = friction.figure(machine, LINKAGE)
+    theta = np.radians(data.panels[0].lines[0].x)
     expected, smooth = cycle(machine, LINKAGE, theta), cycle(replace(machine, friction=Friction()), LINKAGE, theta)
     # The angles are back from degrees, a rounding error off: not compared within it of a jump.
     calm = np.abs(np.diff(theta, prepend=-1.0)) > 1e-6
     calm &= np.abs(np.diff(theta, append=7.0)) > 1e-6
-    for series, values in zip(
-        [*data.panels[0].series, *data.panels[1].series],
+    for line, values in zip(
+        [*data.panels[0].lines, *data.panels[1].lines],
         [expected.torque, smooth.torque, expected.guide, smooth.guide],
         strict=True,
     ):
-        np.testing.assert_allclose(series.values[calm], values[calm], rtol=1e-9, atol=1e-9 * np.nanmax(np.abs(values)))
-    assert len(data.shaded) == (machine is LOCKED)
-    assert np.isnan(data.panels[0].series[0].values).any() == (machine is LOCKED)
-    power = motor_curves(machine, LINKAGE)
-    np.testing.assert_array_equal(power.panels[1].series[0].values, -30.0 * power.panels[0].series[0].values)
-    shaken = balance_curves(machine, LINKAGE)
-    curves = shaking_curves(machine, LINKAGE, np.radians(shaken.angles))
-    np.testing.assert_allclose(shaken.panels[2].series[0].values, curves.moment, rtol=0, atol=1e-9)
-    x, y = (series.values for series in shaken.panels[1].series)
-    np.testing.assert_allclose(shaken.panels[0].series[0].values, np.hypot(x, y), rtol=1e-14)
+        np.testing.assert_allclose(line.y[calm], values[calm], rtol=1e-9, atol=1e-9 * np.nanmax(np.abs(values)))
+    assert len(data.panels[0].shaded) == (machine is LOCKED)
+    assert np.isnan(data.panels[0].lines[0].y).any() == (machine is LOCKED)
+    power = motor.figure(machine, LINKAGE)
+    np.testing.assert_array_equal(power.panels[1].lines[0].y, -30.0 * power.panels[0].lines[0].y)
+    shaken = balance.figure(machine, LINKAGE)
+    curves = shaking_curves(machine, LINKAGE, np.radians(shaken.panels[0].lines[0].x))
+    np.testing.assert_allclose(shaken.panels[2].lines[0].y, curves.moment, rtol=0, atol=1e-9)
+    x, y = (line.y for line in shaken.panels[1].lines)
+    np.testing.assert_allclose(shaken.panels[0].lines[0].y, np.hypot(x, y), rtol=1e-14)
 
 
-@pytest.mark.parametrize("draw", [draw_friction, draw_motor, draw_balance])
+@pytest.mark.parametrize("topic", ["friction", "motor", "balance"])
 @pytest.mark.parametrize("machine", [MACHINE, LOCKED])
-def test_figures_are_written(draw: Any, machine: Mechanism, tmp_path: Path) -> None:
-    file = draw(machine, LINKAGE, tmp_path / "figure.png")
+def test_figures_are_written(topic: str, machine: Mechanism, tmp_path: Path) -> None:
+    file = DECLARED[topic].of(machine, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
     assert file.stat().st_size > 10_000

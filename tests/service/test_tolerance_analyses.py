@@ -25,13 +25,11 @@ from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
 from slidercrank.objectives.tables.sensitivity import DIMENSIONS, sensitivity
-from slidercrank.service.figures.variation import draw_variation, variation_figure, variation_panels
-from slidercrank.service.topics.sensitivity import numbers as sensitivity_analysis
-from slidercrank.service.topics.sensitivity import text as sensitivity_text
-from slidercrank.service.topics.sensitivity.figure import draw_sensitivity, tornado_figure, tornado_rows
-from slidercrank.service.topics.tolerances import numbers as tolerance_analysis
-from slidercrank.service.topics.tolerances import text as tolerances_text
-from slidercrank.service.topics.tolerances.figure import PERCENTS, draw_tolerances, error_bands, tolerances_figure
+from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.sensitivity import analysis as sensitivity_analysis
+from slidercrank.service.topics.sensitivity.figure import tornado_figure, tornado_rows
+from slidercrank.service.topics.tolerances import analysis as tolerance_analysis
+from slidercrank.service.topics.tolerances.figure import PERCENTS, error_bands, tolerances_figure
 from tests.model.cases import SMOOTH
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT
 from tests.service.test_figures import overlaps
@@ -94,13 +92,13 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
 
 def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
     found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
-    text = text_of(tolerances_text.show, found)
+    text = text_of(tolerance_analysis.show, found)
     assert len(text.splitlines()) <= 30
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
         assert f"{found[key]:.4g} mm" in text
     assert "crank pin clearance" in text
     assert "scatter wider" in text
-    assert "scatter wider" not in text_of(tolerances_text.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
+    assert "scatter wider" not in text_of(tolerance_analysis.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
 
 
 def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
@@ -108,7 +106,7 @@ def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_cas
     json.dumps(found, allow_nan=False)
     assert found["exact_worst_case_mm"] is None
     assert found["monte_carlo"]["stuck"] > 0
-    text = text_of(tolerances_text.show, found)
+    text = text_of(tolerance_analysis.show, found)
     assert "does not turn fully" in text
     bands = error_bands(TIGHT, CLOSE, samples=500)
     assert bands.least is None
@@ -155,8 +153,8 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
     in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
-    assert len(text_of(sensitivity_text.show, found).splitlines()) <= 30
-    assert "peak torque" in text_of(sensitivity_text.show, in_line)
+    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 30
+    assert "peak torque" in text_of(sensitivity_analysis.show, in_line)
 
 
 @pytest.mark.parametrize("offset", [0.06, 0.0])
@@ -182,29 +180,8 @@ def test_tornado_draws_the_percentages_most_sensitive_first(offset: float) -> No
     assert overlaps(figure) == []
 
 
-def test_variation_of_case_two_draws_the_motion_of_each_linkage() -> None:
-    machine = dataclasses.replace(SMOOTH, speed=10.0 * math.pi, acceleration=0.0)
-    panels = variation_panels(machine, SIEVE, [("crank", 0.15), ("rod", 0.32)])
-    assert panels.labels == ("as given", "crank 140 → 150 mm", "rod 310 → 320 mm")
-    theta = np.radians(panels.angles)
-    for n, linkage in enumerate((SIEVE, Linkage(0.15, 0.31, 0.06), Linkage(0.14, 0.32, 0.06))):
-        at = linkage.at(theta, speed=10.0 * math.pi)
-        np.testing.assert_allclose(panels.curves[0, n], 1e3 * at.slider_position, rtol=1e-12)
-        np.testing.assert_allclose(panels.curves[1, n], at.slider_velocity, atol=1e-9)
-        np.testing.assert_allclose(panels.curves[2, n], at.slider_acceleration, atol=1e-7)
-    figure = variation_figure(panels)
-    for n in range(3):
-        curves = [line for line in lines_of(figure, n) if len(line) == len(theta)]
-        np.testing.assert_array_equal(curves, panels.curves[n])
-    assert overlaps(figure) == []
-    # Without a speed, per unit of crank speed; without changes, 5 % of each dimension that is there.
-    still = variation_panels(Mechanism(), Linkage(0.1, 0.4))
-    assert still.labels == ("as given", "crank 100 → 105 mm", "rod 400 → 420 mm")
-    assert still.titles[1] == "velocity per crank speed, mm/rad"
-
-
 def test_figures_are_written_where_they_are_wanted(tmp_path: Path) -> None:
-    for draw in (draw_tolerances, draw_sensitivity, draw_variation):
-        file = draw(PUBLISHED, SUPPORT, tmp_path / "figure.png")
-        assert file == tmp_path / "figure.png"
+    for name in ("tolerances", "sensitivity"):
+        file = TOPICS[name].of(PUBLISHED, SUPPORT).draw(tmp_path)
+        assert file == tmp_path / f"{name}.png"
         assert imread(file).shape[1] > 800

@@ -12,11 +12,10 @@ from slidercrank.service.topics.discovery import ALL, TOPICS, chosen_topics
 
 def test_every_topic_has_numbers_text_and_figure_in_its_folder() -> None:
     assert len(TOPICS) >= 11
-    for name, topic in TOPICS.items():
-        assert callable(import_module(f"{topic.package}.numbers").numbers)
-        assert callable(import_module(f"{topic.package}.text").show)
-        assert callable(getattr(import_module(f"{topic.package}.figure"), f"draw_{name}"))
-        assert topic.prepares == hasattr(import_module(f"{topic.package}.numbers"), "prepare")
+    for topic in TOPICS.values():
+        analysis = import_module(f"{topic.package}.analysis")
+        assert all(callable(getattr(analysis, part)) for part in ("numbers", "show", "figure"))
+        assert topic.prepares == hasattr(analysis, "prepare")
 
 
 def test_topics_are_shown_in_the_order_of_their_places() -> None:

@@ -20,12 +20,10 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
-from slidercrank.service.topics.flywheel import numbers as flywheel
-from slidercrank.service.topics.flywheel import text as flywheel_text
-from slidercrank.service.topics.flywheel.figure import draw_flywheel, flywheel_data
-from slidercrank.service.topics.start_up import numbers as start_up
-from slidercrank.service.topics.start_up import text as start_up_text
-from slidercrank.service.topics.start_up.figure import draw_start_up, start_up_data
+from slidercrank.service.figures.sheets import Panel
+from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.flywheel import analysis as flywheel
+from slidercrank.service.topics.start_up import analysis as start_up
 from tests.model.cases import STROKES
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)
@@ -35,14 +33,11 @@ STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
 RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
 
 
-TEXTS = {start_up: start_up_text, flywheel: flywheel_text}
-
-
 def shown(topic: ModuleType, machine: Mechanism) -> str:
     numbers = topic.numbers(machine, LINKAGE)
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
-    TEXTS[topic].show(Console(file=stream, width=100), numbers)
+    topic.show(Console(file=stream, width=100), numbers)
     assert 2 < len(stream.getvalue().splitlines()) <= 20
     return stream.getvalue()
 
@@ -104,7 +99,7 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
     assert numbers["fluctuation_without_flywheel"] == pytest.approx(6.3286239 if least else 63.3867047, rel=1e-7)
     assert numbers["least_speed_without_flywheel_rpm"] == pytest.approx(least, rel=1e-7)
     stream = io.StringIO()
-    flywheel_text.show(Console(file=stream, width=400), numbers)
+    flywheel.show(Console(file=stream, width=400), numbers)
     assert words in stream.getvalue()
 
 
@@ -115,29 +110,35 @@ def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> No
         flywheel.numbers(RUNAWAY, LINKAGE)
 
 
+def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float) -> tuple[Panel, ...]:
+    """Return the panels of a topic's figure, which is drawn too."""
+    file = TOPICS[topic.__name__.split(".")[-2]].of(machine, LINKAGE, options).draw(folder)
+    assert file.stat().st_size > 10_000
+    panels: tuple[Panel, ...] = topic.figure(machine, LINKAGE, **options).panels
+    return panels
+
+
 def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:
-    data = start_up_data(MACHINE, LINKAGE)
+    speed, turning, torque, _ = drawn(start_up, MACHINE, tmp_path)
     run, running, _ = start_up.start(MACHINE, LINKAGE)
     assert running is not None
-    np.testing.assert_array_equal(data.time, run.time)
-    np.testing.assert_array_equal(data.motor, run.motor_torque)
-    np.testing.assert_allclose(data.speed * np.pi / 30.0, run.speed, rtol=1e-14)
-    assert np.all(np.diff(data.turn_angle) >= 0.0)
-    assert data.turn_speed.max() == pytest.approx(running.speed.max() * 30.0 / np.pi, rel=1e-14)
-    assert data.fluctuation == running.fluctuation
-    for machine in (MACHINE, STUCK):
-        assert draw_start_up(machine, LINKAGE, tmp_path / "start.png").stat().st_size > 10_000
+    np.testing.assert_array_equal(speed.lines[0].x, run.time)
+    np.testing.assert_array_equal(torque.lines[0].y, run.motor_torque)
+    np.testing.assert_allclose(speed.lines[0].y * np.pi / 30.0, run.speed, rtol=1e-14)
+    assert np.all(np.diff(turning.lines[0].x) >= 0.0)
+    assert turning.lines[0].y.max() == pytest.approx(running.speed.max() * 30.0 / np.pi, rel=1e-14)
+    assert turning.note == f"fluctuation {running.fluctuation:.3g}"
+    assert len(drawn(start_up, STUCK, tmp_path)) == 2
 
 
 @pytest.mark.parametrize("machine", [MACHINE, STROKES], ids=["motor", "constant torque"])
 def test_the_figure_of_the_flywheel_shows_the_model(machine: Mechanism, tmp_path: Path) -> None:
-    data = flywheel_data(machine, LINKAGE, fluctuation=0.04)
-    inertia, reached = data.design
-    assert reached == pytest.approx(0.04, rel=1e-9)
-    middle = len(data.flywheel) // 2
-    assert np.interp(inertia, data.flywheel, data.fluctuation) == pytest.approx(0.04, rel=1e-2)
-    assert data.flywheel[middle] == pytest.approx(inertia, rel=0.5)
-    assert np.all(np.diff(data.fluctuation) < 0.0)
-    (_, _, speed), (_, _, half) = data.turns
-    assert np.ptp(half) > 1.5 * np.ptp(speed)
-    assert draw_flywheel(machine, LINKAGE, tmp_path / "flywheel.png", fluctuation=0.04).stat().st_size > 10_000
+    fluctuations, speeds = drawn(flywheel, machine, tmp_path, fluctuation=0.04)
+    exact, _, chosen = fluctuations.lines
+    assert chosen.y == pytest.approx([0.04], rel=1e-9)
+    middle = len(exact.x) // 2
+    assert np.interp(chosen.x, exact.x, exact.y) == pytest.approx([0.04], rel=1e-2)
+    assert exact.x[middle] == pytest.approx(chosen.x[0], rel=0.5)
+    assert np.all(np.diff(exact.y) < 0.0)
+    speed, half = speeds.lines
+    assert np.ptp(half.y) > 1.5 * np.ptp(speed.y)

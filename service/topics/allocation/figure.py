@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,28 +15,26 @@ from ....model.tolerance.first_order import FirstOrder, first_order
 from ....model.tolerance.sources import SOURCES, counted_angles
 from ....optimise.problem.costs import Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
+from ...figures.numerals import shown
+from ...figures.stack import GREYS, draw_stack
 from ...figures.style import (
     BLUE,
     INK,
-    MUTED,
     SHADE,
     SMALL,
     TEXT,
-    TITLE,
     VERMILION,
     dress,
+    heading,
+    legend_beside,
     new_figure,
+    over_turn,
     place,
-    save,
-    shown,
-    write,
 )
-from .numbers import costs_before
+from .analysis import costs_before
 
 Array = NDArray[np.float64]
 
-_GREYS = ("#4a4a4a", "#b4b4b4", "#7a7a7a", "#dcdcdc", "#969696", "#c8c8c8", "#5c5c5c", "#efefef")
-_HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
 _SAMPLES = 721
 
 
@@ -98,16 +96,13 @@ def allocation_figure(data: AllocationCurves) -> Figure:
     count = len(data.names)
     foot = 0.55 + 0.42 * count
     figure = new_figure(9.2, foot + 4.25)
-    write(figure, 0.3, foot + 3.95, "Tolerances of least cost", fontsize=TITLE, weight="bold")
+    gaps = _gaps(data.counted)
+    note = f"{data.kind} within {shown(data.limit)} mm" + ("; pale: not counted" if gaps else "")
+    heading(figure, "Tolerances of least cost", note)
     error = place(figure, 0.8, foot + 0.85, 5.9, 2.7)
     dress(error, up=6)
-    error.set_xlim(0, 360)
-    error.set_xticks(range(0, 361, 45))
-    stack = error.stackplot(
-        data.angles, data.parts, labels=data.sources, colors=_GREYS, edgecolor="white", linewidth=0.4
-    )
-    for part, hatch in zip(stack, _HATCHES, strict=False):
-        part.set_hatch(hatch)
+    over_turn(error)
+    draw_stack(error, data.angles, data.parts, data.sources)
     if data.before is not None:
         error.plot(data.angles, data.before, color=BLUE, linewidth=1.3, linestyle=":", label="as in the job")
     error.axhline(data.limit, color=VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
@@ -115,42 +110,32 @@ def allocation_figure(data: AllocationCurves) -> Figure:
         data.active, np.full(len(data.active), data.limit), linestyle="none", marker="o", markersize=6,
         markerfacecolor="white", markeredgecolor=VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
     )  # fmt: skip
-    for start, end in _gaps(data.counted):
+    for start, end in gaps:
         error.axvspan(start, end, color=SHADE, alpha=0.8, linewidth=0, zorder=4)
     tops = [float(data.parts.sum(axis=0).max()), data.limit, *([] if data.before is None else [data.before.max()])]
     error.set_ylim(0.0, 1.06 * max(tops))
     error.set_ylabel("position error, mm", fontsize=TEXT)
     error.set_xlabel("crank angle, deg", fontsize=TEXT)
-    note = f"{data.kind} within {shown(data.limit)} mm" + ("; pale: not counted" if _gaps(data.counted) else "")
-    write(figure, 0.8, foot + 3.66, note, color=MUTED, fontsize=SMALL)
-    handles, labels = error.get_legend_handles_labels()
-    sources = len(data.sources)
-    order = [*reversed(range(sources)), *range(sources, len(handles))]  # sources as stacked
-    error.legend(
-        [handles[i] for i in order], [labels[i] for i in order], loc="upper left", bbox_to_anchor=(1.02, 1.0),
-        fontsize=SMALL, frameon=False, borderaxespad=0.0, handlelength=2.4, handleheight=1.1,
-    )  # fmt: skip
+    legend_beside(error, stacked=len(data.sources))
 
     cost = place(figure, 1.3, 0.5, 5.4, foot - 0.35)
     dress(cost, across=8)
     cost.grid(False, axis="y")
     rows = np.arange(count)[::-1]
-    thick = 0.36 if data.costs_before is not None else 0.55
-    shift = 0.2 if data.costs_before is not None else 0.0
-    bars = cost.barh(rows + shift, data.costs, height=thick, color=_GREYS[0], label=f"now, {shown(data.costs.sum())}")
-    cost.bar_label(bars, [shown(value) for value in data.costs], padding=3, fontsize=SMALL, color=INK)
-    if data.costs_before is not None:
-        label = f"as in the job, {shown(data.costs_before.sum())}"
-        bars = cost.barh(
-            rows - shift, data.costs_before, height=thick, color="white", edgecolor=BLUE, hatch="///", label=label
-        )
-        cost.bar_label(bars, [shown(value) for value in data.costs_before], padding=3, fontsize=SMALL, color=INK)
+    before = data.costs_before
+    thick, shift = (0.55, 0.0) if before is None else (0.36, 0.2)
+    bars: list[tuple[str, Array, float, dict[str, Any]]] = [("now", data.costs, shift, {"color": GREYS[0]})]
+    if before is not None:
+        bars.append(("as in the job", before, -shift, {"color": "white", "edgecolor": BLUE, "hatch": "///"}))
+    for name, costs, at, style in bars:
+        drawn = cost.barh(rows + at, costs, height=thick, label=f"{name}, {shown(costs.sum())}", **style)
+        cost.bar_label(drawn, [shown(value) for value in costs], padding=3, fontsize=SMALL, color=INK)
     cost.set_yticks(rows, data.names, fontsize=TEXT)
     cost.set_ylim(-0.6, count - 0.4)
     cost.margins(x=0.12)
     cost.set_xlim(left=0.0)
     cost.set_xlabel("cost", fontsize=TEXT)
-    cost.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), fontsize=SMALL, frameon=False, borderaxespad=0.0)
+    legend_beside(cost)
     return figure
 
 
@@ -164,9 +149,3 @@ def _gaps(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]
     )
     edges = [0.0, *(end for span in inside for end in span), 360.0]
     return [(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True) if end - start > 1e-6]
-
-
-def draw_allocation(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism, path: Path) -> Path:
-    """Write the figure as PNG; return the file."""
-    save(allocation_figure(allocation_curves(found, linkage, costs, before)), path)
-    return path

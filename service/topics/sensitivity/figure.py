@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -12,22 +10,9 @@ from matplotlib.figure import Figure
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
-from ...figures.style import (
-    BLUE,
-    FRAME,
-    INK,
-    MUTED,
-    SMALL,
-    TEXT,
-    TITLE,
-    VERMILION,
-    dress,
-    new_figure,
-    place,
-    save,
-    shown,
-    write,
-)
+from ...figures.numerals import shown
+from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
+from ..peaks import row_of
 
 
 def tornado_rows(mechanism: Mechanism, linkage: Linkage) -> pd.DataFrame:
@@ -35,7 +20,7 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage) -> pd.DataFrame:
 
     Of an offset of zero the percentages are for 1 mm. <dimension>_percent_below: on the side of smaller values.
     """
-    table = sensitivity(mechanism, np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)]))
+    table = sensitivity(mechanism, row_of(linkage)[0])
     columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
     if float(linkage.offset) == 0.0:
         # Those that have percentages: not zero, and no crank angle of a dead centre.
@@ -53,12 +38,11 @@ def tornado_figure(rows: pd.DataFrame) -> Figure:
     count = max(1, len(rows))
     height = 1.55 + 0.24 * count
     figure = new_figure(10.6, height)
-    write(figure, 0.3, height - 0.3, "Sensitivity", fontsize=TITLE, weight="bold")
     note = (
         "change in % for 1 % more of each dimension (of the offset: of its size); bars to the right grow with it; "
         "at a kink the derivatives below and above"
     )
-    write(figure, 0.3, height - 0.5, note, color=MUTED)
+    heading(figure, "Sensitivity", note)
     columns = [f"{name}_percent" for name in DIMENSIONS]
     both = [*columns, *(f"{column}_below" for column in columns)]
     reach = 1.5 * float(np.nanmax(np.abs(rows[both].to_numpy()))) if len(rows) else 1.0
@@ -103,9 +87,3 @@ def _bar(panel: Axes, at: float, height: float, value: float, reach: float, side
         fontsize=size,
         color=INK,
     )
-
-
-def draw_sensitivity(mechanism: Mechanism, linkage: Linkage, path: Path) -> Path:
-    """Write the tornado figure of one linkage as PNG; return the file."""
-    save(tornado_figure(tornado_rows(mechanism, linkage)), path)
-    return path

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,23 +16,8 @@ from ....objectives.kinds import System, shown_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
-from ...figures.style import (
-    BLUE,
-    INK,
-    MUTED,
-    SHADE,
-    SMALL,
-    TEXT,
-    TITLE,
-    colours,
-    dress,
-    limits,
-    new_figure,
-    place,
-    save,
-    with_unit,
-    write,
-)
+from ...figures.numerals import with_unit
+from ...figures.style import BLUE, INK, MUTED, SHADE, SMALL, TEXT, colours, dress, heading, limits, new_figure, place
 
 Array = NDArray[np.float64]
 MOST = 6
@@ -75,14 +59,13 @@ def sweep_figure(
     rows = -(-len(items) // columns)
     figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
     height = figure.get_size_inches()[1]
-    write(figure, 0.3, height - 0.3, textwrap.shorten(title, 60, placeholder=" ..."), fontsize=TITLE, weight="bold")
     names = " and ".join(axes[n].parameter for n in drawn)
     held = [
         f"{with_unit(*_title(axis, system))} = {table[column_of(axis)].iloc[0] * _factor(axis, system):.6g}"
         for n, axis in enumerate(axes)
         if n not in drawn
     ]
-    write(figure, 0.3, height - 0.5, "; ".join([f"sweep over {names}", *held]), color=MUTED)
+    heading(figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *held]))
     for n, item in enumerate(items):
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
@@ -154,18 +137,3 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, head: 
     panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
     if np.isnan(values).any():
         panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)
-
-
-def draw_sweep(
-    table: pd.DataFrame,
-    axes: Sequence[Axis],
-    of: Sequence[Quantity],
-    folder: Path,
-    *,
-    title: str,
-    system: System = "metric",
-) -> Path:
-    """Write the figure of a sweep as sweep.png, in the units of a system; return the file."""
-    folder.mkdir(parents=True, exist_ok=True)
-    save(sweep_figure(table, axes, of, title=title, system=system), folder / "sweep.png")
-    return folder / "sweep.png"

@@ -20,25 +20,21 @@ if TYPE_CHECKING:
 
 def show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
     """Write one row for each point; then how many have no value, and why the first has none."""
-    from rich.table import Table
-
     from ...text.tables import print_table
+    from ..tables import table as table_of
 
-    screen = console()
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for axis in axes:
-        unit, _ = shown_in("rpm" if axis.parameter == "speed" else "mm", units)
-        shown.add_column(f"{axis.parameter}, {unit}", justify="right")
-    for item in quantities:
-        shown.add_column(f"{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", "), justify="right")
+    units_of = ["rpm" if axis.parameter == "speed" else "mm" for axis in axes]
+    heads = [f">{axis.parameter}, {shown_in(unit, units)[0]}" for axis, unit in zip(axes, units_of, strict=True)]
+    heads += [f">{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", ") for item in quantities]
+    shown = table_of(*heads)
     stuck = 0
-    keys = ["speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm" for axis in axes]
+    keys = [f"{axis.parameter}_{unit}" for axis, unit in zip(axes, units_of, strict=True)]
     for row in rows_in(rows_of(table.to_dict("list")), units):
         at = [row[key_in(key, units)[0]] for key in keys]
         values = [row[key_in(item.field, units)[0]] for item in quantities]
         stuck += bool(row["reason"])
         shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
-    print_table(screen, shown)
+    print_table(console(), shown)
     if stuck:
         first = next(reason for reason in table["reason"] if reason)
         say(f"{stuck} of {len(table)} without a value; the first: {first}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,27 +17,24 @@ from ....model.tolerance.exact import extremes
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, variances
 from ....model.tolerance.sources import SOURCES, limits
+from ...figures.stack import draw_stack
 from ...figures.style import (
     BLUE,
     FRAME,
     INK,
-    MUTED,
-    SMALL,
     TEXT,
-    TITLE,
     VERMILION,
     dress,
+    heading,
+    legend_beside,
     new_figure,
+    over_turn,
     place,
-    save,
-    write,
 )
 
 Array = NDArray[np.float64]
 SAMPLES, ANGLES = 10_000, 181
 PERCENTS = (0.135, 5.0, 95.0, 99.865)
-_GREYS = ("#404040", "#a8a8a8", "#6e6e6e", "#d4d4d4", "#8c8c8c", "#c0c0c0", "#565656", "#ebebeb")
-_HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
 
 
 @dataclass(frozen=True)
@@ -84,12 +80,12 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
 def tolerances_figure(bands: Bands) -> Figure:
     """Return the figure: above the bands, below where they come from."""
     figure = new_figure(9.2, 7.2)
-    write(figure, 0.3, 6.9, "Position error of the slider from tolerances", fontsize=TITLE, weight="bold")
+    note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
+    heading(figure, "Position error of the slider from tolerances", note)
     upper, lower = place(figure, 0.8, 3.35, 5.9, 3.25), place(figure, 0.8, 0.65, 5.9, 2.2)
     for panel in (upper, lower):
         dress(panel, up=6)
-        panel.set_xlim(0, 360)
-        panel.set_xticks(range(0, 361, 45))
+        over_turn(panel)
     low, inner_low, inner_high, high = bands.percentiles
     upper.fill_between(bands.angles, low, high, color="#e4e4e4", linewidth=0, label="Monte Carlo, 99.73 %")
     upper.fill_between(bands.angles, inner_low, inner_high, color="#bdbdbd", linewidth=0, label="Monte Carlo, 90 %")
@@ -106,31 +102,7 @@ def tolerances_figure(bands: Bands) -> Figure:
     lower.set_ylabel("share of the variance, %", fontsize=TEXT)
     lower.set_xlabel("crank angle, deg", fontsize=TEXT)
     lower.set_ylim(0, 100)
-    stack = lower.stackplot(
-        bands.angles, bands.shares, labels=bands.sources, colors=_GREYS, edgecolor="white", linewidth=0.4
-    )
-    for part, hatch in zip(stack, _HATCHES, strict=False):
-        part.set_hatch(hatch)
-    for panel in (upper, lower):
-        handles, labels = panel.get_legend_handles_labels()
-        order = slice(None, None, -1) if panel is lower else slice(None)  # as stacked
-        panel.legend(
-            handles[order],
-            labels[order],
-            loc="upper left",
-            bbox_to_anchor=(1.02, 1.0),
-            fontsize=SMALL,
-            frameon=False,
-            borderaxespad=0.0,
-            handlelength=2.4,
-            handleheight=1.1,
-        )
-    note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
-    write(figure, 0.8, 6.68, note, color=MUTED, fontsize=SMALL)
+    draw_stack(lower, bands.angles, bands.shares, bands.sources)
+    legend_beside(upper)
+    legend_beside(lower, stacked=len(bands.sources))
     return figure
-
-
-def draw_tolerances(mechanism: Mechanism, linkage: Linkage, path: Path) -> Path:
-    """Write the figure of one linkage as PNG; return the file."""
-    save(tolerances_figure(error_bands(mechanism, linkage)), path)
-    return path

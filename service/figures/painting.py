@@ -7,19 +7,16 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle as Disc
+from matplotlib.patches import Polygon
 
-from ...model.extras import NamingExtra
-from ..figures.style import LINK, new_figure, place
-from . import layers as on
-from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
-
-with NamingExtra("painted drawings need"):
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Circle as Disc
-    from matplotlib.patches import Polygon
+from ..drawings import layers as on
+from ..drawings.shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
+from .style import LINK, new_figure, place
 
 _DASHES: dict[Dashes, object] = {
     "continuous": "-",
@@ -31,22 +28,18 @@ _FILLED = {on.CRANK.name: LINK, on.ROD.name: LINK, on.SLIDER.name: "#f4f4f4", on
 _POINTS = 2.6  # line width, points, of a weight of one
 _CAPITALS = 0.729  # height of capitals over the size of the font, DejaVu Sans
 _WIDTH, _TALLEST = 9.0, 6.4  # inches
+_FILLS = 0.97  # share of a figure that its drawing fills
 _ALIGNED = {"start": "left", "middle": "center", "end": "right"}
 
 
 def drawing_figure(drawing: Drawing) -> Figure:
     """Return a drawing as a figure, the same scale in both directions."""
     left, bottom, right, top = drawing.bounds
-    scale = min(_WIDTH / (right - left), _TALLEST / (top - bottom)) * 0.97  # inches a mm
-    wide, tall = scale * (right - left) / 0.97, scale * (top - bottom) / 0.97
-    figure = new_figure(wide, tall)
-    axes = place(figure, 0.0, 0.0, wide, tall)
-    axes.axis("off")
-    for limit, middle, inches in (
-        (axes.set_xlim, 0.5 * (left + right), wide),
-        (axes.set_ylim, 0.5 * (bottom + top), tall),
-    ):
-        limit(middle - 0.5 * inches / scale, middle + 0.5 * inches / scale)
+    width, height = (right - left) / _FILLS, (top - bottom) / _FILLS
+    scale = min(_WIDTH / width, _TALLEST / height) * _FILLS  # inches a mm
+    figure = new_figure(scale * width, scale * height)
+    axes = place(figure, 0.0, 0.0, scale * width, scale * height)
+    show_rectangle(axes, left, bottom, right, top, share=_FILLS)
     paint(axes, [shape for shape in drawing.shapes if not isinstance(shape, Label | Dimension)])
     for shape in drawing.shapes:
         if isinstance(shape, Dimension):
@@ -70,6 +63,21 @@ def drawing_figure(drawing: Drawing) -> Figure:
                 zorder=9.0,
             )
     return figure
+
+
+def show_rectangle(axes: Axes, left: float, low: float, right: float, high: float, *, share: float = 1.0) -> None:
+    """Show a rectangle in the middle of axes, and nothing of these, at the same scale in both directions.
+
+    share: of width or height that it fills.
+    """
+    box = axes.get_window_extent()
+    scale = max((right - left) / box.width, (high - low) / box.height) / share
+    for limit, middle, size in (
+        (axes.set_xlim, 0.5 * (left + right), box.width),
+        (axes.set_ylim, 0.5 * (low + high), box.height),
+    ):
+        limit(middle - 0.5 * scale * size, middle + 0.5 * scale * size)
+    axes.axis("off")
 
 
 def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ....model.errors import AssemblyError, InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.signals.peaks import find_peaks
+from ....model.signals.signals import Signal
+from ....model.tolerance.exact import worst
+from ....model.tolerance.first_order import shares
+from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
+from ....model.tolerance.sources import SOURCES, limits, source_influences
+from ...text.tables import print_table
+from ..peaks import row_of
+from ..tables import table
 
 if TYPE_CHECKING:
-    from ....model.linkage.linkage import Linkage
-    from ....model.machine.mechanism import Mechanism
-    from ....optimise.front.stationarity import Array
+    from matplotlib.figure import Figure
+    from rich.console import Console
 
 SAMPLES = 20_000
 BINS = 40  # of the histogram
@@ -26,34 +38,21 @@ def numbers(
     their greatest error, in even bins from 0. Raises `InputError` if there are
     no tolerances.
     """
-    import numpy as np
-
-    from ....model.signals.peaks import find_peaks
-    from ....model.signals.signals import Signal
-    from ....model.tolerance.exact import worst
-    from ....model.tolerance.first_order import shares
-    from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
-    from ....model.tolerance.sources import SOURCES, limits, source_influences
-
     reach = limits(mechanism, linkage)
     if not np.any(reach):
         raise InputError(
             'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
         )
-    design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
-    first, square = (
-        find_peaks(mechanism, signal, design, kept=1) for signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
-    )
+    signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+    first, square = (find_peaks(mechanism, signal, row_of(linkage), kept=1) for signal in signals)
     worst_case, rss = float(first.values[0, 0]), float(square.values[0, 0])
     try:
         exact = worst(mechanism, linkage)
     except AssemblyError:
         exact = None
     parts = (np.abs(source_influences(mechanism, linkage, first.angles[0])) * reach[:, None])[:, :1]
-    of_worst, of_variance = (
-        100.0 * shares(parts)[:, 0],
-        100.0 * shares(variances(mechanism, linkage, first.angles[0]))[:, 0],
-    )
+    of_worst = 100.0 * shares(parts)[:, 0]
+    of_variance = 100.0 * shares(variances(mechanism, linkage, first.angles[0]))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
     spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     limits_wanted = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
@@ -102,12 +101,63 @@ def numbers(
     }
 
 
-def _histogram(greatest: Array) -> dict[str, list[float] | list[int]] | None:
+def _histogram(greatest: np.ndarray) -> dict[str, list[float] | list[int]] | None:
     """Return edges, mm, and counts of the machines that turn; None if none does."""
-    import numpy as np
-
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
         return None
     counts, edges = np.histogram(turning, bins=BINS, range=(0.0, float(turning.max())))
     return {"edges_mm": edges.tolist(), "counts": counts.tolist()}
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    exact, angle = numbers["exact_worst_case_mm"], numbers["exact_worst_case_angle_deg"]
+    console.print("Position error from tolerances, greatest over the counted part of the cycle", style="bold")
+    rows = table("", "")
+    rows.add_row("worst case, first order", _at(numbers["worst_case_mm"], numbers["worst_case_angle_deg"]))
+    rows.add_row(
+        "worst case, exact",
+        "not defined: a linkage within the tolerances does not turn fully" if exact is None else _at(exact, angle),
+    )
+    rows.add_row("root-sum-square", _at(numbers["root_sum_square_mm"], numbers["root_sum_square_angle_deg"]))
+    simulation = numbers["monte_carlo"]
+    spread = ", ".join(
+        f"{percent} % within {value:.4g} mm" for percent, value in simulation["percentiles_greatest_mm"].items()
+    )
+    rows.add_row(f"{simulation['samples']:,} random machines", spread or "-")
+    if simulation["stuck"]:
+        rows.add_row("", f"{simulation['stuck']:,} of them do not turn fully")
+    for found in numbers["yields"]:
+        low, high = found["yield_low_percent"], found["yield_high_percent"]
+        rows.add_row(
+            f"yield at {found['limit_mm']:.4g} mm ({found['limit']})",
+            f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} % "
+            f"at {found['confidence_percent']:g} % confidence",
+        )
+    print_table(console, rows)
+    if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
+        note = (
+            "The root-sum-square takes a clearance for three standard deviations; pins pressed to either side scatter"
+        )
+        console.print(f"{note} wider, as the random machines show.", style="dim", soft_wrap=True)
+    console.print()
+    sources = table("where it comes from", ">limit", ">adds, mm", ">of worst case", ">of variance")
+    for row in numbers["contributions"]:
+        limit = f"{row['limit_deg']:.4g} deg" if row["limit_mm"] is None else f"{row['limit_mm']:.4g} mm"
+        of_worst, of_variance = row["share_of_worst_case_percent"], row["share_of_variance_percent"]
+        sources.add_row(
+            row["source"], limit, f"{row['contribution_mm']:.4g}", f"{of_worst:.1f} %", f"{of_variance:.1f} %"
+        )
+    print_table(console, sources)
+
+
+def _at(size: float, angle: float) -> str:
+    return f"{size:.4g} mm at {angle:.4g} deg"
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:
+    """Return the bands of the error over the cycle, and where they come from."""
+    from .figure import error_bands, tolerances_figure
+
+    return tolerances_figure(error_bands(mechanism, linkage))

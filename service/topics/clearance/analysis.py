@@ -1,4 +1,4 @@
-"""Simulation of a loose joint over some turns of the crank, and its statistics."""
+"""Simulation of a loose joint over some turns of the crank, and its statistics: numbers, text and figure."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from ....model.clearance.run import ClearanceProgress, ClearanceRun, simulate
+from ....model.clearance.statistics import summarise
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
 from ...text.screen import error_console
+from ..tables import table
 
 if TYPE_CHECKING:
-    from ....model.clearance.run import ClearanceProgress, ClearanceRun
-    from ....model.linkage.linkage import Linkage
-    from ....model.machine.mechanism import Mechanism
+    from matplotlib.figure import Figure
+    from rich.console import Console
 
 CYCLES, DISCARD = 12, 4
 
@@ -20,14 +25,7 @@ CYCLES, DISCARD = 12, 4
 ROWS = (
     ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", "m/s^2"),
     ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  over that of ideal joints", ""),
-    (
-        "displacement_deviation",
-        "displacement_deviation",
-        "_percent",
-        100.0,
-        "slider displacement off by",
-        "% of stroke",
-    ),
+    ("displacement_deviation",) * 2 + ("_percent", 100.0, "slider displacement off by", "% of stroke"),
     ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity off by", "m/s"),
     ("impacts", "impacts_per_turn", "", 1.0, "impacts per turn", ""),
     ("contact_share", "contact_share", "_percent", 100.0, "time in contact", "%"),
@@ -52,24 +50,14 @@ def simulated(
 
     Raises `InputError` if no joint is loose, and as `model.clearance.run.simulate` does.
     """
-    from ....model.clearance.run import simulate
-    from ....model.errors import InputError
-
     if mechanism.clearance is None:
         raise InputError(
             "a simulation of joint clearance needs a loose joint; got ideal joints only; add to the job for example "
             '[clearance] with joint = "crank pin", radial_clearance = "0.2 mm" and journal_radius = "10 mm"'
         )
     with _turns_bar() as tell:
-        return simulate(
-            mechanism,
-            linkage,
-            mechanism.clearance,
-            cycles=cycles,
-            discard=discard,
-            progress=tell,
-            cancelled=cancelled,
-        )
+        options: dict[str, Any] = {"cycles": cycles, "discard": discard, "progress": tell, "cancelled": cancelled}
+        return simulate(mechanism, linkage, mechanism.clearance, **options)
 
 
 def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool]) -> dict[str, Any]:
@@ -84,8 +72,6 @@ def numbers(
 
     run: one that was done before; else `simulated` with the options does it.
     """
-    from ....model.clearance.statistics import summarise
-
     run = run or simulated(mechanism, linkage, **options)
     clearance = run.clearance
     summary = summarise(run) if run.cycles > run.discard else None
@@ -108,6 +94,34 @@ def numbers(
     found["fastest_impact_m_s"] = None if summary is None else summary.fastest_impact
     found["energy_residual_J"] = None if summary is None else summary.energy_residual
     return found
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the statistics for people."""
+    joint, radial = numbers["joint"], numbers["radial_clearance_mm"]
+    console.print(f"Radial clearance of {radial:g} mm at the {joint} (law: {numbers['law']})", style="bold")
+    if not numbers["turns"]:
+        console.print("cancelled before there was a turn to count")
+        return
+    rows = table("", ">", "", "")
+    for _, key, unit, _, title, symbol in ROWS:
+        value, certain = numbers[f"{key}{unit}"], numbers[f"{key}_uncertainty{unit}"]
+        if value == 0.0 and not certain:
+            continue
+        rows.add_row(title, f"{value:.4g}", "" if certain is None else f"± {certain:.2g}", symbol)
+    console.print(rows)
+    turns, discarded = numbers["turns"], numbers["turns_discarded"]
+    note = f"means over {turns} turns after {discarded} of running in, ± 99 % confidence"
+    if numbers["status"] == "cancelled":
+        note += "; cancelled before the end"
+    console.print(f" {note}", style="dim")
+
+
+def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Figure:
+    """Return the last turn of a simulation. run: one that was done before; else `simulated` does it now."""
+    from .figure import clearance_figure
+
+    return clearance_figure(run or simulated(mechanism, linkage))
 
 
 @contextlib.contextmanager

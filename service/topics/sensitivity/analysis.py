@@ -1,36 +1,43 @@
-"""Sensitivity of every quantity to each dimension, as a table."""
+"""Sensitivity of every quantity to each dimension: numbers, text and figure."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
 
-from .numbers import DIMENSIONS
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....objectives.registry import QUANTITIES
+from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
+from ...runs.result import finite, rows_of
+from ...text.tables import print_table
+from ..peaks import row_of
+from ..tables import table
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.console import Console
-
 
 _SAME = 1e-9  # relative: derivatives that differ by less are equal
 _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
 """Rows that the text leaves out, besides plain quantities: they follow from the dimensions at a glance."""
 
 
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None where not defined.
+
+    quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
+    (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
+    (<dimension>_tolerance), in the unit of the entry; each once more with _below, for the side of smaller values.
+    """
+    return {"quantities": finite(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")))}
+
+
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people: change of each quantity for one millimetre more, and in percent per percent."""
-    from rich.table import Table
-
-    from ....objectives.registry import QUANTITIES
-    from ...text.tables import print_table
-
     console.print("Change of each quantity for 1 mm more of a dimension (and in % for 1 % more)", style="bold")
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("quantity", no_wrap=True)
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for name in DIMENSIONS:
-        table.add_column(name, justify="right", no_wrap=True)
-        table.add_column("", justify="right", no_wrap=True)
+    heads = [head for name in DIMENSIONS for head in (f">{name}", ">")]
+    rows = table("quantity", ">value", "unit", *heads)
     kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
     for row in numbers["quantities"]:
         slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
@@ -41,8 +48,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
             relative = _sides(row, f"{name}_percent", 3)
             cells += [_sides(row, f"{name}_per_mm", 4), "" if relative == "-" else f"({relative} %)"]
             kinks = kinks or " / " in cells[-2]
-        table.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
-    print_table(console, table)
+        rows.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
+    print_table(console, rows)
     if kinks:
         console.print("a / b: at a kink, the derivative below and above the dimension", style="dim")
 
@@ -59,3 +66,10 @@ def _signed(value: float | None, digits: int) -> str:
     if value is None or not math.isfinite(value):
         return "-"
     return "0" if value == 0.0 else f"{value:+.{digits}g}"
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:
+    """Return the tornado figure: a bar for each quantity and dimension."""
+    from .figure import tornado_figure, tornado_rows
+
+    return tornado_figure(tornado_rows(mechanism, linkage))

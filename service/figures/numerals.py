@@ -1,0 +1,33 @@
+"""Numbers and units as figures and reports write them."""
+
+from __future__ import annotations
+
+import math
+
+
+def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
+    """Return a number for people: that many significant digits, no exponent where avoidable, a real minus sign.
+
+    zeros: keep those at the end, so that numbers below one another have the same precision.
+    """
+    if not math.isfinite(value):
+        return "∞" if value > 0.0 else "−∞" if value < 0.0 else "–"
+    text = f"{value:#.{digits}g}".rstrip(".") if zeros else f"{value:.{digits}g}"
+    if "e" in text and 1e-5 < abs(value) < 1e7:
+        text = f"{value:.0f}" if abs(value) >= 1.0 else f"{value:.{digits + 3}f}".rstrip("0")
+    return ("0" if float(text) == 0.0 else text).replace("-", "−")
+
+
+def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
+    """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
+    return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
+
+
+def unit_text(symbol: str) -> str:
+    """Return a unit as printed: m/s^2 with a raised 2."""
+    return symbol.replace("^2", "²").replace("^3", "³")
+
+
+def with_unit(title: str, symbol: str) -> str:
+    """Return an axis title with its unit."""
+    return f"{title}, {unit_text(symbol)}" if symbol else title

@@ -1,0 +1,84 @@
+"""A sheet of panels with curves, as data: what the figure of a topic or of a published case shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.linkage.linkage import Linkage
+from .numerals import shown
+
+Array = NDArray[np.float64]
+CRANK_ANGLE = "crank angle, deg"
+THIN, DASHED, FAINT, DOTS = 5, 6, 7, 8
+"""Styles: full of detail, what that is compared with, swinging behind another line, and many points."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve through (x, y), each (n,), as shown, with a gap where y is nan; single points if `points`.
+
+    style: which of the line styles.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    style: int = 0
+    points: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Lines over a common axis. title, across: with unit. names: (text, x, y) of what is named in the drawing.
+
+    equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. level: a
+    horizontal line, with its name. shaded: parts of the axis (from, to). note: at the right of the title.
+    """
+
+    title: str
+    across: str
+    lines: tuple[Line, ...]
+    names: tuple[tuple[str, float, float], ...] = ()
+    equal: bool = False
+    turns: bool = False
+    level: tuple[str, float] | None = None
+    shaded: tuple[tuple[float, float], ...] = ()
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Panels row by row, `columns` in each row. subtitle: what the mechanism is.
+
+    width: of a panel with its margins, or of those of each column; height: likewise; inches. stacked: panels of a
+    column have one axis, told at the lowest.
+    """
+
+    title: str
+    subtitle: str
+    panels: tuple[Panel, ...]
+    columns: int = 1
+    width: float | tuple[float, ...] = 6.2
+    height: float = 2.35
+    stacked: bool = False
+
+
+def over_turn(title: str, *lines: Line, level: tuple[str, float] | None = None, note: str = "") -> Panel:
+    """Return a panel of lines over the crank angle."""
+    return Panel(title, CRANK_ANGLE, lines, turns=True, level=level, note=note)
+
+
+def lengths(linkage: Linkage) -> str:
+    """Return the dimensions of a linkage in words."""
+    crank, rod, offset = (shown(1e3 * float(length)) for length in (linkage.crank, linkage.rod, linkage.offset))
+    return f"crank {crank}, rod {rod}, offset {offset} mm"
+
+
+def turn(*marked: Sequence[float] | Array, samples: int = 720) -> Array:
+    """Return crank angles, rad, over a turn, with those marked just before and just after: jumps stay upright."""
+    around = [np.mod(np.asarray(angles) + side, 2.0 * np.pi) for angles in marked for side in (-1e-9, 1e-9)]
+    return np.unique(np.concatenate([np.linspace(0.0, 2.0 * np.pi, samples + 1), *around]))

@@ -1,0 +1,87 @@
+"""Balance of one design: shaking force and moment on the frame, and what the counterweight does to them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....model.cycle.shaking import shaking_curves
+from ....model.linkage.linkage import Linkage
+from ....model.machine.links import Counterweight
+from ....model.machine.mechanism import Mechanism
+from ....model.signals.averages import average
+from ....model.signals.signals import Signal
+from ...figures.sheets import Line, Sheet, over_turn, turn
+from ...text import lines as text
+from ..peaks import peak, row_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
+
+
+def _bare(mechanism: Mechanism) -> Mechanism | None:
+    """Return the mechanism without its counterweight; None if it has none."""
+    if not mechanism.counterweight.mass > 0.0:
+        return None
+    return replace(mechanism, counterweight=Counterweight(mass=0.0, radius=0.0))
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
+
+    Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The values without counterweight are
+    None if the machine has none.
+    """
+    design, weight, bare = row_of(linkage), mechanism.counterweight, _bare(mechanism)
+    values: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
+    for name, unit, signal in _CURVES:
+        greatest = peak(mechanism, signal, linkage)
+        without = None if bare is None else peak(bare, signal, linkage).value
+        values[f"peak_{name}_{unit}"] = greatest.value
+        values[f"peak_{name}_angle_deg"] = greatest.degrees
+        values[f"rms_{name}_{unit}"] = float(average(mechanism, signal, design).rms[0])
+        values[f"peak_{name}_without_counterweight_{unit}"] = without
+        rms = None if bare is None else float(average(bare, signal, design).rms[0])
+        values[f"rms_{name}_without_counterweight_{unit}"] = rms
+    return values
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    lines: list[text.Line] = []
+    for name, unit, _ in _CURVES:
+        for which, word in (("peak", "peak"), ("rms", "RMS")):
+            remarks = [f"at {numbers[f'peak_{name}_angle_deg']:.2f} deg"] if which == "peak" else []
+            without = numbers[f"{which}_{name}_without_counterweight_{unit}"]
+            if without is not None:
+                remarks.append(f"{without:.6g} without counterweight")
+            value = numbers[f"{which}_{name}_{unit}"]
+            title = f"{word} {name.replace('_', ' ')}"
+            lines.append((title, value, "N m" if unit == "Nm" else unit, ", ".join(remarks)))
+    title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
+    text.show_lines(console, title, lines)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return shaking force and moment over the cycle, with and without the counterweight."""
+    theta, bare = turn(), _bare(mechanism)
+    degrees, now = np.degrees(theta), shaking_curves(mechanism, linkage, theta)
+    size, moment = (
+        [Line("as it is", degrees, np.hypot(now.force_x, now.force_y))],
+        [Line("as it is", degrees, now.moment)],
+    )
+    if bare is not None:
+        then = shaking_curves(bare, linkage, theta)
+        size.append(Line("without counterweight", degrees, np.hypot(then.force_x, then.force_y), 1))
+        moment.append(Line("without counterweight", degrees, then.moment, 1))
+    along, across = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)
+    panels = (
+        over_turn("shaking force, N", *size),
+        over_turn("its components, N", along, across),
+        over_turn("shaking moment about the crank pivot, N m", *moment),
+    )
+    return Sheet("Shaking force and moment on the frame", "", panels, width=6.4, height=2.25, stacked=True)

@@ -1,0 +1,138 @@
+"""Friction of one design: self-locking, what friction adds to torque and forces, where the work of a turn goes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....model.cycle.cycle import breakpoints, cycle
+from ....model.cycle.efficiency import energies
+from ....model.cycle.locked_angles import verdict
+from ....model.linkage.linkage import Linkage
+from ....model.machine.friction import Friction
+from ....model.machine.mechanism import Mechanism
+from ....model.signals.averages import average_torque
+from ....model.signals.signals import Signal
+from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
+from ...text import lines as text
+from ...text.lines import plain
+from ..peaks import peak, row_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_WORDS = {
+    "drives": "drives at every crank angle, whatever the load",
+    "locks": "LOCKS: no crank torque drives the slider",
+    "locks or may jam": "LOCKS at some crank angles, may jam at others",
+    "may jam": "MAY JAM: the forces are not determined",
+}
+_JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return verdict, torque with and without friction, energies of a turn and efficiency of one linkage.
+
+    What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes no net
+    work.
+    """
+    friction, found = mechanism.friction, verdict(mechanism, linkage)
+    smooth = replace(mechanism, friction=Friction())
+    pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
+    values: dict[str, Any] = {
+        "verdict": "drives" if found.holds is None and not found.locks else _word(found.holds),
+        "self_locking_margin_deg": plain(math.degrees(found.margin)),
+        "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
+        "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
+        "pin_friction_angle_deg": math.degrees(math.asin(pins)) if pins < 1.0 else None,
+        "locked_angles_deg": [[math.degrees(a) % 360.0, math.degrees(b) % 360.0] for a, b in found.locked],
+    }
+    for key, number in (
+        ("peak_torque{}_Nm", lambda of: peak(of, Signal.TORQUE, linkage).value),
+        ("mean_torque{}_Nm", lambda of: average_torque(of, row_of(linkage)).mean[0]),
+        ("peak_guide_force{}_N", lambda of: peak(of, Signal.GUIDE_FORCE, linkage).value),
+    ):
+        values[key.format("")] = plain(number(mechanism))
+        values[key.format("_without_friction")] = plain(number(smooth))
+    work = None if found.locks else energies(mechanism, linkage)
+    for key, name in (
+        ("input_work_J", "input"),
+        ("useful_work_J", "useful"),
+        ("friction_heat_J", "heat"),
+        *((f"{joint}_heat_J", f"{joint}_heat") for joint in _JOINTS),
+        ("efficiency", "efficiency"),
+    ):
+        values[key] = None if work is None else getattr(work, name)
+    return values
+
+
+def _word(holds: float | None) -> str:
+    if holds is None:  # a single angle, at a margin of exactly zero
+        return "may jam"
+    return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    where = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
+    heat, share = numbers["friction_heat_J"], ""
+    if heat:
+        parts = [(name, numbers[f"{name}_heat_J"] / heat) for name in _JOINTS if numbers[f"{name}_heat_J"]]
+        share = ", ".join(f"{name.replace('_', ' ')} {100.0 * part:.3g} %" for name, part in parts)
+    least = f"least transmission angle {numbers['least_transmission_angle_deg']:.4g} less angles of friction"
+    lines: list[text.Line] = [
+        ("self-locking margin", numbers["self_locking_margin_deg"], "deg", least),
+        ("angle of friction, guide", numbers["guide_friction_angle_deg"], "deg", ""),
+        ("angle of friction, pins", numbers["pin_friction_angle_deg"], "deg", ""),
+    ]
+    for name, suffix, unit in (
+        ("peak torque", "Nm", "N m"),
+        ("mean torque", "Nm", "N m"),
+        ("peak guide force", "N", "N"),
+    ):
+        stem = name.replace(" ", "_")
+        without = f"{numbers[f'{stem}_without_friction_{suffix}']:.6g} without friction"
+        lines.append((name, numbers[f"{stem}_{suffix}"], unit, without))
+    efficiency = numbers["efficiency"]
+    why = "the load takes no net work" if heat is not None else "nothing is determined"
+    lines += [
+        ("input work a turn", numbers["input_work_J"], "J", ""),
+        ("useful work a turn", numbers["useful_work_J"], "J", "against the load"),
+        ("friction heat a turn", heat, "J", share),
+        ("efficiency", *((None, "%", why) if efficiency is None else (100.0 * efficiency, "%", ""))),
+    ]
+    text.show_lines(console, f"Friction: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", lines)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return torque, guide force and transmission angle with and without friction, over the cycle.
+
+    At angles where friction locks there is no torque and no force.
+    """
+    smooth = replace(mechanism, friction=Friction())
+    found = verdict(mechanism, linkage)
+    ends = [end for span in found.locked for end in span]
+    theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends)
+    degrees = np.degrees(theta)
+    with_it, without = (cycle(each, linkage, theta) for each in (mechanism, smooth))
+    margin = float(np.degrees(found.margin))
+    least = float(np.degrees(linkage.least_transmission_angle))
+    level = ("locks below (worst side)", least - margin) if np.isfinite(margin) else None
+
+    def both(title: str, name: str) -> Panel:
+        lines = (("with friction", with_it), ("without", without))
+        return over_turn(title, *(Line(label, degrees, getattr(of, name), n) for n, (label, of) in enumerate(lines)))
+
+    angle = Line("transmission angle", degrees, np.degrees(with_it.transmission_angle))
+    panels = (
+        both("drive torque, N m", "torque"),
+        both("force of the guide on the slider, N", "guide"),
+        over_turn("transmission angle, deg", angle, level=level),
+    )
+    locked = tuple((float(np.degrees(a)), float(np.degrees(b))) for a, b in found.locked)
+    across = panels[-1].across + (" (shaded: locks or may jam)" if locked else "")
+    shaded = tuple(replace(panel, across=across, shaded=locked) for panel in panels)
+    return Sheet("Friction over the cycle", "", shaded, width=6.4, height=2.25, stacked=True)

@@ -1,0 +1,112 @@
+"""Motor sizing of one design: torque, power and reflected inertia."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ....model.cycle.cycle import breakpoints, cycle
+from ....model.cycle.self_locking import locking_margin
+from ....model.cycle.shaking import shaking_curves
+from ....model.linkage.linkage import Linkage
+from ....model.machine.friction import Friction
+from ....model.machine.mechanism import Mechanism
+from ....model.signals.averages import average, average_torque
+from ....model.signals.peaks import find_peaks
+from ....model.signals.signals import Signal
+from ...figures.sheets import Line, Sheet, over_turn, turn
+from ...text import lines as text
+from ...text.lines import plain
+from ..peaks import row_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_SAMPLES = 2048
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
+
+    Torque and power are None where friction locks the linkage.
+    """
+    design = row_of(linkage)
+    torque = find_peaks(mechanism, Signal.TORQUE, design, kept=1)
+    power = find_peaks(mechanism, Signal.POWER, design, kept=1)
+    averages = average_torque(mechanism, design)
+    greatest = find_peaks(mechanism, Signal.REFLECTED_INERTIA, design, kept=1)
+
+    def inertia(angle: Any) -> Any:
+        return shaking_curves(mechanism, linkage, angle).reflected_inertia
+
+    around = np.linspace(0.0, 2.0 * math.pi, _SAMPLES, endpoint=False)
+    lowest, step = float(around[np.argmin(inertia(around))]), 2.0 * math.pi / _SAMPLES
+    least = minimize_scalar(
+        lambda angle: float(inertia(angle)[0]),
+        bounds=(lowest - step, lowest + step),
+        method="bounded",
+        options={"xatol": 1e-10},
+    )
+
+    def degrees(angle: Any) -> float | None:
+        return plain(np.degrees(angle) % 360.0)
+
+    return {
+        "peak_torque_Nm": plain(torque.values[0, 0]),
+        "peak_torque_angle_deg": degrees(torque.angles[0, 0]),
+        "rms_torque_Nm": plain(averages.rms[0]),
+        "mean_torque_Nm": plain(averages.mean[0]),
+        "peak_power_W": plain(power.values[0, 0]),
+        "peak_power_angle_deg": degrees(power.angles[0, 0]),
+        "mean_power_W": plain(mechanism.speed * averages.mean[0]),
+        "greatest_reflected_inertia_kg_m2": float(greatest.values[0, 0]),
+        "greatest_reflected_inertia_angle_deg": degrees(greatest.angles[0, 0]),
+        "least_reflected_inertia_kg_m2": float(least.fun),
+        "least_reflected_inertia_angle_deg": degrees(least.x),
+        "mean_reflected_inertia_kg_m2": float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
+    }
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+
+    def at(key: str) -> str:
+        return "" if numbers[key] is None else f"at {numbers[key]:.2f} deg"
+
+    lines: list[text.Line] = [
+        ("peak torque", numbers["peak_torque_Nm"], "N m", at("peak_torque_angle_deg")),
+        ("RMS torque", numbers["rms_torque_Nm"], "N m", "what heats the motor"),
+        ("mean torque", numbers["mean_torque_Nm"], "N m", ""),
+        ("peak power", numbers["peak_power_W"], "W", at("peak_power_angle_deg")),
+        ("mean power", numbers["mean_power_W"], "W", ""),
+    ]
+    for which in ("greatest", "least"):
+        key = f"{which}_reflected_inertia"
+        lines.append((f"{which} reflected inertia", numbers[f"{key}_kg_m2"], "kg m²", at(f"{key}_angle_deg")))
+    lines.append(("mean reflected inertia", numbers["mean_reflected_inertia_kg_m2"], "kg m²", ""))
+    known = numbers["peak_torque_Nm"] is not None
+    locks = "Motor: friction locks or jams the linkage, no torque is determined"
+    text.show_lines(console, "Motor" if known else locks, lines)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return torque, power and reflected inertia over the cycle; no torque and power where friction locks."""
+    design = row_of(linkage)
+    locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
+    theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage))
+    degrees, torque = np.degrees(theta), cycle(mechanism, linkage, theta).torque
+    averages = average_torque(mechanism, design)
+    rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed)
+    inertia = Line("inertia", degrees, shaking_curves(mechanism, linkage, theta).reflected_inertia)
+    usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
+    power = Line("power", degrees, torque * mechanism.speed)
+    panels = (
+        over_turn("drive torque, N m", Line("torque", degrees, torque), level=None if locks else ("RMS", rms)),
+        over_turn("power, W", power, level=None if locks else ("mean", mean)),
+        over_turn("reflected inertia, kg m²", inertia, level=("mean", usual)),
+    )
+    return Sheet("Motor over the cycle", "", panels, width=6.4, height=2.25, stacked=True)

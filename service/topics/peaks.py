@@ -1,0 +1,32 @@
+"""Peaks of one design over the cycle, as topics tell them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.peaks import find_peaks
+from ...model.signals.signals import Signal
+
+
+class Peak(NamedTuple):
+    """Greatest size of a signal, SI, and the crank angle where it is, deg; NaN where it is not determined."""
+
+    value: float
+    degrees: float
+
+
+def row_of(linkage: Linkage) -> NDArray[np.float64]:
+    """Return crank, rod and offset, m, as a table of one design (1, 3)."""
+    return np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+
+
+def peak(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> Peak:
+    """Return the peak of a signal over the cycle."""
+    found = find_peaks(mechanism, signal, row_of(linkage), kept=1)
+    return Peak(float(found.values[0, 0]), math.degrees(float(found.angles[0, 0])))
