@@ -253,6 +253,11 @@ def shown_in(symbol: str, system: System) -> tuple[str, float]:
     return symbol, 1.0
 
 
+def unit_text(symbol: str) -> str:
+    """Return a unit as printed: m/s^2 with a raised 2."""
+    return symbol.replace("^2", "²").replace("^3", "³")
+
+
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
     """Return the kind of a value shown in any unit, its suffix made from the unit's symbol.
 

@@ -14,6 +14,7 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
@@ -93,7 +94,7 @@ class Analysis(Mapping[str, float]):
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
             curve = curves[name]
             axes.plot(angle.shown.factor * angle.values, curve.shown.factor * curve.values)
-            axes.set_ylabel(f"{curve.title},\n{curve.shown.symbol}")
+            axes.set_ylabel(f"{curve.title},\n{unit_text(curve.shown.symbol)}")
             axes.set_xlabel("crank angle, deg")
             axes.label_outer()
         found.suptitle(self.title or self.linkage.label)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import layers as on
 from .dimensions import dimension
-from .parts import Proportions, Sizes, extent, moving, pins_at, proportions, scenery, sizes_of
+from .parts import Look, in_words, look_of, moving, pins_at, scenery
 from .shapes import Drawing, Label, Line, Point, Shape
 
 if TYPE_CHECKING:
@@ -29,20 +29,18 @@ def linkage_drawing(
     "design 3", for the title. crank_angle: where it is drawn, rad. Raises `AssemblyError` for a linkage that does not
     turn fully.
     """
-    sizes = sizes_of(linkage)
-    shown = proportions(mechanism, sizes)
-    left, low, right, high = extent(sizes, shown)
-    size = max(right - left, high - low)
+    look = look_of(mechanism, linkage)
+    (left, low, _, _), size = look.extent, look.size
     pin, slider = pins_at(linkage, crank_angle)
     shapes: list[Shape] = [
-        *scenery(linkage, sizes, shown, below=pin[1] >= 0.0),
-        *moving(pin, slider, shown),
+        *scenery(linkage, look, below=pin[1] >= 0.0),
+        *moving(pin, slider, look),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(pin, slider, sizes, left=left, shown=shown, height=_TEXT * size),
+        *_dimensions(pin, slider, look, height=_TEXT * size),
     ]
     title = f"{name}, {design}" if design else name
-    notes = _notes(linkage, crank_angle, shown)
+    notes = _notes(linkage, crank_angle, look)
     y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
     shapes.append(Label(on.NOTES, title, (left, y), 1.2 * _TEXT * size))
     shapes += [
@@ -52,20 +50,18 @@ def linkage_drawing(
     return Drawing(on.LAYERS, tuple(shapes), size, title, notes)
 
 
-def _dimensions(
-    pin: Point, slider: Point, sizes: Sizes, *, left: float, shown: Proportions, height: float
-) -> list[Shape]:
+def _dimensions(pin: Point, slider: Point, look: Look, *, height: float) -> list[Shape]:
     """Return the dimension lines: of crank and rod beside them, of the offset at the left, of the stroke outside."""
-    e = sizes.offset
+    e, left = look.offset, look.extent[0]
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     rod = (slider[0] - pin[0], slider[1] - pin[1])
     # Crank and rod on the outside of the bend between them.
     bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0
-    y = side * (max(sizes.crank + 0.5 * shown.crank, side * e + 0.72 * shown.block) + 3.0 * height)
+    y = side * (max(look.crank + 0.5 * look.crank_width, side * e + 0.72 * look.block) + 3.0 * height)
     found: list[Shape] = [
-        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * shown.crank + 2.2 * height), height),
-        _aligned("rod", pin, slider, bend * (0.5 * shown.rod + 2.2 * height), height),
-        dimension("stroke", sizes.inner, sizes.outer, (sizes.inner[0], y), 0.0, height=height),
+        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height),
+        _aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height),
+        dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
     ]
     if e:
         x = left - 3.0 * height
@@ -83,22 +79,13 @@ def _aligned(name: str, start: Point, end: Point, away: float, height: float) ->
     return dimension(name, start, end, through, angle, height=height)
 
 
-def _notes(linkage: Linkage, angle: float, shown: Proportions) -> tuple[str, ...]:
-    lengths = [
-        f"{name} {1e3 * float(value):.7g} mm"
-        for name, value in (
-            ("crank", linkage.crank),
-            ("rod", linkage.rod),
-            ("offset", linkage.offset),
-            ("stroke", linkage.stroke),
-        )
-    ]
+def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
     widths = "Widths of links are those of the job; slider and pins are for show."
     return (
-        f"{', '.join(lengths)}; {linkage.branch} branch.",
+        f"{in_words(linkage, 7)}.",
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
         "True scale in millimetres; pivots are exact.",
-        widths if shown.own else "Widths of links, slider and pins are for show.",
+        widths if look.own else "Widths of links, slider and pins are for show.",
     )

@@ -19,45 +19,59 @@ _FEET = 200  # hatching lines of a rail at most
 
 
 @dataclass(frozen=True)
-class Proportions:
-    """Widths of crank and rod, height of the slider and radius of pins, mm.
+class Look:
+    """A fully turning linkage as it is drawn, mm. crank, rod, offset: its dimensions.
 
-    own: whether a link is described by its section, so that its width is true; everything else is for show.
+    inner, outer: slider pins at the dead centres. crank_width, rod_width: of the links. block: height of the slider.
+    pin: radius of pins. own: whether a link is described by its section, so that its width is true; everything else is
+    for show.
     """
-
-    crank: float
-    rod: float
-    block: float
-    pin: float
-    own: bool
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """Dimensions of a fully turning linkage, mm. inner, outer: slider pins at the dead centres."""
 
     crank: float
     rod: float
     offset: float
     inner: Point
     outer: Point
+    crank_width: float
+    rod_width: float
+    block: float
+    pin: float
+    own: bool
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top of what a turn sweeps over, about."""
+        r, ends, half = self.crank, (self.inner[0], self.outer[0]), 0.5 * self.crank_width
+        return (
+            min(-r - half, *(x - 0.95 * self.block for x in ends)),
+            min(-r - half, self.offset - 0.72 * self.block),
+            max(r + half, *(x + 0.95 * self.block for x in ends)),
+            max(r + half, self.offset + 0.72 * self.block),
+        )
+
+    @property
+    def size(self) -> float:
+        """The greater side of the extent."""
+        left, low, right, high = self.extent
+        return max(right - left, high - low)
 
 
-def sizes_of(linkage: Linkage) -> Sizes:
-    """Return the dimensions of a linkage. Raises `AssemblyError` for one that does not turn fully."""
+def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
+    """Return how a linkage of a machine is drawn. Raises `AssemblyError` for one that does not turn fully."""
     r, l, e = (_MM * float(value) for value in (linkage.crank, linkage.rod, linkage.offset))
     inner, outer = ((_MM * float(x), e) for x in linkage.dead_centres)
-    return Sizes(r, l, e, inner, outer)
+    links = (mechanism.crank, mechanism.rod)
+    crank, rod = (_width(link, min(0.05 * (l + r), 0.5 * r)) for link in links)
+    block = max(0.16 * (r + max(r, abs(e))), 0.05 * (abs(outer[0]) + r))
+    pin = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r)
+    return Look(r, l, e, inner, outer, crank, rod, block, pin, any(isinstance(link, Bar) for link in links))
 
 
-def proportions(mechanism: Mechanism, sizes: Sizes) -> Proportions:
-    """Return how wide the parts of a machine are drawn."""
-    r, l, e = sizes.crank, sizes.rod, abs(sizes.offset)
-    usual = min(0.05 * (l + r), 0.5 * r)
-    crank, rod = (_width(link, usual) for link in (mechanism.crank, mechanism.rod))
-    block = max(0.16 * (r + max(r, e)), 0.05 * (abs(sizes.outer[0]) + r))
-    own = any(isinstance(link, Bar) for link in (mechanism.crank, mechanism.rod))
-    return Proportions(crank, rod, block, min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r), own)
+def in_words(linkage: Linkage, digits: int) -> str:
+    """Return dimensions, stroke and branch of a linkage."""
+    names = ("crank", "rod", "offset", "stroke")
+    lengths = ", ".join(f"{name} {_MM * float(getattr(linkage, name)):.{digits}g} mm" for name in names)
+    return f"{lengths}; {linkage.branch} branch"
 
 
 def _width(link: Link, usual: float) -> float:
@@ -70,42 +84,30 @@ def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:
     return (r * math.cos(angle), r * math.sin(angle)), (x, _MM * float(linkage.offset))
 
 
-def moving(pin: Point, slider: Point, shown: Proportions) -> list[Shape]:
+def moving(pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank with their pins where crank pin and slider pin are."""
     pivot: Point = (0.0, 0.0)
     return [
-        block(on.SLIDER, slider, shown.block),
-        bar(on.ROD, pin, slider, shown.rod),
-        bar(on.CRANK, pivot, pin, shown.crank),
-        *(Circle(on.PINS, point, shown.pin) for point in (pivot, pin, slider)),
+        block(on.SLIDER, slider, look.block),
+        bar(on.ROD, pin, slider, look.rod_width),
+        bar(on.CRANK, pivot, pin, look.crank_width),
+        *(Circle(on.PINS, point, look.pin) for point in (pivot, pin, slider)),
     ]
 
 
-def extent(sizes: Sizes, shown: Proportions) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of what a turn sweeps over, about."""
-    r, ends, half = sizes.crank, (sizes.inner[0], sizes.outer[0]), 0.5 * shown.crank
-    return (
-        min(-r - half, *(x - 0.95 * shown.block for x in ends)),
-        min(-r - half, sizes.offset - 0.72 * shown.block),
-        max(r + half, *(x + 0.95 * shown.block for x in ends)),
-        max(r + half, sizes.offset + 0.72 * shown.block),
-    )
-
-
-def scenery(linkage: Linkage, sizes: Sizes, shown: Proportions, *, below: bool) -> list[Shape]:
+def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
     """Return axes, paths, both dead centres, guide and bearing. below: whether the bearing stands below the pivot."""
-    left, bottom, right, top = extent(sizes, shown)
-    beyond = 0.03 * max(right - left, top - bottom)
-    ends = (left - beyond, right + beyond)
-    axes = [Line(on.AXES, (ends[0], y), (ends[1], y)) for y in dict.fromkeys((0.0, sizes.offset))]
-    paths = (Circle(on.PATHS, (0.0, 0.0), sizes.crank), Line(on.PATHS, sizes.inner, sizes.outer))
+    left, _, right, _ = look.extent
+    ends = (left - 0.03 * look.size, right + 0.03 * look.size)
+    axes = [Line(on.AXES, (ends[0], y), (ends[1], y)) for y in dict.fromkeys((0.0, look.offset))]
+    paths = (Circle(on.PATHS, (0.0, 0.0), look.crank), Line(on.PATHS, look.inner, look.outer))
     ghosts: list[Shape] = []
     for layer, angle, end in zip(
-        (on.INNER, on.OUTER), linkage.dead_centre_angles, (sizes.inner, sizes.outer), strict=True
+        (on.INNER, on.OUTER), linkage.dead_centre_angles, (look.inner, look.outer), strict=True
     ):
-        r = sizes.crank
-        ghosts += _ghost(layer, (r * math.cos(angle), r * math.sin(angle)), end, shown)
-    return [*axes, *paths, *ghosts, *_rails(sizes, shown), *_bearing(shown, below=below)]
+        r = look.crank
+        ghosts += _ghost(layer, (r * math.cos(angle), r * math.sin(angle)), end, look)
+    return [*axes, *paths, *ghosts, *_rails(look), *_bearing(look, below=below)]
 
 
 def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
@@ -128,26 +130,26 @@ def block(layer: Layer, pin: Point, height: float) -> Outline:
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def _ghost(layer: Layer, pin: Point, slider: Point, shown: Proportions) -> list[Shape]:
+def _ghost(layer: Layer, pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return the linkage in another position, pins as small circles."""
     return [
-        block(layer, slider, shown.block),
-        bar(layer, pin, slider, shown.rod),
-        bar(layer, (0.0, 0.0), pin, shown.crank),
-        Circle(layer, pin, 0.6 * shown.pin),
-        Circle(layer, slider, 0.6 * shown.pin),
+        block(layer, slider, look.block),
+        bar(layer, pin, slider, look.rod_width),
+        bar(layer, (0.0, 0.0), pin, look.crank_width),
+        Circle(layer, pin, 0.6 * look.pin),
+        Circle(layer, slider, 0.6 * look.pin),
     ]
 
 
-def _rails(sizes: Sizes, shown: Proportions) -> list[Shape]:
+def _rails(look: Look) -> list[Shape]:
     """Return the guide of the slider, hatched."""
     shapes: list[Shape] = []
-    ends = (sizes.inner[0], sizes.outer[0])
-    start, end = min(ends) - 0.95 * shown.block, max(ends) + 0.95 * shown.block
+    ends = (look.inner[0], look.outer[0])
+    start, end = min(ends) - 0.95 * look.block, max(ends) + 0.95 * look.block
     for side in (-1.0, 1.0):
-        y = sizes.offset + side * 0.52 * shown.block
+        y = look.offset + side * 0.52 * look.block
         shapes.append(Line(on.FRAME, (start, y), (end, y)))
-        pitch = max(0.2 * shown.block, (end - start) / _FEET)
+        pitch = max(0.2 * look.block, (end - start) / _FEET)
         shapes += [
             Line(on.FRAME, (start + k * pitch, y), (start + (k - 1) * pitch, y + side * pitch))
             for k in range(1, int((end - start) / pitch) + 1)
@@ -155,8 +157,8 @@ def _rails(sizes: Sizes, shown: Proportions) -> list[Shape]:
     return shapes
 
 
-def _bearing(shown: Proportions, *, below: bool) -> list[Shape]:
-    foot = 1.5 * max(shown.pin, 0.3 * shown.crank)
+def _bearing(look: Look, *, below: bool) -> list[Shape]:
+    foot = 1.5 * max(look.pin, 0.3 * look.crank_width)
     y = -2.0 * foot if below else 2.0 * foot
     legs = [Line(on.FRAME, (0.0, 0.0), (x, y)) for x in (-foot, foot)]
     return [*legs, Line(on.FRAME, (-1.8 * foot, y), (1.8 * foot, y))]

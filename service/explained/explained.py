@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from ...objectives.quantity import Quantity
+from ...objectives.kinds import LENGTH
+from ...objectives.quantity import MECHANICS, Group, Quantity
+from ...objectives.registry import FACTS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,35 +36,25 @@ class Explained:
 
 def explained() -> Iterator[Explained]:
     """Yield the dimensions, then all quantities in the order of the registry, then those of wanted motions."""
-    from ...objectives.registry import FACTS
-
     yield from _dimensions()
     yield from map(_of, FACTS.values())
 
 
+_SHARED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "offered")
+"""Facts that a quantity states as they are explained."""
+
+
 def _of(quantity: Quantity) -> Explained:
     return Explained(
-        name=quantity.name,
+        **{fact: getattr(quantity, fact) for fact in _SHARED},
         column=quantity.field,
-        title=quantity.title,
         unit=quantity.unit.symbol,
         kind=quantity.kind.plain,
         group=quantity.group.value,
-        sentence=quantity.sentence,
-        advice=quantity.advice,
-        formula=quantity.formula,
-        section=quantity.section,
-        source=quantity.source,
-        picture=quantity.picture,
-        better=quantity.better,
-        offered=quantity.offered,
     )
 
 
 def _dimensions() -> Iterator[Explained]:
-    from ...objectives.kinds import LENGTH
-    from ...objectives.quantity import MECHANICS, Group
-
     closed = "2. Closed forms"
     for name, title, section, sentence, advice, formula in (
         (

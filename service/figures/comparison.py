@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from ...objectives.kinds import unit_text
 from ..runs.result import Wanted
-from .numerals import unit_text, with_unit
-from .scatter import MOST
-from .style import INK, MUTED, SMALL, TITLE, dress, limits, new_figure, write
-from .triangle import triangle
+from .numerals import with_unit
+from .scatter import MOST, triangle
+from .style import INK, SMALL, dress, heading, limits, new_figure, write
 
 # Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -58,11 +58,10 @@ def comparison_matrix(
     for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
         _panel(panel, runs, across, up)
     height = figure.get_size_inches()[1]
-    write(figure, 0.2, height - 0.3, title, fontsize=TITLE, weight="bold")
+    more = f"the first {MOST} of {len(objectives)} objectives" if len(objectives) > MOST else ""
+    heading(figure, title, more, left=0.2)
     for line, note in enumerate(notes):
         write(figure, 0.2, below - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
-    if len(objectives) > MOST:
-        write(figure, 0.2, height - 0.48, f"the first {MOST} of {len(objectives)} objectives", color=MUTED)
     figure.legend(
         [Line2D([], [], **_style(index)) for index in range(len(runs))],
         [f"{run.label}, {len(run.values)} design{'s' if len(run.values) != 1 else ''}" for run in runs],

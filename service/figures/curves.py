@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ...model.cycle.cycle import cycle
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ...objectives.kinds import System, shown_in
+from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from .drawing import least_transmission_crank_angle
 from .numerals import shown, with_unit
-from .style import BLUE, FRAME, INK, MUTED, SHADE, SMALL, TEXT, VERMILION, dress, limits
+from .panels import draw_panel
+from .sheets import Line, over_turn
+from .style import MUTED, SMALL
 
 Array = NDArray[np.float64]
 SAMPLES = 720
@@ -59,91 +60,55 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
-    least = least_transmission_crank_angle(linkage)
 
     def peak(of: Mechanism, signal: Signal) -> float:
         return float(find_peaks(of, signal, dimensions, kept=1).angles[0, 0])
 
-    marked = [least, inner, outer, peak(moving, Signal.SLIDER_SPEED)]
-    marked += [peak(moving, Signal.SLIDER_ACCELERATION)]
-    marked += [peak(mechanism, Signal.TORQUE)] if torque else []
+    extremes: dict[str, tuple[str, float] | None] = {
+        **({"torque": ("peak", peak(mechanism, Signal.TORQUE))} if torque else {}),
+        "transmission_angle": ("least", least_transmission_crank_angle(linkage)),
+        "slider_position": None,
+        "slider_velocity": ("peak", peak(moving, Signal.SLIDER_SPEED)),
+        "slider_acceleration": ("peak", peak(moving, Signal.SLIDER_ACCELERATION)),
+    }
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
     turn = np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1)
+    marked = [inner, outer, *(extreme[1] for extreme in extremes.values() if extreme)]
     angles = np.unique(np.concatenate([turn, np.mod(crowded, 2.0 * np.pi), marked]))
-    motion = cycle(moving, linkage, angles)
     degrees = np.degrees(angles)
-
-    def curve(title: str, unit: str, values: Array, word: str, angle: float, digits: int = 4) -> Curve:
-        symbol, factor = shown_in(unit, system)
-        title, values = with_unit(title, symbol), values * factor
-        where = int(np.searchsorted(angles, angle))
-        value = float(values[where])
-        note = f"{word} {shown(value, digits)} at {shown(degrees[where])}°"
-        return Curve(title, values, note, (float(degrees[where]), value))
-
-    per, speed_unit, acceleration_unit, factor = "", "m/s", "m/s^2", 1.0
-    if not mechanism.speed:
-        per, speed_unit, acceleration_unit, factor = " per crank speed", "mm/rad", "mm/rad^2", 1e3
-    length, one = shown_in("mm", system)
-    curves = [
-        curve("transmission angle", "deg", np.degrees(motion.transmission_angle), "least", marked[0]),
-        Curve(
-            with_unit("slider position", length),
-            1e3 * one * motion.slider_position,
-            "dead centres at " + " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres))),
-            None,
-        ),
-        curve(f"slider velocity{per}", speed_unit, factor * motion.slider_velocity, "peak", marked[3]),
-        curve(
-            f"slider acceleration{per}",
-            acceleration_unit,
-            factor * motion.slider_acceleration,
-            "peak",
-            marked[4],
-        ),
-    ]
-    if torque:
-        values = motion.torque if mechanism.speed else cycle(mechanism, linkage, angles).torque
-        curves.insert(0, curve("drive torque", "N m", values, "peak", marked[5]))
+    _, one = shown_in("mm", system)
+    ends = " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres)))
+    computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
+    curves = []
+    for name, extreme in extremes.items():
+        found = computed[name]
+        symbol, factor = shown_in(found.shown.symbol, system)
+        title, values = with_unit(found.title, symbol), found.shown.factor * factor * found.values
+        if extreme is None:
+            curves.append(Curve(title, values, f"dead centres at {ends}", None))
+            continue
+        word, angle = extreme
+        at = int(np.searchsorted(angles, angle))
+        note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
+        curves.append(Curve(title, values, note, (float(degrees[at]), float(values[at]))))
     slow = str(linkage.slow_stroke(direction=mechanism.speed or 1.0))
     return Curves(degrees, tuple(curves), float(np.degrees(inner)), float(np.degrees(outer)), slow)
 
 
 def draw_curves(panels: Sequence[Axes], curves: Curves) -> None:
     """Draw each curve into one of the panels, given from top to bottom."""
-    for panel, curve in zip(panels, curves.curves, strict=True):
-        dress(panel, up=6)
-        panel.set_xticks(range(0, 361, 45))
-        panel.tick_params(labelbottom=panel is panels[-1])
-        for start, end in _slow_spans(curves):
-            panel.axvspan(start, end, color=SHADE, linewidth=0, zorder=0)
-        for angle in (curves.inner, curves.outer):
-            panel.axvline(angle, color=MUTED, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
-        low, high = float(curve.values.min()), float(curve.values.max())
-        if low < 0.0 < high:
-            panel.axhline(0.0, color=FRAME, linewidth=0.8, zorder=1)
-        panel.plot(curves.angles, curve.values, color=BLUE, linewidth=1.5, zorder=2)
-        if curve.point is not None:
-            panel.plot(
-                *curve.point,
-                marker="o",
-                markersize=5.5,
-                markerfacecolor="white",
-                markeredgecolor=VERMILION,
-                markeredgewidth=1.5,
-                linestyle="none",
-                clip_on=False,
-                zorder=4,
-            )
-        panel.set_xlim(0, 360)
-        panel.set_ylim(limits(low, high, 0.09))
-        head: dict[str, Any] = {"transform": panel.transAxes, "va": "bottom", "fontsize": SMALL}
-        panel.text(0.0, 1.03, curve.title, ha="left", color=INK, **head)
-        colour = VERMILION if curve.point is not None else MUTED
-        panel.text(1.0, 1.03, curve.note, ha="right", color=colour, **head)
     slow = f" (shaded: {curves.slow} stroke, the slow one)" if curves.slow != "equal" else ""
-    panels[-1].set_xlabel(f"crank angle, deg{slow}", fontsize=TEXT)
+    for axes, curve in zip(panels, curves.curves, strict=True):
+        lines = [Line("", curves.angles, curve.values)]
+        if curve.point is not None:
+            x, y = curve.point
+            lines.append(Line("", np.array([x]), np.array([y]), points=True))
+        panel = over_turn(curve.title, *lines, note=curve.note)
+        panel = replace(panel, across=panel.across + slow, shaded=_slow_spans(curves))
+        draw_panel(axes, panel, across=axes is panels[-1])
+        for angle in (curves.inner, curves.outer):
+            axes.axvline(angle, color=MUTED, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
     _name_dead_centres(panels[0], curves)
 
 
@@ -165,9 +130,9 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
         )
 
 
-def _slow_spans(curves: Curves) -> list[tuple[float, float]]:
+def _slow_spans(curves: Curves) -> tuple[tuple[float, float], ...]:
     """Return the crank angles of the slow stroke: the greater part between the dead centres."""
     if curves.slow == "equal":
-        return []
+        return ()
     low, high = sorted((curves.inner, curves.outer))
-    return [(low, high)] if high - low > 180.0 else [(0.0, low), (high, 360.0)]
+    return ((low, high),) if high - low > 180.0 else ((0.0, low), (high, 360.0))

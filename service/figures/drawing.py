@@ -12,7 +12,7 @@ from matplotlib.patches import Arc
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
-from ..drawings.parts import Proportions, Sizes, extent, moving, pins_at, proportions, scenery, sizes_of
+from ..drawings.parts import Look, look_of, moving, pins_at, scenery
 from ..drawings.shapes import Point
 from .numerals import shown
 from .painting import paint, show_rectangle
@@ -24,16 +24,14 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
 
     The dead centres are outlined in grey. Links described by their section have their true width.
     """
-    sizes = sizes_of(linkage)
-    look = proportions(mechanism, sizes)
-    left, low, right, high = extent(sizes, look)
-    size = max(right - left, high - low)
+    look = look_of(mechanism, linkage)
+    (left, low, right, high), size = look.extent, look.size
     pin, slider = pins_at(linkage, least_transmission_crank_angle(linkage))
-    paint(axes, [*scenery(linkage, sizes, look, below=pin[1] > 0.0), *moving(pin, slider, look)])
-    _rotation(axes, sizes.crank * linkage.sign, mechanism.speed * linkage.sign)
+    paint(axes, [*scenery(linkage, look, below=pin[1] > 0.0), *moving(pin, slider, look)])
+    _rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
-    _stroke(axes, sizes, look, size, system)
-    _offset(axes, left, sizes.offset, size, system)
+    _stroke(axes, look, size, system)
+    _offset(axes, left, look.offset, size, system)
     _scale(axes, left, low - 0.13 * size, size, system)
     show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
@@ -88,9 +86,9 @@ def _tell(axes: Axes, text: str, at: Point, away: Point, colour: str, **style: A
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
 
-def _stroke(axes: Axes, sizes: Sizes, look: Proportions, size: float, system: System) -> None:
+def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide that is away from the crank pivot."""
-    (inner, e), (outer, _) = sizes.inner, sizes.outer
+    (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
     y = e + side * (0.9 * look.block + 0.035 * size)
     for x in (inner, outer):

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, shown_in, unit_text
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Objective
-from .numerals import unit_text, with_unit
+from .numerals import with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
 

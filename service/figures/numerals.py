@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ...objectives.kinds import unit_text
+
 
 def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
     """Return a number for people: that many significant digits, no exponent where avoidable, a real minus sign.
@@ -21,11 +23,6 @@ def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
     """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
     return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
-
-
-def unit_text(symbol: str) -> str:
-    """Return a unit as printed: m/s^2 with a raised 2."""
-    return symbol.replace("^2", "²").replace("^3", "³")
 
 
 def with_unit(title: str, symbol: str) -> str:

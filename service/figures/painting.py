@@ -7,16 +7,19 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Circle as Disc
-from matplotlib.patches import Polygon
 
+from ...model.extras import NamingExtra
 from ..drawings import layers as on
 from ..drawings.shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
 from .style import LINK, new_figure, place
+
+with NamingExtra("figures need"):
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Circle as Disc
+    from matplotlib.patches import Polygon
 
 _DASHES: dict[Dashes, object] = {
     "continuous": "-",

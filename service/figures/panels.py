@@ -49,7 +49,7 @@ _STYLES: dict[int, dict[str, Any]] = {
     DOTS: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
 }
 _POINTS: dict[str, Any] = {
-    **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4},
+    **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4, "clip_on": False},
     **{"markerfacecolor": "white", "markeredgewidth": 1.4},
 }
 _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
@@ -90,7 +90,7 @@ def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
         axes.axhline(level, color=MUTED, linewidth=1.1, linestyle=(0, (6, 2, 1, 2)), label=name)
     _scale(axes, panel)
     _name(axes, panel)
-    title_panel(axes, panel.title, panel.note)
+    title_panel(axes, panel.title, panel.note, VERMILION if any(line.points for line in panel.lines) else MUTED)
     axes.tick_params(labelbottom=across)
     if across:
         axes.set_xlabel(panel.across, fontsize=TEXT)
@@ -166,7 +166,7 @@ def _scale(axes: Axes, panel: Panel) -> None:
     axes.set_ylim(limits(low, high))
     ends = np.concatenate([line.x for line in panel.lines])
     left, right = float(ends.min()), float(ends.max())
-    if any(line.points for line in panel.lines):
+    if any(line.points for line in panel.lines) and not panel.turns:
         axes.set_xlim(limits(left, right, 0.03))
     elif right > left:
         axes.set_xlim(left, right)

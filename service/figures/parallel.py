@@ -9,14 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .marks import Axis, dimension_axes, marks, objective_axis
 from .numerals import on_scale
-from .style import FRAME, INK, MUTED, SMALL, TEXT, TITLE, colours, limits, new_figure, place, write
+from .style import FRAME, INK, MUTED, SMALL, TEXT, colours, heading, limits, new_figure, place
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them
@@ -71,11 +70,18 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     top = 1.0 + (head + 0.08) / _HEIGHT
     _group(panel, 0, len(dimensions) - 1, top, "dimensions")
     _group(panel, len(dimensions), len(axes) - 1, top, wanted)
-    _legend(figure, handles, [mark.label for mark in marked], columns)
-    height = figure.get_size_inches()[1]
-    write(figure, 0.2, height - 0.3, front.problem.name, fontsize=TITLE, weight="bold")
+    figure.legend(
+        handles,
+        [mark.label for mark in marked],
+        loc="lower center",
+        ncols=columns,
+        fontsize=SMALL,
+        frameon=False,
+        handlelength=4.0,
+        columnspacing=2.0,
+    )
     text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}; lines coloured by "
-    write(figure, 0.2, height - 0.48, text + objectives[0].title.split(",")[0], color=MUTED)
+    heading(figure, front.problem.name, text + objectives[0].title.split(",")[0], left=0.2)
     return figure
 
 
@@ -127,16 +133,3 @@ def _group(panel: Axes, first: int, last: int, at: float, title: str) -> None:
     panel.plot(ends, [at, at], color=FRAME, linewidth=0.8, clip_on=False)
     middle = 0.5 * (first + last)
     panel.text(middle, at + 0.012, title, ha="center", va="bottom", fontsize=SMALL, color=MUTED)
-
-
-def _legend(figure: Figure, handles: list[Line2D], labels: list[str], columns: int) -> None:
-    figure.legend(
-        handles,
-        labels,
-        loc="lower center",
-        ncols=columns,
-        fontsize=SMALL,
-        frameon=False,
-        handlelength=4.0,
-        columnspacing=2.0,
-    )

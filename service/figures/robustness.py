@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...objectives.kinds import unit_text
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ...optimise.questions.price_of_robustness import robust_cost
 from ..runs.result import wanted_of
 from .comparison import Drawn, comparison_matrix
-from .numerals import unit_text
 
 
 def robustness_figure(front: ParetoFront) -> Figure | None:

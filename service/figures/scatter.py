@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
@@ -13,18 +15,15 @@ from ...optimise.front.front import ParetoFront
 from .marks import Axis, Mark, dimension_axes, marks, objective_axis
 from .style import (
     INK,
-    MUTED,
     SMALL,
     TEXT,
-    TITLE,
     colours,
     dress,
+    heading,
     limits,
     new_figure,
     place,
-    write,
 )
-from .triangle import triangle
 
 MOST = 6
 """Objectives drawn at most: beyond, the panels are too small to read."""
@@ -55,6 +54,25 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     _legend(figure, marked, x, y - 0.75)
     _heading(figure, front, len(front.objectives))
     return figure
+
+
+def triangle(
+    figure: Figure, labels: Sequence[str], *, left: float, bottom: float, side: float, gap: float
+) -> Iterator[tuple[Axes, int, int]]:
+    """Yield empty panels with what goes across and what goes up, places in labels; label the outer ones once drawn.
+
+    left, bottom: of the lowest row's first panel. side, gap: of and between panels. All in inches.
+    """
+    count = len(labels) - 1
+    for row in range(count):
+        for column in range(row + 1):
+            panel = place(figure, left + column * (side + gap), bottom + (count - 1 - row) * (side + gap), side, side)
+            yield panel, column, row + 1
+            panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
+            if column == 0:
+                panel.set_ylabel(labels[row + 1], fontsize=SMALL)
+            if row == count - 1:
+                panel.set_xlabel(labels[column], fontsize=SMALL)
 
 
 def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
@@ -123,12 +141,10 @@ def _legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
 
 
 def _heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
-    height = figure.get_size_inches()[1]
-    write(figure, 0.2, height - 0.3, front.problem.name, fontsize=TITLE, weight="bold")
     text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}"
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"
-    write(figure, 0.2, height - 0.48, text, color=MUTED)
+    heading(figure, front.problem.name, text, left=0.2)
 
 
 def _spread(values: np.ndarray) -> float:

@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, shown_in, unit_text
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import DIMENSIONS, split_unit
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
-from .numerals import shown, unit_text
-from .style import INK, MUTED, SMALL, TEXT, TITLE, new_figure, place, save, write
+from .numerals import shown
+from .style import INK, MUTED, SMALL, TEXT, heading, new_figure, place, save, write
 
 _WIDTH, _HEIGHT = 12.4, 7.4  # inches
 _LEFT, _SPLIT, _RIGHT, _TOP, _BOTTOM = 0.25, 6.55, 0.3, 0.75, 0.6
@@ -47,9 +47,7 @@ def design_sheet(
     known. system: of the units that all is shown in.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
-    title = textwrap.shorten(title, 120, placeholder=" ...")
-    write(figure, _LEFT, _HEIGHT - 0.33, title, fontsize=TITLE, weight="bold")
-    write(figure, _LEFT, _HEIGHT - 0.53, subtitle, color=MUTED)
+    heading(figure, textwrap.shorten(title, 120, placeholder=" ..."), subtitle)
 
     picture = place(figure, _LEFT, _TABLE + 0.35, _SPLIT - _LEFT - 0.6, _HEIGHT - _TABLE - 1.05)
     draw_mechanism(picture, mechanism, linkage, system)

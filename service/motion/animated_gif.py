@@ -6,13 +6,16 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..drawings.parts import extent, moving, pins_at, proportions, scenery, sizes_of
+import numpy as np
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ..drawings.parts import look_of, moving, pins_at, scenery
+from ..figures.painting import paint, show_rectangle
+from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
-
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
 
 FRAMES, MILLISECONDS = 60, 60
 """Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
@@ -34,16 +37,11 @@ def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, design: s
 
 
 def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]:
-    import numpy as np
     from PIL import Image
 
-    from ..figures.painting import paint, show_rectangle
-    from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
-
-    sizes = sizes_of(linkage)
-    look = proportions(mechanism, sizes)
-    left, low, right, high = extent(sizes, look)
-    margin = 0.03 * max(right - left, high - low)
+    look = look_of(mechanism, linkage)
+    left, low, right, high = look.extent
+    margin = 0.03 * look.size
     wide, tall = right - left + 2.0 * margin, high - low + 2.0 * margin
     height = min(_TALLEST, _WIDTH * tall / wide)
     figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
@@ -52,7 +50,7 @@ def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]
     show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     write(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
     write(figure, 0.15, 0.12, "dead centres dashed", fontsize=SMALL, color=MUTED)
-    paint(axes, scenery(linkage, sizes, look, below=True))
+    paint(axes, scenery(linkage, look, below=True))
     reading = figure.text(1.0 - 0.15 / _WIDTH, 0.12 / (height + _HEAD + _FOOT), "", fontsize=TEXT, ha="right")
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
     canvas = figure.canvas
@@ -82,9 +80,9 @@ def _palette(picture: Picture) -> Picture:
     from PIL import Image
 
     colours = picture.quantize(_COLOURS).getpalette() or []
-    for place in range(0, len(colours), 3):
-        if min(colours[place : place + 3]) > _WHITE:
-            colours[place : place + 3] = [255, 255, 255]
+    for first in range(0, len(colours), 3):
+        if min(colours[first : first + 3]) > _WHITE:
+            colours[first : first + 3] = [255, 255, 255]
     found = Image.new("P", (1, 1))
     found.putpalette(colours)
     return found

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from html import escape
 
+from ...objectives.kinds import unit_text
 from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn
-from ..figures.numerals import shown, unit_text
+from ..figures.numerals import shown
 
 _WIDTH, _HEIGHT = 360.0, 64.0  # one unit a degree
 

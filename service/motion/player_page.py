@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import unit_text
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.parts import bar, block, extent, proportions, scenery, sizes_of
+from ..drawings.parts import bar, block, in_words, look_of, scenery
 from ..drawings.shapes import Circle, Layer, Shape
 from ..drawings.svg import elements, group
-from ..figures.numerals import unit_text
 from .curve_strip import curve_strip
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
 
 ANGLES = 360
 _PLAYER = Path(__file__).parent / "player"
@@ -69,24 +69,13 @@ def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, design: st
 
 
 def _summary(mechanism: Mechanism, linkage: Linkage) -> str:
-    lengths = ", ".join(
-        f"{name} {1e3 * float(value):.6g} mm"
-        for name, value in (
-            ("crank", linkage.crank),
-            ("rod", linkage.rod),
-            ("offset", linkage.offset),
-            ("stroke", linkage.stroke),
-        )
-    )
     rpm = mechanism.speed * 30.0 / math.pi
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
-    return f"{lengths}; {linkage.branch} branch; {turning}"
+    return f"{in_words(linkage, 6)}; {turning}"
 
 
 def _data(mechanism: Mechanism, linkage: Linkage, shown: list[CurveColumn]) -> str:
     """Return the data of the script as JSON that may stand in HTML."""
-    import numpy as np
-
     turn = linkage.at(np.arange(ANGLES) * (2.0 * math.pi / ANGLES))
     rod = np.degrees(np.unwrap(turn.rod_angle))
     record: dict[str, Any] = {
@@ -105,18 +94,16 @@ def _data(mechanism: Mechanism, linkage: Linkage, shown: list[CurveColumn]) -> s
 
 
 def _drawing(mechanism: Mechanism, linkage: Linkage, title: str) -> str:
-    sizes = sizes_of(linkage)
-    look = proportions(mechanism, sizes)
-    left, low, right, high = extent(sizes, look)
-    size = max(right - left, high - low)
+    look = look_of(mechanism, linkage)
+    (left, low, right, high), size = look.extent, look.size
     margin = 0.04 * size
     frame = f"{left - margin:.9g} {-high - margin:.9g} {right - left + 2 * margin:.9g} {high - low + 2 * margin:.9g}"
-    still = scenery(linkage, sizes, look, below=True)
+    still = scenery(linkage, look, below=True)
     pin = (0.0, 0.0)
     parts = (
         Moving("slider", on.SLIDER, (block(on.SLIDER, pin, look.block),)),
-        Moving("rod", on.ROD, (bar(on.ROD, pin, (sizes.rod, 0.0), look.rod),)),
-        Moving("crank", on.CRANK, (bar(on.CRANK, pin, (sizes.crank, 0.0), look.crank),)),
+        Moving("rod", on.ROD, (bar(on.ROD, pin, (look.rod, 0.0), look.rod_width),)),
+        Moving("crank", on.CRANK, (bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width),)),
         Moving("pivot", on.PINS, (Circle(on.PINS, pin, look.pin),)),
         Moving("crank-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),
         Moving("slider-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),

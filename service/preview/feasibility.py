@@ -10,19 +10,21 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.machine.mechanism import Mechanism
+from ...objectives.registry import QUANTITIES
+from ...optimise.problem.problem import Constraint, Objective, Problem
+from ...optimise.search.elimination import UNKNOWNS, Sheet, sheets
+from ...optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of
+from ...optimise.search.polish import polish
+from ...optimise.search.sampling import first_samples, generator
 from .partial_job import is_closed
 from .time_limit import within
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ...optimise.problem.problem import Constraint, Problem
-    from ...optimise.search.elimination import Sheet
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 Ends = tuple[float, float]
 
@@ -67,10 +69,6 @@ class Possible:
 
 def possible(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
-    import numpy as np
-
-    from ...optimise.search.evaluation import FEASIBLE
-
     free = replace(problem, constraints=())
     box = _designs(free, _SAMPLES)
     turning = _turns(box)
@@ -100,9 +98,6 @@ def possible(problem: Problem) -> Possible:
 
 def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with the requirements on the dimensions alone, and the names of the others."""
-    from ...model.machine.mechanism import Mechanism
-    from ...optimise.search.evaluation import constraints_of
-
     machine = Mechanism(speed=problem.mechanism.speed, branch=problem.mechanism.branch)
     closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
     costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
@@ -111,11 +106,6 @@ def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
 
 def _designs(problem: Problem, count: int) -> Array:
     """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
-    import numpy as np
-
-    from ...optimise.search.elimination import sheets
-    from ...optimise.search.sampling import first_samples
-
     parts = []
     for index, sheet in enumerate(sheets(problem)):
         parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, :3])
@@ -123,8 +113,6 @@ def _designs(problem: Problem, count: int) -> Array:
 
 
 def _turns(designs: Array) -> NDArray[np.bool_]:
-    import numpy as np
-
     crank, rod, offset = designs.T
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
@@ -132,12 +120,6 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
 
 def _screened(problem: Problem) -> tuple[Array, Array]:
     """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
-    import numpy as np
-
-    from ...optimise.search.elimination import sheets
-    from ...optimise.search.evaluation import Evaluator
-    from ...optimise.search.sampling import first_samples
-
     end = time.monotonic() + _MOMENT
     designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
     for index, sheet in enumerate(sheets(problem)):
@@ -154,10 +136,6 @@ def _screened(problem: Problem) -> tuple[Array, Array]:
 
 def _reach(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
-    from ...optimise.problem.problem import Constraint
-    from ...optimise.search.elimination import sheets
-    from ...optimise.search.evaluation import constraints_of
-
     others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
     if name == "transmission_angle":
         others = (*others, Constraint(quantity=name, lower=_FLATTEST))
@@ -169,10 +147,6 @@ def _reach(problem: Problem, name: str) -> Ends | None:
 
 def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
     """Return the least and the greatest value on a sheet, sampled, then nearer and nearer around the best."""
-    import numpy as np
-
-    from ...optimise.search.sampling import first_samples, generator
-
     points = np.concatenate([first_samples(_SAMPLES, len(sheet.free), 1, index), *_on_edges(problem, sheet)])
     values = _values(problem, name, sheet.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
@@ -201,12 +175,6 @@ def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Arr
 
     Its own requirement apart, all others of the problem hold.
     """
-    import numpy as np
-
-    from ...optimise.problem.problem import Objective
-    from ...optimise.search.evaluation import FEASIBLE, Evaluator
-    from ...optimise.search.polish import polish
-
     wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(wanted,)), sheet)
     start = start[evaluator.valid(start)]
@@ -219,11 +187,6 @@ def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Arr
 
 def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
     """Yield points of a sheet (n, k) on the edge of a requirement. Extremes lie there, and bands are thin."""
-    import numpy as np
-
-    from ...optimise.search.elimination import UNKNOWNS, sheets
-    from ...optimise.search.sampling import first_samples
-
     for place, constraint in enumerate(problem.constraints):
         for end in (constraint.lower, constraint.upper):
             if end is None or constraint.equality or not sheet.free:
@@ -241,10 +204,6 @@ def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
 
 def _values(problem: Problem, name: str, designs: Array) -> Array:
     """Return a closed form of designs (n, 3); NaN where one does not turn or breaks a dimensional requirement."""
-    import numpy as np
-
-    from ...objectives.registry import QUANTITIES
-
     values = np.full(len(designs), np.nan)
     rows = np.flatnonzero(_turns(designs) & _inside(problem, designs))
     for constraint in problem.constraints:
@@ -256,8 +215,6 @@ def _values(problem: Problem, name: str, designs: Array) -> Array:
 
 def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
     """Whether dimensions that were computed from equalities lie in their ranges."""
-    import numpy as np
-
     good = np.ones(len(designs), dtype=bool)
     for column, name in enumerate(("crank", "rod", "offset")):
         ends = getattr(problem, name)
@@ -268,8 +225,6 @@ def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
 
 
 def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
-    import numpy as np
-
     good = np.isfinite(values)
     if constraint.lower is not None:
         good &= values >= constraint.lower - _CLOSE * abs(constraint.lower)
@@ -280,8 +235,6 @@ def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
 
 def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
     """Return the requirement on the dimensions, equalities aside, that the fewest designs meet, and their share."""
-    from ...objectives.registry import QUANTITIES
-
     shares = {
         constraint.quantity: float(
             _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
@@ -294,8 +247,6 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
 
 def _middle(designs: Array) -> tuple[float, float, float]:
     """Return the design nearest to the middle of some, in each dimension on its own scale."""
-    import numpy as np
-
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size
     row = int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pydantic import ValidationError
 
 from ...model.errors import InputError
-
-if TYPE_CHECKING:
-    from ...model.machine.mechanism import Mechanism
-    from ...optimise.problem.problem import Constraint, Problem, Range
+from ...model.machine.mechanism import Mechanism
+from ...objectives.closed_form import ClosedFormQuantity
+from ...objectives.kinds import ANGULAR_SPEED
+from ...objectives.registry import QUANTITIES
+from ...optimise.job.quantities import ConstraintsPart, constraints_of
+from ...optimise.job.units import to_si
+from ...optimise.job.values import Choices, RangeOf
+from ...optimise.problem.causes import undefined_because
+from ...optimise.problem.problem import Constraint, Objective, Problem, Range
+from ...optimise.search.elimination import require_slow_side
 
 _MOST_POINTS = 100
 """Points of tabulated loads; each is a breakpoint of every curve, and costs its share of every sampled design."""
@@ -22,10 +30,6 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
     the machine are left out without it, those that only a search can afford always.
     """
-    from ...model.machine.mechanism import Mechanism
-    from ...optimise.problem.causes import undefined_because
-    from ...optimise.problem.problem import Objective, Problem
-
     ranges = _ranges(tables.get("variables"))
     if ranges is None:
         return None
@@ -55,8 +59,6 @@ def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
 
 def _with_slow_stroke(problem: Problem, part: object) -> Problem:
     """Return the problem with the slow stroke that a job asks for, if its ranges have one."""
-    from ...optimise.search.elimination import require_slow_side
-
     asked = part.get("slow_stroke") if isinstance(part, Mapping) else None
     if asked not in ("outward", "inward"):
         return problem
@@ -70,18 +72,11 @@ def _with_slow_stroke(problem: Problem, part: object) -> Problem:
 
 def is_closed(name: str) -> bool:
     """Whether a quantity follows from the three dimensions alone."""
-    from ...objectives.closed_form import ClosedFormQuantity
-    from ...objectives.registry import QUANTITIES
-
     return isinstance(QUANTITIES.get(name), ClosedFormQuantity)
 
 
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
-    from ...model.machine.mechanism import Mechanism
-    from ...objectives.kinds import ANGULAR_SPEED
-    from ...optimise.job.units import to_si
-
     given = part if isinstance(part, Mapping) else {}
     try:
         speed = to_si(given.get("speed"), ANGULAR_SPEED) or 1.0
@@ -95,9 +90,6 @@ def _points(machine: Mechanism) -> int:
 
 
 def _ranges(part: object) -> dict[str, Range] | None:
-    from ...optimise.job.values import Choices, RangeOf
-    from ...optimise.problem.problem import Range
-
     if not isinstance(part, Mapping):
         return None
     found = {}
@@ -113,11 +105,6 @@ def _ranges(part: object) -> dict[str, Range] | None:
 
 def _constraints(part: object, *, with_machine: bool) -> Iterator[Constraint]:
     """Yield the requirements that can be read and checked within a moment."""
-    from pydantic import ValidationError
-
-    from ...objectives.registry import QUANTITIES
-    from ...optimise.job.quantities import ConstraintsPart, constraints_of
-
     for name, bounds in part.items() if isinstance(part, Mapping) else ():
         if name not in QUANTITIES or not (with_machine or is_closed(name)):
             continue

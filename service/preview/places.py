@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from ...model.errors import InputError
+from ...optimise.job import Job
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
@@ -21,8 +22,6 @@ class Wrong:
 
 def places(error: InputError) -> list[Wrong]:
     """Return the mistakes in the sentences of an error, each with its place in the job."""
-    from ...optimise.job import Job
-
     found = []
     for line in str(error).split("\n  "):
         if _COUNT.fullmatch(line):

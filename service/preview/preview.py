@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.errors import InputError
+from ...optimise.job.box import beyond_both
+from ...optimise.job.file import require_few
+from ...optimise.problem.problem import Problem
 from .feasibility import Possible, possible
 from .partial_job import geometry, left_out
 from .places import Wrong, places
 from .sentences import said
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,6 @@ class Look:
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
     """Return the findings about a job. read: gives its problem, or raises what is wrong with it."""
-    from ...optimise.job.file import require_few
-
     wrong: list[Wrong] = []
     whole = None
     try:
@@ -64,8 +62,6 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
 
 def _beyond(stated: Problem) -> Wrong | None:
     """Return the mistake if no linkage at all has both the time ratio and the transmission angle asked for."""
-    from ...optimise.job.box import beyond_both
-
     sentence = beyond_both(stated)
     return None if sentence is None else Wrong("constraints.time_ratio", sentence)
 

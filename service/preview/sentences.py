@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from ...optimise.feasibility.relaxation import missed, sides
+from ...optimise.front.constant import is_constant
+from ...optimise.problem.problem import Constraint, Problem
 from .feasibility import Ends, Possible
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Constraint, Problem
 
 _REST = "all other requirements on the dimensions"
 
@@ -36,9 +35,6 @@ def said(problem: Problem, found: Possible) -> list[str]:
 
 def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
     """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
-    from ...optimise.feasibility.relaxation import missed, sides
-    from ...optimise.front.constant import is_constant
-
     found = []
     for relation, _, bound in sides(constraint):
         nearest = min(max(bound, ends[0]), ends[1])

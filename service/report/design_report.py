@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
+from ...objectives.proportions import STROKE
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.variation import Variation
 from .design_section import design_section, numbers_section
@@ -43,8 +44,6 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    from ...objectives.proportions import STROKE
-
     columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
     lengths = [f"{column.title} {with_unit(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]

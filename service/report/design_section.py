@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
 
 from ...model.errors import InputError
 from ..designs.columns import Column, find_column
 from ..designs.trade_offs import trade_offs_of
+from ..drawings.linkage_drawing import linkage_drawing
+from ..figures.front import sheet_of, sheet_of_changed
+from ..figures.painting import drawing_figure
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 from .wording import as_stored, rounded, unit_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 
@@ -129,9 +130,6 @@ def _optimality(subject: Subject) -> list[Block]:
 
 
 def _drawing(subject: Subject) -> Figure:
-    from ..drawings.linkage_drawing import linkage_drawing
-    from ..figures.painting import drawing_figure
-
     design = subject.design
     return drawing_figure(
         linkage_drawing(design.mechanism, design.linkage, name=subject.result.name, design=subject.label)
@@ -139,8 +137,6 @@ def _drawing(subject: Subject) -> Figure:
 
 
 def _sheet(subject: Subject) -> Figure:
-    from ..figures.front import sheet_of, sheet_of_changed
-
     if subject.changed is None:
         return sheet_of(subject.front, subject.number - 1, "the chosen design", subject.system)
     return sheet_of_changed(subject.front, subject.design, subject.changed.row, subject.label, subject.system)

@@ -5,8 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
+
+from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
+from ..topics.sensitivity.figure import tornado_figure, tornado_rows
 from ..topics.tolerances.analysis import numbers
+from ..topics.tolerances.figure import error_bands, tolerances_figure
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 from .wording import rounded, with_unit
@@ -14,19 +19,12 @@ from .wording import rounded, with_unit
 
 def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
-    from ..topics.sensitivity.figure import tornado_figure, tornado_rows
-
     rows = tornado_rows(subject.design.mechanism, subject.design.linkage)
     return Section("Sensitivity", (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows)),))
 
 
 def tolerance_section(subject: Subject) -> Section | None:
     """Return the section on the tolerances' effect on the slider position; None for a job without tolerances."""
-    import numpy as np
-
-    from ...model.tolerance.sources import limits
-    from ..topics.tolerances.figure import error_bands, tolerances_figure
-
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     if not np.any(limits(mechanism, linkage)):
         return None

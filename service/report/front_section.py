@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 
 from ..designs.columns import DIMENSIONS, find_column
+from ..figures.parallel import parallel_coordinates
+from ..figures.scatter import scatter_matrix
 from ..runs.result import Wanted
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
@@ -16,9 +18,6 @@ _MANY = 400
 
 def front_section(subject: Subject) -> Section:
     """Return the ranges of the objectives, the marked designs, and the figures of the front."""
-    from ..figures.parallel import parallel_coordinates
-    from ..figures.scatter import scatter_matrix
-
     result = subject.result
     blocks: list[Block] = [_ranges(subject), _marked(subject)]
     raster = len(result.designs) > _MANY

@@ -6,6 +6,7 @@ import base64
 import re
 from html import escape
 
+from ..figures.style import image
 from .document import Block, Facts, Paragraph, Picture, Report, Section, Table
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
@@ -125,8 +126,6 @@ def _table(table: Table) -> list[str]:
 
 
 def _picture(picture: Picture, name: str) -> str:
-    from ..figures.style import image
-
     label = escape(picture.title, quote=True)
     figure = picture.draw()
     if picture.raster:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from typing import Any
 
+import numpy as np
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_pdf import Op, PdfFile, RendererPdf
 from matplotlib.figure import Figure
@@ -44,8 +45,6 @@ def _write(file: Any, page: Page) -> None:
 
 def _photograph(figure: Figure, scale: float) -> Figure:
     """Return a figure that shows another one as points: thousands of marks as lines would take half a minute."""
-    import numpy as np
-
     width, height = figure.get_size_inches()
     figure.set_dpi(round(_SHARP * scale))
     canvas: Any = figure.canvas

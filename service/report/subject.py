@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...objectives.kinds import System
+from ...optimise.front.front import ParetoFront
+from ...optimise.problem.problem import Problem
 from ..designs.shown_units import result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.variation import Variation, with_lengths
 from ..runs.result import Result, Row
-
-if TYPE_CHECKING:
-    from ...optimise.front.front import ParetoFront
-    from ...optimise.problem.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -75,8 +73,7 @@ def subject_of(
     design = stored_design(problem, result, number)
     if changed is not None:
         linkage = changed.linkage
-        lengths = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
-        design = with_lengths(design, lengths)
+        design = with_lengths(design, (float(linkage.crank), float(linkage.rod), float(linkage.offset)))
     return Subject(
         result=result_in(result, system),
         number=number,

@@ -5,6 +5,9 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.font_manager import FontProperties
+
 
 def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
     """Return a text in lines of at most `width` inches at `size` points; a word too long is broken."""
@@ -51,8 +54,5 @@ def _letter(letter: str, bold: bool) -> float:
 @cache
 def _measure() -> tuple[Any, Any, Any]:
     """Return a renderer that measures text, and fonts of 100 points, normal and bold."""
-    from matplotlib.backends.backend_agg import RendererAgg
-    from matplotlib.font_manager import FontProperties
-
     renderer: Any = RendererAgg(10, 10, 72.0)  # type: ignore[no-untyped-call]
     return renderer, FontProperties(size=100.0), FontProperties(size=100.0, weight="bold")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..figures.numerals import shown, unit_text
+from ...objectives.kinds import unit_text
+from ..figures.numerals import shown
 from ..runs.result import Cell
 
 __all__ = ["as_stored", "rounded", "unit_text", "with_unit"]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.errors import AssemblyError
 from ....model.linkage.linkage import Linkage
@@ -17,9 +18,6 @@ from ....optimise.sizing.tolerance_allocation import Allocation
 from ...text.tables import print_table
 from ..peaks import peak
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 
 def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> dict[str, Any]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.classical.comparison import Errors, compare, errors_over_offset, relative_error
 from ....model.classical.lumped import rotating_and_reciprocating
@@ -15,9 +16,6 @@ from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn
 from ...text.tables import print_table
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _TOLD, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
@@ -16,9 +17,6 @@ from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...text import lines as text
 from ..peaks import peak, row_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
 

@@ -7,6 +7,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from rich.console import Console
+
 from ....model.clearance.run import ClearanceProgress, ClearanceRun, simulate
 from ....model.clearance.statistics import summarise
 from ....model.errors import InputError
@@ -17,7 +19,6 @@ from ..tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from rich.console import Console
 
 CYCLES, DISCARD = 12, 4
 

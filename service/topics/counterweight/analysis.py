@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....optimise.sizing.counterweight import Balance, Shaking
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...text import lines as text
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _SAMPLES = 1441
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -16,9 +17,6 @@ from ...figures.numerals import shown
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
 from ..start_up.analysis import RPM, in_order, steady_numbers
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 FLUCTUATION = 0.02
 """Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.efficiency import energies
@@ -20,9 +21,6 @@ from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...text import lines as text
 from ...text.lines import plain
 from ..peaks import peak, row_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _WORDS = {
     "drives": "drives at every crank angle, whatever the load",

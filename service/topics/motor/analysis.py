@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 from scipy.optimize import minimize_scalar
 
 from ....model.cycle.cycle import breakpoints, cycle
@@ -22,9 +23,6 @@ from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...text import lines as text
 from ...text.lines import plain
 from ..peaks import row_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _SAMPLES = 2048
 

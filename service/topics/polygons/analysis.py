@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.classical.polygons import Polygons, polygons
 from ....model.linkage.linkage import Linkage
@@ -15,9 +16,6 @@ from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, lengths
 from ...text.tables import print_table
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 _POLYGONS = (

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rich.console import Console
+
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.registry import QUANTITIES
@@ -16,7 +18,6 @@ from ..tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from rich.console import Console
 
 _SAME = 1e-9  # relative: derivatives that differ by less are equal
 _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")

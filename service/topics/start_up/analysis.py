@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -17,9 +18,6 @@ from ....model.transient.steady import SteadyRunning, steady_running
 from ...figures.numerals import shown
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 LONGEST = 60.0
 """s; a start that takes longer is not followed to its end unless asked for."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.classical.static_forces import static_forces
 from ....model.cycle.cycle import cycle
@@ -20,9 +21,6 @@ from ...figures.sheets import Line, Sheet, lengths, over_turn
 from ...text.tables import print_table
 from ..peaks import peak
 from ..tables import table
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _STEP = 30
 _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is near

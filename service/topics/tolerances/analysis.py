@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from rich.console import Console
 
 from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
@@ -21,7 +22,6 @@ from ..tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from rich.console import Console
 
 SAMPLES = 20_000
 BINS = 40  # of the histogram
