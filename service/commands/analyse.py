@@ -175,12 +175,15 @@ def _draw(
     folder: Path,
     units: System,
 ) -> None:
-    from ..figures.sheet import draw_design
+    from ..figures.sheet import design_sheet
+    from ..figures.style import save
 
     title = "Design" if problem is None else problem.name
     with disk(folder), waiting("drawing the figures"):
-        files = [draw_design(mechanism, linkage, row, folder, title=title, torque=problem is not None, system=units)]
-        files += [topic.draw(folder) for topic in topics]
+        folder.mkdir(parents=True, exist_ok=True)
+        sheet = design_sheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
+        save(sheet, folder / "design.png")
+        files = [folder / "design.png", *(topic.draw(folder) for topic in topics)]
     for file in files:
         say(f"figure: {file}")
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from . import layers as on
 from .dimensions import dimension
 from .parts import Look, in_words, look_of, moving, pins_at, scenery
 from .shapes import Drawing, Label, Line, Point, Shape
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
 
 CRANK_ANGLE = math.radians(60.0)
 """Crank angle at which a linkage is drawn unless asked otherwise, rad."""

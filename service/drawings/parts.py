@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar, Link
+from ...model.machine.mechanism import Mechanism
 from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
 
 _MM = 1e3
 _FEET = 200  # hatching lines of a rail at most

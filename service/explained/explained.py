@@ -55,34 +55,7 @@ def _of(quantity: Quantity) -> Explained:
 
 
 def _dimensions() -> Iterator[Explained]:
-    closed = "2. Closed forms"
-    for name, title, section, sentence, advice, formula in (
-        (
-            "crank",
-            "crank",
-            closed,
-            "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
-            "It sets the stroke, which is twice the crank without offset and a little more with one.",
-            "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
-        ),
-        (
-            "rod",
-            "connecting rod",
-            closed,
-            "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
-            "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
-            "l; the crank turns fully if l > r + |e|",
-        ),
-        (
-            "offset",
-            "offset",
-            "1. Notation and signs",
-            "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-            "direction, on the crossed branch to its right; it makes one stroke slower than the other.",
-            "The more offset, the higher the time ratio, and the smaller the transmission angle.",
-            "e; the slider line is y = e",
-        ),
-    ):
+    for name, (title, section, sentence, advice, formula) in _DIMENSIONS.items():
         yield Explained(
             name=name,
             column=name + LENGTH.metric.suffix,
@@ -97,3 +70,30 @@ def _dimensions() -> Iterator[Explained]:
             source=MECHANICS,
             picture=name,
         )
+
+
+_DIMENSIONS = {
+    "crank": (
+        "crank",
+        "2. Closed forms",
+        "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
+        "It sets the stroke, which is twice the crank without offset and a little more with one.",
+        "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
+    ),
+    "rod": (
+        "connecting rod",
+        "2. Closed forms",
+        "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
+        "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
+        "l; the crank turns fully if l > r + |e|",
+    ),
+    "offset": (
+        "offset",
+        "1. Notation and signs",
+        "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
+        "direction, on the crossed branch to its right; it makes one stroke slower than the other.",
+        "The more offset, the higher the time ratio, and the smaller the transmission angle.",
+        "e; the slider line is y = e",
+    ),
+}
+"""Title, section of the theory, sentence, advice and formula."""

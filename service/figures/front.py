@@ -7,24 +7,22 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from matplotlib.figure import Figure
 
 from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
+from ..designs.stored_designs import StoredDesign
 from .marks import marks
 from .parallel import parallel_coordinates
 from .robustness import robustness_figure
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 from .style import save
-
-if TYPE_CHECKING:
-    from ...model.machine.mechanism import Mechanism
-    from ..designs.stored_designs import StoredDesign
 
 
 @dataclass(frozen=True)
@@ -82,29 +80,20 @@ def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric"
     """Return the sheet of a design of a front. label: what it is among the others. system: of units."""
     mechanism = front.mechanism(row)
     crank, rod, offset = front.dimensions[row, :3]
-    return _sheet(
-        front,
-        mechanism,
-        Linkage(crank, rod, offset, mechanism.branch),
-        {str(key): value for key, value in front.designs.iloc[row].items()},
-        label,
-        f"design {row + 1} of {len(front)}",
-        system,
-    )
+    linkage = Linkage(crank, rod, offset, mechanism.branch)
+    numbers = {str(key): value for key, value in front.designs.iloc[row].items()}
+    return _sheet(front, mechanism, linkage, numbers, (label, f"design {row + 1} of {len(front)}"), system)
 
 
 def sheet_of_changed(
-    front: ParetoFront,
-    design: StoredDesign,
-    numbers: Mapping[str, Any],
-    label: str,
-    system: System = "metric",
+    front: ParetoFront, design: StoredDesign, numbers: Mapping[str, Any], label: str, system: System = "metric"
 ) -> Figure:
     """Return the sheet of a design with other lengths than any of the front.
 
     numbers: its row of a table of designs, metric. system: of the units that the sheet shows.
     """
-    return _sheet(front, design.mechanism, design.linkage, numbers, label, "other lengths than those found", system)
+    words = (label, "other lengths than those found")
+    return _sheet(front, design.mechanism, design.linkage, numbers, words, system)
 
 
 def _sheet(
@@ -112,17 +101,10 @@ def _sheet(
     mechanism: Mechanism,
     linkage: Linkage,
     numbers: Mapping[str, Any],
-    label: str,
-    subtitle: str,
+    words: tuple[str, str],
     system: System,
 ) -> Figure:
+    title, subtitle = f"{front.problem.name}: {words[0]}", words[1]
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
-    return design_sheet(
-        mechanism,
-        linkage,
-        numbers,
-        title=f"{front.problem.name}: {label}",
-        subtitle=subtitle,
-        bold={of.field: of.short_title for of in wanted},
-        system=system,
-    )
+    bold = {of.field: of.short_title for of in wanted}
+    return design_sheet(mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)

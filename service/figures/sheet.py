@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -18,7 +17,7 @@ from ..designs.columns import DIMENSIONS, split_unit
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
 from .numerals import shown
-from .style import INK, MUTED, SMALL, TEXT, heading, new_figure, place, save, write
+from .style import INK, MUTED, SMALL, TEXT, heading, new_figure, place, write
 
 _WIDTH, _HEIGHT = 12.4, 7.4  # inches
 _LEFT, _SPLIT, _RIGHT, _TOP, _BOTTOM = 0.25, 6.55, 0.3, 0.75, 0.6
@@ -66,23 +65,6 @@ def design_sheet(
     feet = [_HEIGHT - _TOP - height - index * (height + _GAP) for index in range(count)]
     draw_curves([place(figure, _SPLIT, foot, width, height) for foot in feet], curves)
     return figure
-
-
-def draw_design(
-    mechanism: Mechanism,
-    linkage: Linkage,
-    numbers: Mapping[str, Any],
-    folder: Path,
-    *,
-    title: str,
-    torque: bool,
-    system: System = "metric",
-) -> Path:
-    """Write the sheet of one design as design.png; return the file. system: of the units that it is in."""
-    folder.mkdir(parents=True, exist_ok=True)
-    figure = design_sheet(mechanism, linkage, numbers, title=title, torque=torque, system=system)
-    save(figure, folder / "design.png")
-    return folder / "design.png"
 
 
 def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -7,8 +7,12 @@ matplotlib are touched, so that drawing never changes what a caller plots himsel
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...model.extras import NamingExtra
 from ...optimise.front.constant import is_constant
@@ -22,6 +26,7 @@ with NamingExtra("figures need"):
     from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+Array = NDArray[np.float64]
 DPI = 130
 TITLE, TEXT, SMALL = 11.0, 8.5, 7.5  # points
 
@@ -37,6 +42,9 @@ BLUE, VERMILION = "#0072b2", "#d55e00"
 
 MARKERS = ("^", "v", "s", "D", "P", "X", "<", ">", "h")
 KNEE_MARKER = "*"
+# Parts of a whole, told apart in greyscale too.
+GREYS = ("#404040", "#a8a8a8", "#6e6e6e", "#d4d4d4", "#8c8c8c", "#c0c0c0", "#565656", "#ebebeb")
+_HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -83,15 +91,21 @@ def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.2
 
 def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> None:
     """Write the title over the left end of a panel, and a note, in a colour, over the right one."""
-    style: dict[str, Any] = {"transform": axes.transAxes, "va": "bottom", "fontsize": SMALL}
-    axes.text(0.0, 1.04, title, ha="left", color=INK, **style)
-    axes.text(1.0, 1.04, note, ha="right", color=colour, **style)
+    axes.set_title(title, loc="left", fontsize=SMALL, color=INK, pad=4)
+    axes.set_title(note, loc="right", fontsize=SMALL, color=colour, pad=4)
 
 
 def over_turn(axes: Axes) -> None:
     """Let axes show a turn of the crank, in deg."""
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
+
+
+def draw_stack(axes: Axes, across: Array, parts: Array, names: Sequence[str]) -> None:
+    """Draw parts (s, m) over what goes across (m,)."""
+    stack = axes.stackplot(across, parts, labels=names, colors=GREYS, edgecolor="white", linewidth=0.4)
+    for part, hatch in zip(stack, _HATCHES, strict=False):
+        part.set_hatch(hatch)
 
 
 def legend_beside(axes: Axes, *, stacked: int = 0) -> None:

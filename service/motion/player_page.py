@@ -15,12 +15,13 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import unit_text
+from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
 from ..drawings.parts import bar, block, in_words, look_of, scenery
 from ..drawings.shapes import Circle, Layer, Shape
 from ..drawings.svg import elements, group
-from .curve_strip import curve_strip
+from ..figures.numerals import shown as number
 
 ANGLES = 360
 _PLAYER = Path(__file__).parent / "player"
@@ -32,6 +33,7 @@ _READOUT = (
     "torque_Nm",
 )
 """Curves that are read out, and their strips, by how their keys begin."""
+_STRIP = (360.0, 64.0)  # width, one unit a degree, and height
 _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.FRAME)
 
 
@@ -62,7 +64,7 @@ def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, design: st
         script=(_PLAYER / "player.js").read_text(encoding="utf-8"),
         data=_data(mechanism, linkage, shown),
         drawing=_drawing(mechanism, linkage, title),
-        strips="\n".join(curve_strip(column, inner, outer) for column in shown),
+        strips="\n".join(_strip(column, inner, outer) for column in shown),
         readout="\n".join(_row(column) for column in shown),
     )
     return page.encode()
@@ -125,3 +127,36 @@ def _row(column: CurveColumn) -> str:
         f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
         f"<span>{escape(unit_text(column.unit))}</span></dd></div>"
     )
+
+
+def _strip(column: CurveColumn, inner: float, outer: float) -> str:
+    """Return a small picture of a curve with dead centres, deg, and a line that the script moves."""
+    known = [value for value in column.values if math.isfinite(value)]
+    low, high = (min(known), max(known)) if known else (0.0, 1.0)
+    span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
+    lines = [
+        f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in (inner, outer)
+    ]
+    if low < 0.0 < high:
+        zero = _height(0.0, low, span)
+        lines.append(f'<line class="zero" x1="0" x2="{_STRIP[0]:g}" y1="{zero:.2f}" y2="{zero:.2f}"/>')
+    path, pen = [], "M"
+    step = _STRIP[0] / len(column.values)
+    for place in range(len(column.values) + 1):
+        value = column.values[place % len(column.values)]
+        if math.isfinite(value):
+            path.append(f"{pen}{place * step:g} {_height(value, low, span):.2f}")
+            pen = "L"
+        else:
+            pen = "M"
+    return (
+        f"<figure><figcaption>{escape(column.title)}, {escape(unit_text(column.unit))} "
+        f"<small>{number(low)} to {number(high)}</small></figcaption>"
+        f'<svg class="strip" viewBox="0 0 {_STRIP[0]:g} {_STRIP[1]:g}" preserveAspectRatio="none" aria-hidden="true">'
+        f'{"".join(lines)}<path d="{"".join(path)}"/>'
+        f'<line class="now" x1="0" x2="0" y1="0" y2="{_STRIP[1]:g}"/></svg></figure>'
+    )
+
+
+def _height(value: float, low: float, span: float) -> float:
+    return 3.0 + (_STRIP[1] - 6.0) * (1.0 - (value - low) / span)

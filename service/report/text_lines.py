@@ -22,9 +22,9 @@ def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list
             lines.append(line)
         line = word
         while _width(line, size, bold) > width and len(line) > 1:
-            fits = next(
-                count for count in range(len(line) - 1, 0, -1) if count == 1 or _fits(line[:count], size, width, bold)
-            )
+            fits = len(line) - 1
+            while fits > 1 and _width(line[:fits], size, bold) > width:
+                fits -= 1
             lines.append(line[:fits])
             line = line[fits:]
     return [*lines, line] if line or not lines else lines
@@ -33,10 +33,6 @@ def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list
 def longest_word(text: str, size: float, *, bold: bool = False) -> float:
     """Return the width of the longest word of a text, inches, in letters of `size` points."""
     return max((_width(word, size, bold) for word in text.split()), default=0.0)
-
-
-def _fits(text: str, size: float, width: float, bold: bool) -> bool:
-    return _width(text, size, bold) <= width
 
 
 def _width(text: str, size: float, bold: bool) -> float:

@@ -21,8 +21,8 @@ class Topic:
 
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
-    the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. prepares:
-    whether `prepare` of that module gives further options for numbers and figure.
+    the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. A function
+    `prepare` of that module, if it has one, gives further options for numbers and figure.
     """
 
     package: str
@@ -31,7 +31,6 @@ class Topic:
     needs_job: bool = True
     tells: tuple[str, ...] = ()
     of_numbers_only: tuple[str, ...] = ()
-    prepares: bool = False
 
     @property
     def name(self) -> str:
@@ -59,7 +58,7 @@ class TopicOfDesign:
 
     def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
         """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
-        if self.topic.prepares:
+        if hasattr(self._analysis, "prepare"):
             self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
         found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
         return found

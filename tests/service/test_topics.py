@@ -15,7 +15,6 @@ def test_every_topic_has_numbers_text_and_figure_in_its_folder() -> None:
     for topic in TOPICS.values():
         analysis = import_module(f"{topic.package}.analysis")
         assert all(callable(getattr(analysis, part)) for part in ("numbers", "show", "figure"))
-        assert topic.prepares == hasattr(analysis, "prepare")
 
 
 def test_topics_are_shown_in_the_order_of_their_places() -> None:

@@ -16,14 +16,15 @@ from ....model.tolerance.sources import SOURCES, counted_angles
 from ....optimise.problem.costs import Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures.numerals import shown
-from ...figures.stack import GREYS, draw_stack
 from ...figures.style import (
     BLUE,
+    GREYS,
     INK,
     SHADE,
     SMALL,
     TEXT,
     VERMILION,
+    draw_stack,
     dress,
     heading,
     legend_beside,

@@ -2,4 +2,4 @@
 
 from ..topic import Topic
 
-TOPIC = Topic(__name__, 110, "impacts in the joint that [clearance] makes loose", prepares=True)
+TOPIC = Topic(__name__, 110, "impacts in the joint that [clearance] makes loose")

@@ -2,4 +2,4 @@
 
 from ..topic import Topic
 
-TOPIC = Topic(__name__, 90, "start from rest under [drive], steady running", prepares=True)
+TOPIC = Topic(__name__, 90, "start from rest under [drive], steady running")

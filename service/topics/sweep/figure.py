@@ -17,7 +17,7 @@ from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
 from ...figures.numerals import with_unit
-from ...figures.style import BLUE, INK, MUTED, SHADE, SMALL, TEXT, colours, dress, heading, limits, new_figure, place
+from ...figures.style import BLUE, MUTED, SHADE, TEXT, colours, dress, heading, limits, new_figure, place, title_panel
 
 Array = NDArray[np.float64]
 MOST = 6
@@ -60,63 +60,56 @@ def sweep_figure(
     figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
     height = figure.get_size_inches()[1]
     names = " and ".join(axes[n].parameter for n in drawn)
+    told = [_told(axis, system) for axis in axes]
     held = [
-        f"{with_unit(*_title(axis, system))} = {table[column_of(axis)].iloc[0] * _factor(axis, system):.6g}"
-        for n, axis in enumerate(axes)
+        f"{name} = {table[column_of(axis)].iloc[0] * factor:.6g}"
+        for n, (axis, (name, factor)) in enumerate(zip(axes, told, strict=True))
         if n not in drawn
     ]
     heading(figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *held]))
     for n, item in enumerate(items):
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
-        grids = [grid * _factor(axis, system) for grid, axis in zip(grids, axes, strict=True)]
+        grids = [grid * factor for grid, (_, factor) in zip(grids, told, strict=True)]
         symbol, factor = shown_in(item.unit.symbol, system)
-        head = with_unit(item.title, symbol)
         values = factor * values.reshape([len(grids[k]) for k in drawn])
         panel = place(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
         dress(panel)
-        panel.set_xlabel(with_unit(*_title(axes[drawn[0]], system)), fontsize=TEXT)
-        if np.isnan(values).all():
+        panel.set_xlabel(told[drawn[0]][0], fontsize=TEXT)
+        missing, note = np.isnan(values), ""
+        if missing.all():
             nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
             panel.text(0.5, 0.5, "no value anywhere", **nowhere)
-            panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
         elif len(drawn) == 1:
-            _line(panel, grids[drawn[0]], values, head)
+            _line(panel, grids[drawn[0]], values)
+            note = "shaded: no value"
         else:
             scale = place(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
-            _contour(panel, scale, grids, values, head)
-            panel.set_ylabel(with_unit(*_title(axes[1], system)), fontsize=TEXT)
+            _contour(panel, scale, grids, values)
+            panel.set_ylabel(told[1][0], fontsize=TEXT)
+            note = "grey: no value"
+        title_panel(panel, with_unit(item.title, symbol), note if missing.any() else "")
     return figure
 
 
-def _title(axis: Axis, system: System) -> tuple[str, str]:
-    return axis.parameter, shown_in(_metric(axis), system)[0]
+def _told(axis: Axis, system: System) -> tuple[str, float]:
+    """Return the title of an axis with its unit, and that unit in the one of its column."""
+    symbol, factor = shown_in("rpm" if axis.parameter == "speed" else "mm", system)
+    return with_unit(axis.parameter, symbol), factor
 
 
-def _factor(axis: Axis, system: System) -> float:
-    return shown_in(_metric(axis), system)[1]
-
-
-def _metric(axis: Axis) -> str:
-    return "rpm" if axis.parameter == "speed" else "mm"
-
-
-def _line(panel: Axes, x: Array, values: Array, head: str) -> None:
+def _line(panel: Axes, x: Array, values: Array) -> None:
     few = {"marker": "o", "markersize": 3.5} if len(x) <= 40 else {}
     panel.plot(x, values, color=BLUE, linewidth=1.5, **few)  # type: ignore[arg-type]
     panel.set_xlim(limits(x.min(), x.max(), 0.02))
     panel.set_ylim(limits(np.nanmin(values), np.nanmax(values)))
-    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
-    missing = [int(n) for n in np.flatnonzero(np.isnan(values))]
-    for start in missing:
+    for start in map(int, np.flatnonzero(np.isnan(values))):
         low = 0.5 * (x[start] + x[max(start - 1, 0)])
         high = 0.5 * (x[start] + x[min(start + 1, len(x) - 1)])
         panel.axvspan(low, high, color=SHADE, linewidth=0, zorder=0)
-    if missing:
-        panel.set_title("shaded: no value", fontsize=SMALL, loc="right", color=MUTED)
 
 
-def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, head: str) -> None:
+def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -> None:
     panel.set_facecolor(SHADE)
     panel.grid(False)
     shown: Any = np.ma.masked_invalid(values.T)
@@ -134,6 +127,3 @@ def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array, head: 
     scale.xaxis.set_visible(False)
     scale.yaxis.tick_right()
     scale.spines[:].set_visible(False)
-    panel.set_title(head, fontsize=SMALL, loc="left", color=INK)
-    if np.isnan(values).any():
-        panel.set_title("grey: no value", fontsize=SMALL, loc="right", color=MUTED)

@@ -17,13 +17,13 @@ from ....model.tolerance.exact import extremes
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, variances
 from ....model.tolerance.sources import SOURCES, limits
-from ...figures.stack import draw_stack
 from ...figures.style import (
     BLUE,
     FRAME,
     INK,
     TEXT,
     VERMILION,
+    draw_stack,
     dress,
     heading,
     legend_beside,
