@@ -112,6 +112,8 @@ def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) 
     found = quantity.pieces(mechanism, at[None])
     values, slopes = found.values[0], found.gradients[0]
     best = values.min() if found.least else values.max()
+    if np.isnan(best):  # not determined: without masses and loads there is no force to compare
+        return np.full(3, np.nan)
     with np.errstate(invalid="ignore"):
         equal = np.abs(values - best) <= _TIE * abs(best)
     equal |= values == best

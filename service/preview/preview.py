@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ...model.errors import InputError
+from ...optimise.job import Job
 from ...optimise.job.box import beyond_both
 from ...optimise.job.file import require_few
 from ...optimise.problem.problem import Problem
 from .feasibility import Possible, possible
 from .partial_job import geometry, left_out
-from .places import Wrong, places
 from .sentences import said
+
+_COUNT = re.compile(r"\d+ problems|very many problems")
+_PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """Something that is wrong. path: the key, as "mechanism.slider.mass" or "load #2.force"; "" for the whole job."""
+
+    path: str
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -39,7 +51,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     try:
         require_few(tables)
     except InputError as error:
-        return Look(places(error), None, None, None, [], [])
+        return Look(_places(error), None, None, None, [], [])
     try:
         stated = geometry(tables, None)
     except InputError:
@@ -51,7 +63,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
         if beyond is None and stated is not None:
             stated = geometry(tables, whole)
     except InputError as error:
-        wrong = places(error)
+        wrong = _places(error)
     if beyond is not None:
         wrong, whole = [beyond, *wrong], None
     if stated is None:
@@ -69,3 +81,15 @@ def _beyond(stated: Problem) -> Wrong | None:
 def _without_time_ratio(tables: Mapping[str, Any]) -> dict[str, Any]:
     constraints = {name: item for name, item in tables["constraints"].items() if name != "time_ratio"}
     return {**tables, "constraints": constraints}
+
+
+def _places(error: InputError) -> list[Wrong]:
+    """Return the mistakes in the sentences of an error, each with its place in the job."""
+    found = []
+    for line in str(error).split("\n  "):
+        if _COUNT.fullmatch(line):
+            continue
+        match = _PLACE.fullmatch(line)
+        known = match is not None and re.split(r"[. ]", match[1])[0] in Job.model_fields
+        found.append(Wrong(match[1], match[2]) if match and known else Wrong("", line))
+    return found
