@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -137,18 +137,11 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
 
 def within(asked: AskedLimits, most: Limits) -> Limits:
     """Return limits of a job: those asked for, else the highest of the service. Raises `InputError` for higher ones."""
-    for name, wanted, highest in (
-        ("seconds", asked.seconds, most.seconds),
-        ("evaluations", asked.evaluations, most.evaluations),
-        ("memory_bytes", asked.memory_bytes, most.memory),
-    ):
+    limits = Limits(seconds=asked.seconds, evaluations=asked.evaluations, memory=asked.memory_bytes)
+    for name, wanted, highest in zip(AskedLimits.model_fields, astuple(limits), astuple(most), strict=True):
         if wanted is not None and highest is not None and wanted > highest:
             raise InputError(f"limits.{name}: is at most {highest} here; got {wanted}; ask for less, or leave it out")
-    return Limits(
-        seconds=asked.seconds or most.seconds,
-        evaluations=asked.evaluations or most.evaluations,
-        memory=asked.memory_bytes or most.memory,
-    )
+    return limits.within(most)
 
 
 def require_no_file(tables: Mapping[str, Any]) -> None:

@@ -43,7 +43,7 @@ class Requirement:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedRule:
-    """A rule of a job at one design, in the unit of its quantity.
+    """A rule of a job at one design, in the unit that is shown for its quantity.
 
     lower, upper: None leaves a side open. value: None where the design does not have the quantity. missed_by: zero
     where the rule is met, None without a value.

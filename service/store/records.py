@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any, Literal
 
 from sqlalchemy import Row as Found
@@ -43,6 +43,12 @@ class Limits:
                 raise InputError(
                     f"a limit on {name} must be a positive number of {unit}; got {value}; leave it out for no limit"
                 )
+
+    def within(self, ceiling: Limits) -> Limits:
+        """Return the stricter of each pair of limits."""
+        pairs = zip(astuple(self), astuple(ceiling), strict=True)
+        seconds, evaluations, memory = (min((one for one in pair if one is not None), default=None) for pair in pairs)
+        return Limits(seconds=seconds, evaluations=evaluations, memory=memory)
 
 
 NO_LIMITS = Limits()

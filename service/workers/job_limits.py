@@ -1,19 +1,12 @@
-"""Limits on a job being solved, the stricter of its own and its worker's, and the budget that remains."""
+"""Budget of a job being solved, and what remains of it."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 from ..runs.result import Result
 from ..store import Limits
-
-
-def within(asked: Limits, ceiling: Limits) -> Limits:
-    """Return the stricter of each pair of limits."""
-    pairs = zip(astuple(asked), astuple(ceiling), strict=True)
-    seconds, evaluations, memory = (min((limit for limit in pair if limit is not None), default=None) for pair in pairs)
-    return Limits(seconds=seconds, evaluations=evaluations, memory=memory)
 
 
 class Budget:

@@ -22,7 +22,7 @@ from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Heartbeat, Stop
-from .job_limits import Budget, within
+from .job_limits import Budget
 from .logs import about
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def work(
 
 def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
     """Whether a job is handed back, for a fresh process: earlier jobs have left too much memory in this one."""
-    most = within(claim.job.limits, terms.limits).memory
+    most = claim.job.limits.within(terms.limits).memory
     if terms.grace is None or most is None or memory.left <= TOLERATED * most:
         return False
     with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
@@ -154,7 +154,7 @@ def solve_claimed(
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
     """
-    limits = within(claim.job.limits, terms.limits)
+    limits = claim.job.limits.within(terms.limits)
     budget = Budget(limits)
     with about(job=claim.job.id):
         _log.info("claimed")

@@ -9,16 +9,16 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.service.resources.sizes import size_of, size_text
 from slidercrank.service.store import NO_LIMITS, Limits
-from slidercrank.service.workers.job_limits import Budget, within
+from slidercrank.service.workers.job_limits import Budget
 from tests.service.store.contents import result
 
 
 def test_the_stricter_of_two_limits_holds() -> None:
     asked = Limits(seconds=10.0, evaluations=500, memory=None)
     ceiling = Limits(seconds=20.0, evaluations=100, memory=10**9)
-    assert within(asked, ceiling) == Limits(seconds=10.0, evaluations=100, memory=10**9)
-    assert within(ceiling, asked) == within(asked, ceiling)
-    assert within(NO_LIMITS, NO_LIMITS) == NO_LIMITS
+    assert asked.within(ceiling) == Limits(seconds=10.0, evaluations=100, memory=10**9)
+    assert ceiling.within(asked) == asked.within(ceiling)
+    assert NO_LIMITS.within(NO_LIMITS) == NO_LIMITS
 
 
 def test_a_search_without_limits_is_never_over() -> None:
