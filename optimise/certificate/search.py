@@ -14,7 +14,7 @@ from ..problem.problem import Problem
 from ..search.assemble import span_of
 from ..search.elimination import sheets
 from ..search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
-from ..search.spread import polish
+from ..search.recorded import polish
 from .boxes import Boxes, usable
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, thinned, volume_gap

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..front.stationarity import Array
+from ..search.candidates import Table
 
 Rows = NDArray[np.int64]
 
@@ -30,39 +30,20 @@ class Brood:
         return len(self.u)
 
 
-@dataclass(frozen=True)
-class Generation(Brood):
-    """A brood and what its points turned out to be.
+@dataclass
+class Generation(Table):
+    """The points of a brood and what they turned out to be.
 
-    values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated. violation: (n,), the
-    greatest relative one beyond what is tolerated (see `population.BAND`), infinite where no linkage turns fully.
+    sheet, u: see `Brood`. values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated.
+    violation: (n,), the greatest relative one beyond what is tolerated (see `population.BAND`), infinite where no
+    linkage turns fully. parents: of the brood.
     """
-
-    values: Array
-    violation: Array
-
-
-@dataclass(frozen=True)
-class History:
-    """The generations so far, end to end: the fields of `Generation` over all points. last: rows of the last one."""
 
     sheet: Rows
     u: Array
     values: Array
     violation: Array
-    last: Rows
-
-    @classmethod
-    def of(cls, past: Sequence[Generation]) -> History:
-        """Return one or more generations joined end to end."""
-        count = sum(len(generation) for generation in past)
-        return cls(
-            np.concatenate([generation.sheet for generation in past]),
-            np.concatenate([generation.u for generation in past]),
-            np.concatenate([generation.values for generation in past]),
-            np.concatenate([generation.violation for generation in past]),
-            np.arange(count - len(past[-1]), count),
-        )
+    parents: Rows = field(kw_only=True)
 
 
 def generation_seed(seed: int, generation: int) -> int:

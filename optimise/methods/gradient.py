@@ -29,13 +29,13 @@ def trust_constr(problem: Problem, evaluators: list[Evaluator], run: Run) -> Arc
 
 def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local) -> Archive:
     begun = samples(problem, evaluators)
-    run.archive = begun.archive()
-    archive = Archive.empty(1)
+    run.archive, archive = Archive.empty(1), Archive.empty(1)
+    run.archive.put(begun[begun.met])
     if not len(begun):
         run.tell("sampling", evaluators, archive)
         return archive
     ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
-    rows = begun.best(0, _STARTS[problem.settings.method])
+    rows = begun.leading(0, _STARTS[problem.settings.method])
     run.rounds = 1 + len(rows)
     run.tell("sampling", evaluators, archive)
     for row in rows:

@@ -26,7 +26,7 @@ from ...model.errors import InputError
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, History, Rows, generation_seed
+from .generation import Brood, Generation, Rows, generation_seed
 from .method import Method
 from .population import evolve
 from .registry import budget
@@ -110,11 +110,11 @@ class _Genetic:
         study = optuna.create_study(directions=["minimize"] * self.objectives, sampler=sampler)
         pool = np.zeros(0, np.int64)
         if past:
-            history = History.of(past)
-            pool = np.concatenate([past[-1].parents, history.last])
+            history = past[0].join(*past[1:])
+            pool = np.concatenate([past[-1].parents, np.arange(len(history))[-len(past[-1]) :]])
             # To the sampler all of them are one generation: it selects from both parts alike.
             mark = {sampler._get_generation_key(): 0}
-            study.add_trials(stored(self.space, history, pool, mark))
+            study.add_trials(stored(self.space, history[pool], mark))
         sheet, u = asked(study, self.space, self.size, self.poll)
         return Brood(sheet, u, _survivors(study, sampler, pool))
 

@@ -81,13 +81,8 @@ class _Seen:
                 values, violation = screened(evaluator, u, BAND if evaluator.loose else 0.0)
                 self.known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
                 self._archive(index, u, values, violation)
-        return Generation(
-            brood.sheet,
-            brood.u,
-            brood.parents,
-            np.array([self.known[key][0] for key in keys]),
-            np.array([self.known[key][1] for key in keys]),
-        )
+        values, violation = (np.array([self.known[key][part] for key in keys]) for part in (0, 1))
+        return Generation(brood.sheet, brood.u, values, violation, parents=brood.parents)
 
     def _keys(self, brood: Brood) -> list[tuple[int, bytes]]:
         u = brood.u + 0.0  # no negative zeros

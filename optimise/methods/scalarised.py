@@ -16,6 +16,7 @@ import numpy as np
 from ..front.hypervolume import nondominated, scaling
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .gradient import spent
@@ -23,7 +24,7 @@ from .local import by_slsqp, found_by
 from .method import Method
 from .reference import grid, simplex
 from .scalar import Form, Programme
-from .starts import Samples, samples
+from .starts import samples
 
 _SUM = 1e-4
 """rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
@@ -123,7 +124,7 @@ class _Front:
     problem: Problem
     evaluators: list[Evaluator]
     run: Run
-    begun: Samples
+    begun: Candidates
     archive: Archive
     ideal: Array
     span: Array
@@ -187,17 +188,15 @@ class _Front:
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
         """Return the best point of every sheet that is not plainly worse than that of another."""
-        sheet = np.concatenate([self.archive.sheet, self.begun.sheet])
-        width = self.begun.u.shape[1]
-        points = np.concatenate([self.archive.u[:, :width], self.begun.u])
-        scaled = self.scaled(np.concatenate([self.archive.values, self.begun.values]))
+        known = self.archive.join(self.begun)
+        scaled = self.scaled(known.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         worth = _open(form).value(scaled) + 10.0 * excess
         found: list[tuple[float, int, Array]] = []
-        for index in np.unique(sheet).tolist():
-            own = np.flatnonzero(sheet == index)
+        for index in np.unique(known.sheet).tolist():
+            own = np.flatnonzero(known.sheet == index)
             row = own[np.argmin(worth[own])]
-            found.append((float(worth[row]), index, points[row]))
+            found.append((float(worth[row]), index, known.u[row]))
         least = min(value for value, _, _ in found)
         return [(index, u) for value, index, u in found if value <= least + _WORSE]
 
@@ -227,8 +226,8 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     """Return samples and payoff table; None where nothing was found to begin with."""
     m = len(problem.objectives)
     begun = samples(problem, evaluators)
-    run.archive = begun.archive()
-    front = Archive.empty(m)
+    run.archive, front = Archive.empty(m), Archive.empty(m)
+    run.archive.put(begun[begun.met])
     if not len(begun):
         run.tell("sampling", evaluators, front)
         return None
@@ -238,7 +237,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     run.tell("sampling", evaluators, front)
     for column in range(m):
         best = np.full(m, np.inf)
-        for row in begun.best(column, _STARTS):
+        for row in begun.leading(column, _STARTS):
             values = shared.optimum(Form.single(m, column, rho=_SUM), int(begun.sheet[row]), begun.u[row])
             if values is not None and values[column] < best[column]:
                 best = values

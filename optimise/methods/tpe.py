@@ -16,7 +16,7 @@ import numpy as np
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, History, generation_seed
+from .generation import Brood, Generation, generation_seed
 from .method import Method
 from .population import evolve
 from .registry import budget
@@ -51,8 +51,7 @@ class _Parzen:
         sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
         study = optuna.create_study(directions=["minimize"] * self.objectives, sampler=sampler)
         if past:
-            history = History.of(past)
-            study.add_trials(stored(self.space, history, np.arange(len(history.u)), {}))
+            study.add_trials(stored(self.space, past[0].join(*past[1:]), {}))
         sheet, u = asked(study, self.space, self.size, self.poll)
         return Brood(sheet, u, np.zeros(0, np.int64))
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..search.evaluation import FEASIBLE, Evaluator
-from .generation import History, Rows
+from .generation import Generation, Rows
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
@@ -52,7 +52,7 @@ def _coordinates(evaluators: list[Evaluator]) -> list[str]:
     return [f"u{column:03d}" for column in range(max(evaluator.dimension for evaluator in evaluators))]
 
 
-def stored(space: Space, history: History, rows: Rows, mark: dict[str, Any]) -> list[FrozenTrial]:
+def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:
     """Return evaluated points as completed trials, each with its constraint.
 
     A trial without a constraint would count as feasible, and one whose objectives are NaN or infinite would be taken
@@ -62,17 +62,17 @@ def stored(space: Space, history: History, rows: Rows, mark: dict[str, Any]) -> 
     from optuna.trial import create_trial
 
     names = sorted(name for name in space if name != _SHEET)
-    feasible = history.violation[rows] <= FEASIBLE
+    feasible = points.violation <= FEASIBLE
     absent = np.inf if feasible.any() else 0.0
     trials = []
-    for row, good in zip(rows.tolist(), feasible.tolist(), strict=True):
-        values = history.values[row].tolist() if good else [absent] * history.values.shape[1]
+    for row, good in enumerate(feasible.tolist()):
+        values = points.values[row].tolist() if good else [absent] * points.values.shape[1]
         if good and not np.isfinite(values).all():
             raise ArithmeticError(f"a feasible design has objectives {values}")
-        params: dict[str, Any] = dict(zip(names, history.u[row].tolist(), strict=True))
+        params: dict[str, Any] = dict(zip(names, points.u[row].tolist(), strict=True))
         if _SHEET in space:
-            params[_SHEET] = int(history.sheet[row])
-        violation = 0.0 if good else float(history.violation[row])
+            params[_SHEET] = int(points.sheet[row])
+        violation = 0.0 if good else float(points.violation[row])
         trials.append(
             create_trial(
                 params=params,

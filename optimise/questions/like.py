@@ -21,17 +21,16 @@ from ...model.errors import InputError
 from ..front.front import ParetoFront
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY, Array
-from ..methods.auto.challenge import by_sheet
 from ..methods.registry import require_gradients
 from ..problem.problem import Constraint, Problem, Range, Settings
 from ..search.assemble import empty, only
-from ..search.candidates import Pile
+from ..search.candidates import Finished
 from ..search.elimination import UNKNOWNS, sheets
 from ..search.enumeration import enumerate_settled, searched
 from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.recorded import polish
 from ..search.sampling import generator
 from ..search.search import Archive, Run, explore
-from ..search.spread import polish
 from ..solve import solve
 
 Ends = tuple[float | None, float | None]
@@ -73,16 +72,16 @@ def like(
     run = Run(asked, 1)
     if contradiction:
         return empty(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
-    pile = enumerate_settled(asked, evaluators, run).only_settled(span)
+    finished = enumerate_settled(asked, evaluators, run).only_settled(span)
     free = searched(evaluators)
     archive = explore(asked, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
-    for index, u in by_sheet(evaluators, archive.sheet, archive.u, order):
-        pile.add(index, evaluators[index], polish(evaluators[index], u, span))
-    if not len(pile):
+    for index, u in archive[order].by_sheet(evaluators):
+        finished.add(index, polish(evaluators[index], u, span))
+    if not len(finished):
         return _nearest(solve(asked), values, span)
-    _zoom(pile, free, archive, values, asked.settings.seed)
-    return only(asked, evaluators, pile, run, int(_ranked(pile, archive, values)[0]))
+    _zoom(finished, free, archive, values, asked.settings.seed)
+    return only(asked, evaluators, finished, run, int(_ranked(finished, archive, values)[0]))
 
 
 def like_design(
@@ -175,21 +174,21 @@ def _within(value: object, ends: Ends, factor: float) -> bool:
     )
 
 
-def _zoom(pile: Pile, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
+def _zoom(finished: Finished, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
     """Add polished designs around the nearest ones, closer and closer."""
     random = generator(seed, 2000)
     width = _WIDEST
     for _ in range(_ROUNDS):
-        parents = _ranked(pile, archive, values)[:_PARENTS]
-        before = distance(pile.values[parents[:1]], values, pile.span)[0]
-        for index, u in by_sheet(evaluators, pile.sheet, pile.u, parents):
+        parents = _ranked(finished, archive, values)[:_PARENTS]
+        before = distance(finished.values[parents[:1]], values, finished.span)[0]
+        for index, u in finished[parents].by_sheet(evaluators):
             evaluator = evaluators[index]
             points = np.repeat(u, _CHILDREN, axis=0)
             points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
             points = points[evaluator.valid(points)]
             if len(points):
-                pile.add(index, evaluator, polish(evaluator, points, pile.span))
-        after = distance(pile.values[_ranked(pile, archive, values)[:1]], values, pile.span)[0]
+                finished.add(index, polish(evaluator, points, finished.span))
+        after = distance(finished.values[_ranked(finished, archive, values)[:1]], values, finished.span)[0]
         # What still comes nearer by about a step has a way to go.
         if before - after < 0.5 * width:
             width *= 0.5
@@ -197,17 +196,17 @@ def _zoom(pile: Pile, evaluators: list[Evaluator], archive: Archive, values: Arr
             break
 
 
-def _ranked(pile: Pile, archive: Archive, values: Array) -> NDArray[np.int64]:
+def _ranked(finished: Finished, archive: Archive, values: Array) -> NDArray[np.int64]:
     """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
-    rows = pile.best()
+    rows = finished.best()
     if archive.met.any():  # samples within a band around the constraints prove nothing
-        own, screened = pile.values[rows] / pile.span, archive.values[archive.met] / pile.span
+        own, screened = finished.values[rows] / finished.span, archive.values[archive.met] / finished.span
         beaten = np.array(
             [bool(((screened <= point).all(axis=1) & (screened < point - _BEATEN).any(axis=1)).any()) for point in own]
         )
         rows = rows[~beaten] if not beaten.all() else rows
-    apart = distance(pile.values[rows], values, pile.span)
-    return rows[np.lexsort((apart, pile.residual[rows] > STATIONARY))]
+    apart = distance(finished.values[rows], values, finished.span)
+    return rows[np.lexsort((apart, finished.residual[rows] > STATIONARY))]
 
 
 def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:

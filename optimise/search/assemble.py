@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.kinematics.in_line import without_rounding
 from ..front.constant import is_constant
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.stationarity import STATIONARY, Array, multipliers
 from ..problem.gradients import without_gradient
 from ..problem.problem import Problem, choice_field
-from .candidates import Pile
+from .candidates import Finished
 from .evaluation import Evaluator, constraints_of
 from .fingerprint import versions
 from .search import Run
@@ -28,23 +29,22 @@ _GLIMPSE = 40  # designs of a round that count in the history of a search that w
 
 
 def assemble(
-    problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, rows: NDArray[np.int64] | None = None
+    problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, rows: NDArray[np.int64] | None = None
 ) -> ParetoFront:
-    """Return the front of the best designs of a pile that is not empty.
+    """Return the front of the best of finished designs, at least one.
 
     rows: those to deliver, of a search that was told to end.
     """
     status: Status = "done" if rows is None else "cancelled"
-    rows = _best(problem, pile, run.stage(SELECTING)) if rows is None else rows
-    values = pile.values[rows]
-    rows = rows[np.lexsort(values.T[::-1])]
-    values, dimensions = pile.values[rows], pile.dimensions[rows]
-    span = span_of(problem, values) if len(rows) > 1 else pile.span
-    goals = [pile.goals[row] for row in rows]
-    active = [pile.active[row] for row in rows]
+    best = finished[_best(problem, finished, run.stage(SELECTING)) if rows is None else rows]
+    best = best[np.lexsort(best.values.T[::-1])]
+    values, dimensions = best.values, best.dimensions(evaluators)
+    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+    span = span_of(problem, values) if len(best) > 1 else best.span
+    goals, active = list(best.goals), list(best.active)
     residual = np.array(
         [
-            multipliers(slopes * (pile.span / span)[owner.astype(int)][:, None], edges)[0]
+            multipliers(slopes * (best.span / span)[owner.astype(int)][:, None], edges)[0]
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
@@ -52,12 +52,12 @@ def assemble(
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
-    variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[rows]], dtype=np.int64)
+    variants = np.array([evaluators[index].sheet.variant for index in best.sheet], dtype=np.int64)
     table = table_of(problem, variants, dimensions, run.stage(FINISHING))
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
     evaluations = sum(evaluator.evaluations for evaluator in evaluators)
-    message = f"{len(rows)} design{'s' if len(rows) != 1 else ''}, {evaluations} evaluated"
+    message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluations} evaluated"
     if status == "cancelled":
         message = f"cancelled: {message}, the front may be incomplete"
     ideal = values.min(axis=0)
@@ -68,7 +68,7 @@ def assemble(
         designs=table,
         dimensions=dimensions,
         values=values,
-        goals=tuple((owner, slopes * pile.span[owner.astype(int)][:, None]) for owner, slopes in goals),
+        goals=tuple((owner, slopes * best.span[owner.astype(int)][:, None]) for owner, slopes in goals),
         active=tuple(active),
         hypervolume=hypervolume(values, ideal, span),
         history=run.history(ideal, span, *((_GLIMPSE,) if status == "cancelled" else ())),
@@ -80,12 +80,12 @@ def assemble(
     )
 
 
-def _best(problem: Problem, pile: Pile, stand: Stand) -> NDArray[np.int64]:
-    rows = pile.best(stand)
+def _best(problem: Problem, finished: Finished, stand: Stand) -> NDArray[np.int64]:
+    rows = finished.best(stand)
     if len(problem.objectives) == 1:
         return rows
-    best = tuple(dict.fromkeys(np.argmin(pile.values[rows], axis=0).tolist()))
-    return rows[choose(pile.values[rows], problem.settings.designs, always=best, stand=stand)]
+    best = tuple(dict.fromkeys(np.argmin(finished.values[rows], axis=0).tolist()))
+    return rows[choose(finished.values[rows], problem.settings.designs, always=best, stand=stand)]
 
 
 def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> pd.DataFrame:
@@ -158,9 +158,9 @@ def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Statu
     )
 
 
-def only(problem: Problem, evaluators: list[Evaluator], pile: Pile, run: Run, row: int) -> ParetoFront:
-    """Return a front of one design of the pile; its residual is scaled by the pile's span."""
-    return assemble(problem, evaluators, pile.part(np.array([row])), run)
+def only(problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, row: int) -> ParetoFront:
+    """Return a front of one of finished designs; its residual is scaled by their span."""
+    return assemble(problem, evaluators, finished[np.array([row])], run)
 
 
 def span_of(problem: Problem, values: Array) -> Array:

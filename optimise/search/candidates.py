@@ -1,16 +1,20 @@
-"""Designs that the polish has finished, and which of them are worth delivering."""
+"""Designs with their values, row by row: screened ones, and finished ones that are worth delivering."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.kinematics.in_line import without_rounding
 from ..front.hypervolume import Stand, nondominated, unheard
 from ..front.stationarity import STATIONARY, Array
 from .evaluation import FEASIBLE, Evaluator
-from .polish import Polished
-from .sampling import stacked
+from .sampling import apart
+
+if TYPE_CHECKING:
+    from .polish import Polished
 
 EQUAL = 1e-9
 """Of the objectives' range: a design as good as another one to this everywhere, and better somewhere, displaces it."""
@@ -21,68 +25,127 @@ COVERED = 1e-3
 _ROUNDING = 1e-11  # of an objective's size: differences that its computation may have
 
 
-class Pile:
-    """Polished designs, all feasible, and those of sheets that leave nothing free.
+@dataclass
+class Table:
+    """Arrays of one length: fields of a dataclass. Keyword-only fields are no rows, and stay as they are."""
 
-    span: (m,), what objectives are scaled by. sheet: (n,), index. free: (n,), whether the sheet leaves something free.
-    u: (n, k), unit-box points, padded. dimensions: (n, 3 + v), designs, SI. values: (n, m), SI, minimised. residual:
-    (n,). goals, active: see `polish.Polished`.
-    """
-
-    def __init__(self, span: Array) -> None:
-        """Start without designs."""
-        self.span = span
-        self.sheet: NDArray[np.int64] = np.zeros(0, np.int64)
-        self.free: NDArray[np.bool_] = np.zeros(0, np.bool_)
-        self.u: Array = np.zeros((0, 3))
-        self.dimensions: Array = np.zeros((0, 3))
-        self.values: Array = np.zeros((0, len(span)))
-        self.residual: Array = np.zeros(0)
-        self.goals: list[tuple[Array, Array]] = []
-        self.active: list[Array] = []
+    @classmethod
+    def _columns(cls) -> list[str]:
+        return [item.name for item in fields(cls) if not item.kw_only]
 
     def __len__(self) -> int:
-        return len(self.dimensions)
+        return len(getattr(self, self._columns()[0]))
 
-    def add(self, index: int, evaluator: Evaluator, part: Polished) -> None:
+    def __getitem__(self, rows: NDArray[Any] | slice) -> Self:
+        return replace(self, **{name: getattr(self, name)[rows] for name in self._columns()})
+
+    def join(self, *others: Table) -> Self:
+        """Return these rows and those of others below them, see `stacked`."""
+        parts = (self, *others)
+        return replace(self, **{name: stacked(*(getattr(part, name) for part in parts)) for name in self._columns()})
+
+    def become(self, other: Self) -> None:
+        """Take the place of another table of the same kind."""
+        vars(self).update(vars(other))
+
+
+def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
+    """Return arrays under each other; those of points with fewer columns are padded with zeros."""
+    if parts[0].ndim == 2:
+        width = max(part.shape[1] for part in parts)
+        parts = tuple(np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
+    return np.concatenate(parts)
+
+
+@dataclass
+class Candidates(Table):
+    """Designs with their objectives.
+
+    sheet: (n,), index. u: (n, k), unit-box points, padded to as many columns as any sheet has. values: (n, m), SI, as
+    minimised. met: (n,), which of them meet every constraint; the others are near enough to be moved there.
+    """
+
+    sheet: NDArray[np.int64]
+    u: Array
+    values: Array
+    met: NDArray[np.bool_]
+
+    @classmethod
+    def empty(cls, objectives: int) -> Self:
+        """Return no designs."""
+        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
+
+    def groups(self) -> list[Self]:
+        """Return those that meet every constraint and those that are to be moved there: choose from each alone."""
+        return [group for group in (self[self.met], self[~self.met]) if len(group)]
+
+    def leading(self, column: int, count: int) -> NDArray[np.int64]:
+        """Return at most `count` rows that meet every constraint, and as many others.
+
+        The best in an objective come first, each `apart` from the better ones.
+        """
+        groups = [np.flatnonzero(self.met), np.flatnonzero(~self.met)]
+        return np.concatenate(
+            [rows[apart(self.values[rows, column], self.u[rows], self.sheet[rows], count)] for rows in groups]
+        )
+
+    def by_sheet(self, evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
+        """Return the points of each sheet that has some, with its index."""
+        return [
+            (index, self.u[self.sheet == index][:, : evaluator.dimension])
+            for index, evaluator in enumerate(evaluators)
+            if (self.sheet == index).any()
+        ]
+
+    def dimensions(self, evaluators: list[Evaluator]) -> Array:
+        """Return the designs (n, 3 + v), SI."""
+        found = np.zeros((len(self), max(len(evaluator.sheet.names) for evaluator in evaluators)))
+        for index in np.unique(self.sheet).tolist():
+            own, sheet = self.sheet == index, evaluators[index].sheet
+            found[own, : len(sheet.names)] = sheet.dimensions(self.u[own][:, : len(sheet.free)])
+        return found
+
+
+@dataclass
+class Finished(Candidates):
+    """Candidates for the front: polished designs, all feasible, and those of sheets that leave nothing free.
+
+    residual: (n,). goals, active: (n,), see `polish.Polished`. span: (m,), what objectives are scaled by.
+    """
+
+    residual: Array
+    goals: NDArray[np.object_]
+    active: NDArray[np.object_]
+    span: Array = field(kw_only=True)
+
+    @classmethod
+    def none(cls, span: Array) -> Self:
+        """Return no designs."""
+        bare, nothing = Candidates.empty(len(span)), np.zeros(0, np.object_)
+        return cls(bare.sheet, bare.u, bare.values, bare.met, np.zeros(0), nothing, nothing, span=span)
+
+    def add(self, index: int, part: Polished) -> None:
         """Take in those polished designs of a sheet that are feasible and have all objectives."""
-        rows = np.flatnonzero((part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1))
-        self.sheet = np.concatenate([self.sheet, np.full(len(rows), index)])
-        self.free = np.concatenate([self.free, np.full(len(rows), evaluator.dimension > 0)])
-        self.u = stacked(self.u, part.u[rows])
-        dimensions = evaluator.sheet.dimensions(part.u[rows])
-        dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
-        self.dimensions = stacked(self.dimensions, dimensions)
-        self.values = np.concatenate([self.values, part.values[rows] * self.span])
-        self.residual = np.concatenate([self.residual, part.residual[rows]])
-        self.goals += [part.goals[row] for row in rows]
-        self.active += [part.active[row] for row in rows]
-
-    def part(self, rows: NDArray[np.int64]) -> Pile:
-        """Return a pile of these rows only."""
-        part = Pile(self.span)
-        for name in ("sheet", "free", "u", "dimensions", "values", "residual"):
-            setattr(part, name, getattr(self, name)[rows])
-        part.goals, part.active = [self.goals[row] for row in rows], [self.active[row] for row in rows]
-        return part
+        part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
+        sheet, met = np.full(len(part), index), np.ones(len(part), np.bool_)
+        found = (sheet, part.u, part.values * self.span, met, part.residual, part.goals, part.active)
+        self.become(self.join(Finished(*found, span=self.span)))
 
     @property
-    def settled(self) -> int:
-        """The number of designs of sheets that leave nothing free."""
-        return int((~self.free).sum())
+    def free(self) -> NDArray[np.bool_]:
+        """Whether the sheet leaves something free."""
+        return np.array([slopes.shape[1] > 0 for _, slopes in self.goals], dtype=np.bool_)
 
-    def only_settled(self, span: Array) -> Pile:
+    def only_settled(self, span: Array) -> Self:
         """Return the designs of sheets that leave nothing free, which no gradient is scaled for, with another span."""
-        part = self.part(np.flatnonzero(~self.free))
-        part.span = span
-        return part
+        return replace(self[~self.free], span=span)
 
     def best(self, stand: Stand = unheard) -> NDArray[np.int64]:
         """Return the rows that none dominates, fewer where they hardly differ; ascending. stand: called for each.
 
         None of them is as good as another one to `EQUAL` everywhere and better somewhere.
         """
-        values, several = self.values, len(self.span) > 1
+        values, several, free = self.values, len(self.span) > 1, self.free
         range_ = np.ptp(values[nondominated(values)], axis=0) if several and len(values) else self.span
         size = _ROUNDING * np.abs(values).max(axis=0, initial=0.0)
         equal, same, covered = (
@@ -98,10 +161,11 @@ class Pile:
         kept: list[int] = []
         # What is proven first, then what is best in an objective.
         scaled = values[rows] / self.span
-        order = np.lexsort([scaled.sum(axis=1), np.where(_leads(scaled), 0, 1), doubtful[rows]])
+        leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
+        order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
         for done, row in enumerate(rows[order].tolist()):
             stand(done, len(rows))
-            if not _as_good(values[kept], values[row], same if self.free[row] else equal).any():
+            if not _as_good(values[kept], values[row], same if free[row] else equal).any():
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
         alone = [row for row in kept if _as_good(values[kept], values[row], equal).sum() == 1]
@@ -111,10 +175,3 @@ class Pile:
 def _as_good(values: Array, row: Array, within: Array) -> NDArray[np.bool_]:
     """Return which designs (n, m) are nowhere worse than one (m,) by more than these differences."""
     return np.asarray((values - row <= within).all(axis=1))
-
-
-def _leads(values: Array) -> NDArray[np.bool_]:
-    leads = np.zeros(len(values), dtype=bool)
-    if len(values):
-        leads[np.argmin(values, axis=0)] = True
-    return leads

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..problem.problem import Problem
-from .candidates import Pile
+from .candidates import Finished
 from .evaluation import Evaluator
 from .recorded import polished
 from .search import Archive, Run
@@ -18,17 +18,17 @@ def searched(evaluators: list[Evaluator]) -> list[Evaluator]:
     return [evaluator for evaluator in evaluators if evaluator.dimension]
 
 
-def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pile:
+def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -> Finished:
     """Return the feasible designs of all sheets that leave nothing free, and give them to the run."""
     count = len(problem.objectives)
     free = searched(evaluators)
-    pile = run.pile = Pile(np.ones(count))
+    finished = run.finished = Finished.none(np.ones(count))
     run.settled = evaluators[len(free) :]
     point = np.zeros((1, 0))
     for place, evaluator in enumerate(run.settled):
         run.ledger.poll()
         if evaluator.valid(point)[0]:
-            pile.add(len(free) + place, evaluator, polished(evaluator, point, pile.span))
+            finished.add(len(free) + place, polished(evaluator, point, finished.span))
         if (place + 1) % _ROUND == 0 or place + 1 == len(run.settled):
             run.tell("enumerating", free, Archive.empty(count))
-    return pile
+    return finished

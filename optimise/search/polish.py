@@ -15,6 +15,7 @@ noise. Designs advance together, so that every evaluation is a batch.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -22,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..front.stationarity import Array, multipliers, strict_multipliers
+from .candidates import Table
 from .evaluation import Rows
 from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
 from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
@@ -51,8 +53,8 @@ class Evaluates(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Polished:
+@dataclass
+class Polished(Table):
     """Designs after the polish.
 
     u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative. residual: (n,), see
@@ -64,8 +66,13 @@ class Polished:
     values: Array
     violation: Array
     residual: Array
-    goals: tuple[tuple[Array, Array], ...]
-    active: tuple[Array, ...]
+    goals: NDArray[np.object_]
+    active: NDArray[np.object_]
+
+
+def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
+    """Return one entry a design, (n,), of any shape."""
+    return np.fromiter(parts, dtype=np.object_)
 
 
 def polish(
@@ -169,7 +176,7 @@ class _Batch:
             wanted = active_pieces(here, self.chosen)
             residual[row], _, _ = multipliers(here.gradients[wanted], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
-        return Polished(self.u, greatest(self.goals, m), violation, residual, tuple(pieces), tuple(active))
+        return Polished(self.u, greatest(self.goals, m), violation, residual, ragged(pieces), ragged(active))
 
     def _feasible(self) -> NDArray[np.bool_]:
         return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)

@@ -1,15 +1,19 @@
-"""Polish and projection as recorded steps of a search: their results are kept, not the evaluations that they took."""
+"""Polish and projection as steps of a search: on its engine where that pays, and of the results a record is kept."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable
+from dataclasses import dataclass
 
+import numpy as np
+
+from ..engine.serial import Serial
 from ..front.stationarity import Array
 from .checkpoints import Numbers, floats, integers
 from .evaluation import Evaluator
-from .polish import ITERATIONS, Evaluates, Polished
-from .spread import polish, project
+from .polish import ITERATIONS, Evaluates, Polished, ragged
+from .polish import polish as polish_here
+from .polish import project as project_here
 
 
 def polished(
@@ -22,53 +26,80 @@ def polished(
 ) -> Polished:
     """Return the result of `polish`. shown: the evaluator in another light, which it is to see instead."""
     given = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
-
-    def compute() -> tuple[Numbers, ...]:
-        return _arrays(polish(shown or evaluator, start, scale, chosen=chosen, iterations=ITERATIONS))
-
-    return _polished(evaluator.ledger.step("polish", given, compute, evaluator))
+    return _step(evaluator, "polish", given, lambda: polish(shown or evaluator, start, scale, chosen=chosen))
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
-    """Return the result of `project`."""
-
-    def compute() -> tuple[Numbers, ...]:
-        return _arrays(project(evaluator, start, scale))
-
-    return _polished(evaluator.ledger.step("projection", (start, scale), compute, evaluator))
+    """Return the result of `polish.project`."""
+    return _step(evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None))
 
 
-def _arrays(found: Polished) -> tuple[Numbers, ...]:
-    k = found.u.shape[1]
-    return (
-        found.u,
-        found.values,
-        found.violation,
-        found.residual,
-        _lengths([owner for owner, _ in found.goals]),
-        np.concatenate([np.zeros(0), *(owner for owner, _ in found.goals)]),
-        np.concatenate([np.zeros((0, k)), *(slopes for _, slopes in found.goals)]),
-        _lengths(list(found.active)),
-        np.concatenate([np.zeros((0, k)), *found.active]),
+def polish(
+    evaluator: Evaluates,
+    start: Array,
+    scale: Array,
+    *,
+    chosen: tuple[int, ...] | None = None,
+    iterations: int | None = ITERATIONS,
+) -> Polished:
+    """Return the result of `polish.polish`, of `polish.project` without iterations, on the engine where that pays.
+
+    Every design is polished by itself, so that many are shared out among workers. No record is kept.
+    """
+    asked = _Asked(tuple(scale.tolist()), chosen, iterations)
+    if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
+        return asked.of(evaluator, start)
+    before = evaluator.evaluations
+    parts = evaluator.chunked(_polish, asked, start, kind="polish", together=True)
+    evaluator.evaluations = before + sum(count for _, count in parts)
+    (first, _), *others = parts
+    return first.join(*(part for part, _ in others))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Settings of a polish; see `polish.polish`. iterations: None to project only."""
+
+    scale: tuple[float, ...]
+    chosen: tuple[int, ...] | None
+    iterations: int | None
+
+    def of(self, evaluator: Evaluates, start: Array) -> Polished:
+        scale = np.array(self.scale)
+        if self.iterations is None:
+            return project_here(evaluator, start, scale)
+        return polish_here(evaluator, start, scale, chosen=self.chosen, iterations=self.iterations)
+
+
+def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
+    """Return polished designs and how many were evaluated for them."""
+    before = evaluator.evaluations
+    return asked.of(evaluator, start), evaluator.evaluations - before
+
+
+def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]) -> Polished:
+    """Return the result of a step; of ragged rows its record has the lengths, and all of them end to end."""
+
+    def arrays() -> tuple[Numbers, ...]:
+        found = compute()
+        k, owners = found.u.shape[1], [owner for owner, _ in found.goals]
+        return (
+            found.u,
+            found.values,
+            found.violation,
+            found.residual,
+            np.array([len(owner) for owner in owners], dtype=np.int64),
+            np.concatenate([np.zeros(0), *owners]),
+            np.concatenate([np.zeros((0, k)), *(slopes for _, slopes in found.goals)]),
+            np.array([len(edges) for edges in found.active], dtype=np.int64),
+            np.concatenate([np.zeros((0, k)), *found.active]),
+        )
+
+    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.ledger.step(
+        kind, given, arrays, evaluator
     )
-
-
-def _polished(arrays: tuple[Numbers, ...]) -> Polished:
-    u, values, violation, residual, pieces, owners, slopes, edges, active = arrays
-    ends = np.cumsum(integers(pieces))[:-1]
-    return Polished(
-        floats(u),
-        floats(values),
-        floats(violation),
-        floats(residual),
-        tuple(zip(_split(owners, ends), _split(slopes, ends), strict=True)) if len(pieces) else (),
-        tuple(_split(active, np.cumsum(integers(edges))[:-1])) if len(edges) else (),
-    )
-
-
-def _lengths(parts: list[Array]) -> NDArray[np.int64]:
-    return np.array([len(part) for part in parts], dtype=np.int64)
-
-
-def _split(array: Numbers, ends: NDArray[np.int64]) -> list[Array]:
-    return np.split(floats(array), ends)
+    n, ends = len(pieces), np.cumsum(integers(pieces))[:-1]
+    goals = zip(np.split(floats(owners), ends), np.split(floats(slopes), ends), strict=True)
+    held = np.split(floats(active), np.cumsum(integers(edges))[:-1])
+    columns = floats(u), floats(values), floats(violation), floats(residual)
+    return Polished(*columns, ragged(goals if n else ()), ragged(held if n else ()))

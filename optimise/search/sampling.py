@@ -72,9 +72,3 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
     on_bound = (base == 0.0) | (base == 1.0)
     stays = on_bound & (random.random(base.shape) < 0.7)
     return np.asarray(np.clip(np.where(stays, base, base + step), 0.0, 1.0))
-
-
-def stacked(above: Array, below: Array) -> Array:
-    """Return points of two sheets under each other, those with fewer columns padded with zeros."""
-    width = max(above.shape[1], below.shape[1])
-    return np.concatenate([np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in (above, below)])

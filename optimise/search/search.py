@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +13,11 @@ from ..front.hypervolume import Stand, nondominated
 from ..front.progress import REPEATING, Progress
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from .candidates import Candidates, Finished
 from .checkpoints import Ledger
 from .evaluation import FEASIBLE, Evaluator
 from .growth import Growth
-from .sampling import around, first_samples, generator, stacked
-
-if TYPE_CHECKING:
-    from .candidates import Pile
+from .sampling import around, first_samples, generator
 
 FIRST = 16384
 """Designs of the first round, everywhere."""
@@ -45,28 +42,14 @@ Callback = Callable[[Progress], None]
 
 
 @dataclass
-class Archive:
-    """Non-dominated designs found so far: sheet index, unit-box point, objectives.
+class Archive(Candidates):
+    """Non-dominated designs found so far; those that meet every constraint only each other displaces.
 
-    u: (n, k), padded to as many columns as any sheet has, at least three. met: (n,), which of them meet every
-    constraint; these only each other displaces. band: by how much the others may violate constraints, relative.
-    feasible: designs seen that meet every constraint.
+    band: by how much the others may violate constraints, relative. feasible: designs seen that meet every constraint.
     """
 
-    sheet: NDArray[np.int64]
-    u: Array
-    values: Array
-    met: NDArray[np.bool_]
-    band: float = 0.0
-    feasible: int = 0
-
-    @classmethod
-    def empty(cls, objectives: int) -> Archive:
-        """Return an archive without designs."""
-        return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
-
-    def __len__(self) -> int:
-        return len(self.u)
+    band: float = field(default=0.0, kw_only=True)
+    feasible: int = field(default=0, kw_only=True)
 
     def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
         """Evaluate points (n, k) of a sheet, take in those that are feasible within the band, return how many."""
@@ -81,19 +64,16 @@ class Archive:
 
         met: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
         """
-        self.sheet = np.concatenate([self.sheet, np.full(len(u), index)])
-        self.u = stacked(self.u, u)
-        self.values = np.concatenate([self.values, values])
-        self.met = np.concatenate([self.met, np.ones(len(u), np.bool_) if met is None else met])
-        rows = _best(self.values)
-        if not self.met.all():
-            own = np.flatnonzero(self.met)
-            rows = np.concatenate([own[_best(self.values[own])], rows[~self.met[rows]]])
-        self.sheet, self.u, self.values, self.met = self.sheet[rows], self.u[rows], self.values[rows], self.met[rows]
+        self.put(Candidates(np.full(len(u), index), u, values, np.ones(len(u), np.bool_) if met is None else met))
 
-    def groups(self) -> tuple[NDArray[np.int64], ...]:
-        """Return the rows that meet every constraint and those that are to be moved there: choose from each alone."""
-        return tuple(rows for rows in (np.flatnonzero(self.met), np.flatnonzero(~self.met)) if len(rows))
+    def put(self, others: Candidates) -> None:
+        """Take in designs of any sheets."""
+        both = self.join(others)
+        rows = _best(both.values)
+        if not both.met.all():
+            own = np.flatnonzero(both.met)
+            rows = np.concatenate([own[_best(both.values[own])], rows[~both.met[rows]]])
+        self.become(both[rows])
 
 
 def _best(values: Array) -> NDArray[np.int64]:
@@ -114,8 +94,8 @@ class Run:
     """State of a running search: its rounds, the front at the end of each, and the result so far.
 
     ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
-    archive: what the search has found on the others. pile: the designs of the settled ones, and what the polish has
-    made of the archive. fronts: of each round, feasible designs that its hypervolume is told of.
+    archive: what the search has found on the others. finished: the designs of the settled ones, and what the
+    polish has made of the archive. fronts: of each round, feasible designs that its hypervolume is told of.
     progress: called after every round. stages: called in long stages between two.
     """
 
@@ -126,7 +106,7 @@ class Run:
     told: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)
     archive: Archive | None = None
-    pile: Pile | None = None
+    finished: Finished | None = None
     settled: list[Evaluator] = field(default_factory=list)
     stages: Callback | None = None
 
@@ -142,7 +122,7 @@ class Run:
         told is not told again, only that it is repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        polished = [] if self.pile is None else [self.pile.values]
+        polished = [] if self.finished is None else [self.finished.values]
         values = np.concatenate([archive.values, *polished])
         values = values[nondominated(values)]
         self._latest = values[:: 1 + len(values) // _SHOWN]
@@ -151,7 +131,7 @@ class Run:
             len(self.told) + 1,
             max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
-            archive.feasible + (0 if self.pile is None else self.pile.settled),
+            archive.feasible + (0 if self.finished is None else int((~self.finished.free).sum())),
             self._growth.take(np.concatenate([archive.values[archive.met], *polished])),
             self.ledger.seconds,
         )

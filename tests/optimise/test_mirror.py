@@ -16,11 +16,10 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem, Variant
-from slidercrank.optimise.search.candidates import Pile
+from slidercrank.optimise.search.candidates import Finished
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.mirror import once
-from slidercrank.optimise.search.polish import Polished
+from slidercrank.optimise.search.polish import Polished, ragged
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem
@@ -103,36 +102,37 @@ def test_other_methods_deliver_no_twins_either(method: str) -> None:
     assert (front.dimensions[:, 2] >= 0.0).all()
 
 
-def pile_of(values: list[list[float]], *, residual: list[float] | None = None) -> Pile:
-    """Return a pile of designs with these objectives, range one."""
+def finished(values: list[list[float]], *, residual: list[float] | None = None) -> Finished:
+    """Return finished designs with these objectives, range one."""
     given = np.array(values)
     n, m = given.shape
-    machine = problem({"peak_torque": "minimise"})
-    pile = Pile(np.ones(m))
-    nothing = tuple((np.zeros(0), np.zeros((0, 3))) for _ in range(n))
+    found = Finished.none(np.ones(m))
+    nothing = ragged((np.zeros(0), np.zeros((0, 3))) for _ in range(n))
     still = np.zeros(n) if residual is None else np.array(residual)
-    part = Polished(np.full((n, 3), 0.5), given, np.zeros(n), still, nothing, tuple(np.zeros((0, 3)) for _ in range(n)))
-    pile.add(0, Evaluator(machine, sheets(machine)[0]), part)
-    return pile
+    part = Polished(
+        np.full((n, 3), 0.5), given, np.zeros(n), still, nothing, ragged(np.zeros((0, 3)) for _ in range(n))
+    )
+    found.add(0, part)
+    return found
 
 
 def test_a_design_that_is_best_by_rounding_does_not_stay_beside_one_that_is_better_elsewhere() -> None:
     """722 W and 1444 W at the same time ratio."""
     values = [[0.0, 0.722, 0.3], [-1e-11, 1.444, 0.3 - 1e-11], [1.0, 0.1, 0.0], [0.5, 0.4, 1.3]]
-    assert pile_of(values).best().tolist() == [0, 2, 3]
-    assert pile_of(values, residual=[1e-3, 0.0, 0.0, 0.0]).best().tolist() == [0, 2, 3]
+    assert finished(values).best().tolist() == [0, 2, 3]
+    assert finished(values, residual=[1e-3, 0.0, 0.0, 0.0]).best().tolist() == [0, 2, 3]
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_no_design_of_a_pile_is_as_good_as_another_one_and_better(seed: int) -> None:
+def test_no_finished_design_is_as_good_as_another_one_and_better(seed: int) -> None:
     """Random designs, each with images that differ by rounding in some objectives and by a lot in others."""
     random = np.random.default_rng(seed)
     values = random.random((60, 3))
     images = values + random.choice([0.0, 1e-11, -1e-11, 3e-10, 0.4], values.shape)
     union = np.concatenate([values, images, images + 1e-12 * random.standard_normal(values.shape)])
-    kept = union[pile_of(union.tolist()).best()]
+    kept = union[finished(union.tolist()).best()]
     near = 1e-9 * np.ptp(kept, axis=0)
     for row in kept:
         assert ((kept <= row + near).all(axis=1)).sum() == 1
-    for row in union:  # nothing is lost: each has one in the pile that is as good to within what the polish leaves
+    for row in union:  # nothing is lost: each has one that is kept and that is as good to within what the polish leaves
         assert (kept <= row + 2e-7).all(axis=1).any()

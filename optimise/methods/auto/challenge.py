@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ...front.hypervolume import Stand, choose, nondominated, unheard
+from ...front.hypervolume import Stand, choose, nondominated
 from ...front.stationarity import Array
 from ...problem.problem import Problem
-from ...search.candidates import Pile
+from ...search.candidates import Finished, stacked
 from ...search.evaluation import Evaluator
-from ...search.sampling import around, first_samples, generator, stacked
+from ...search.sampling import around, first_samples, generator
 from ...search.search import FIRST, SAMPLES, Archive, share
 
 _WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
@@ -21,44 +23,31 @@ _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 
 
 def challengers(
-    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, attempt: int, stand: Stand = unheard
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: Finished, attempt: int, stand: Stand
 ) -> list[tuple[int, Array]]:
     """Return points by sheet for further polish; none if the front is as good and full as asked.
 
     First those that dominate a polished design. Then, where designs are wanting, those that no polished design
     dominates, and points half-way between neighbours. stand: called many times a second.
     """
-    best = pile.best(stand)
-    front = pile.values[best] / pile.span
-    _sample(problem, evaluators, archive, pile, best, attempt)
-    screened = archive.values / pile.span
+    best = finished[finished.best(stand)]
+    front = best.values / best.span
+    _sample(problem, evaluators, archive, best, attempt)
+    screened = archive.values / best.span
     beating, uncovered = _against(screened, front)
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(beating & archive.met)[:_POOL]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
-    starts = by_sheet(evaluators, archive.sheet, archive.u, _few(screened, rows, front, max(wanting, 32), stand))
+    starts = archive[_few(screened, rows, front, max(wanting, 32), stand)].by_sheet(evaluators)
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~beating)
         rows = _few(screened, rows[:: 1 + len(rows) // _POOL], front, wanting, stand)
-        starts += by_sheet(evaluators, archive.sheet, archive.u, rows)
-        starts += _half_way(evaluators, pile, best, wanting)
+        starts += archive[rows].by_sheet(evaluators)
+        starts += _half_way(evaluators, best, wanting)
     return starts
 
 
-def by_sheet(
-    evaluators: list[Evaluator], sheet: NDArray[np.int64], u: Array, rows: NDArray[np.int64]
-) -> list[tuple[int, Array]]:
-    """Return the points u (n, k) of some rows by the sheet (n,) that they lie on."""
-    return [
-        (index, u[rows[sheet[rows] == index]][:, : evaluator.dimension])
-        for index, evaluator in enumerate(evaluators)
-        if (sheet[rows] == index).any()
-    ]
-
-
-def _sample(
-    problem: Problem, evaluators: list[Evaluator], archive: Archive, pile: Pile, best: NDArray[np.int64], attempt: int
-) -> None:
+def _sample(problem: Problem, evaluators: list[Evaluator], archive: Archive, best: Finished, attempt: int) -> None:
     """Screen points everywhere, and the polished designs, what is around them, and all that on other sheets."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
@@ -66,9 +55,9 @@ def _sample(
         count = share(problem.settings.samples or FIRST, evaluators)
         archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
         count = -(-(problem.settings.samples or SAMPLES) // k)
-        parents = stacked(np.zeros((0, evaluator.dimension)), pile.u[best])[:, : evaluator.dimension]
-        near = around(parents, pile.values[best], count, _WIDTH, random)
-        images = parents[pile.sheet[best] != index]
+        parents = stacked(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
+        near = around(parents, best.values, count, _WIDTH, random)
+        images = parents[best.sheet != index]
         archive.screen(index, evaluator, np.concatenate([near, images]))
 
 
@@ -95,9 +84,9 @@ def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int, sta
     return rows[picked[picked >= len(front)] - len(front)]
 
 
-def _half_way(evaluators: list[Evaluator], pile: Pile, best: NDArray[np.int64], count: int) -> list[tuple[int, Array]]:
+def _half_way(evaluators: list[Evaluator], best: Finished, count: int) -> list[tuple[int, Array]]:
     """Return the middles between neighbours on the front, the farthest apart first."""
-    scaled = pile.values[best] / pile.span
+    scaled = best.values / best.span
     n, m = scaled.shape
     if n < 2:
         return []
@@ -106,9 +95,9 @@ def _half_way(evaluators: list[Evaluator], pile: Pile, best: NDArray[np.int64], 
     nearest = cKDTree(scaled).query(scaled, k=min(n, 1 + _NEIGHBOURS * m))[1]
     both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
     pairs = np.unique(np.sort(both), axis=0)
-    pairs = best[pairs[pairs[:, 0] != pairs[:, 1]]]
-    pairs = pairs[pile.sheet[pairs[:, 0]] == pile.sheet[pairs[:, 1]]]
-    gap = np.linalg.norm((pile.values[pairs[:, 0]] - pile.values[pairs[:, 1]]) / pile.span, axis=1)
+    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    pairs = pairs[best.sheet[pairs[:, 0]] == best.sheet[pairs[:, 1]]]
+    gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)
     pairs = pairs[np.argsort(-gap, kind="stable")[:count]]
-    middle = 0.5 * (pile.u[pairs[:, 0]] + pile.u[pairs[:, 1]])
-    return by_sheet(evaluators, pile.sheet[pairs[:, 0]], middle, np.arange(len(pairs)))
+    middle = 0.5 * (best.u[pairs[:, 0]] + best.u[pairs[:, 1]])
+    return replace(best[pairs[:, 0]], u=middle).by_sheet(evaluators)

@@ -14,12 +14,11 @@ from ...front.front import ParetoFront
 from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import assemble, empty, span_of, table_of
-from ...search.candidates import Pile
+from ...search.candidates import Finished
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
-from ...search.recorded import projected
 from ...search.search import Archive, Run
-from .challenge import by_sheet
+from .deliver import move
 
 _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
@@ -56,45 +55,45 @@ _SLOW = (
 
 
 def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    pile, archive = run.pile, run.archive
-    if archive is not None and len(archive) and (pile is None or not pile.free.any()):
-        pile = _as_found(problem, evaluators, archive, pile)
-    if pile is None or not len(pile):
+    finished, archive = run.finished, run.archive
+    if archive is not None and len(archive) and (finished is None or not finished.free.any()):
+        settled = finished or Finished.none(np.ones(len(problem.objectives)))
+        finished = settled.only_settled(span_of(problem, np.concatenate([archive.values, settled.values])))
+        _take(problem, evaluators, archive, finished)
+    if finished is None or not len(finished):
         return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
-    pile = pile.part(_spread(pile.values, _MOST))
-    best = pile.best()
-    rows = best[_spread(pile.values[best], problem.settings.designs)]
-    return assemble(problem, evaluators, pile, run, _soon(problem, evaluators, pile, rows))
+    finished = finished[_spread(finished.values, _MOST)]
+    best = finished.best()
+    rows = best[_spread(finished.values[best], problem.settings.designs)]
+    return assemble(problem, evaluators, finished, run, _soon(problem, evaluators, finished, rows))
 
 
-def _as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, settled: Pile | None) -> Pile:
-    """Return a pile of the settled designs and of those of an archive, moved onto the constraints."""
-    settled = settled or Pile(np.ones(archive.values.shape[1]))
-    pile = settled.only_settled(span_of(problem, np.concatenate([archive.values, settled.values])))
+def _take(problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: Finished) -> None:
+    """Add designs of an archive, moved onto the constraints."""
     # What needs no move comes first.
-    rows = np.concatenate([some[_spread(archive.values[some], problem.settings.designs)] for some in archive.groups()])
+    first, *others = (some[_spread(some.values, problem.settings.designs)] for some in archive.groups())
+    chosen = first.join(*others)
     end = time.perf_counter() + _PROJECTING
     # Each batch is spread over the whole front.
-    batches = -(-len(rows) // _BATCH)
-    for some in (rows[begin::batches] for begin in range(batches)):
-        for index, u in by_sheet(evaluators, archive.sheet, archive.u, some):
-            valid = u[evaluators[index].valid(u)]
-            pile.add(index, evaluators[index], projected(evaluators[index], valid, pile.span))
-        if len(pile) and time.perf_counter() > end:
+    batches = -(-len(chosen) // _BATCH)
+    for begin in range(batches):
+        move(finished, chosen[begin::batches], evaluators)
+        if len(finished) and time.perf_counter() > end:
             break
-    return pile
 
 
-def _soon(problem: Problem, evaluators: list[Evaluator], pile: Pile, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+def _soon(
+    problem: Problem, evaluators: list[Evaluator], finished: Finished, rows: NDArray[np.int64]
+) -> NDArray[np.int64]:
     """Return those rows whose quantities are had within a moment, all of them as a rule."""
     if len(rows) <= _TRIED:
         return rows
-    some = rows[:: -(-len(rows) // _TRIED)]
-    variants = np.array([evaluators[index].sheet.variant for index in pile.sheet[some]], dtype=np.int64)
+    some = finished[rows[:: -(-len(rows) // _TRIED)]]
+    variants = np.array([evaluators[index].sheet.variant for index in some.sheet], dtype=np.int64)
     begin = time.perf_counter()
-    table_of(problem, variants, pile.dimensions[some])
+    table_of(problem, variants, some.dimensions(evaluators))
     each = (time.perf_counter() - begin) / len(some)
-    return rows[_spread(pile.values[rows], max(1, int(_ANALYSING / each)))]
+    return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]
 
 
 def _spread(values: Array, count: int) -> NDArray[np.int64]:

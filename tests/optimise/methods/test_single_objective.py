@@ -90,7 +90,7 @@ def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
     evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
     begun = samples(given, evaluators)
     best = solve(given).values[0, 0]
-    for row in begun.best(0, 12):
+    for row in begun.leading(0, 12):
         programme = Programme(evaluators[0], Form.single(1, 0), np.zeros(1), np.ones(1))
         found = by_slsqp(programme, begun.u[row])
         assert found is not None
