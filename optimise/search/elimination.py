@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,19 +32,19 @@ ZERO = 1e-300
 
 @dataclass(frozen=True)
 class Rule:
-    """One way to compute an unknown: `target` from `sources`, by `formula`. `origin` names the requirement.
+    """One way to compute an unknown: `target` from `sources`. origin: the requirements that it is of, joined by "+".
 
-    wanted: the values that its formula was made of; another process makes it of them again.
+    wanted: their values.
     """
 
     origin: str
     target: str
     sources: tuple[str, ...]
-    formula: Callable[..., Any]
-    wanted: tuple[tuple[str, float], ...] = ()
+    wanted: tuple[float, ...]
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (self.wanted, self.origin, self.target, self.sources)
+    def formula(self, *known: Any) -> Any:
+        """Return the target for the sources."""
+        return _FORMULAS[self.origin, self.target][1](*self.wanted, *known)
 
 
 @dataclass(frozen=True)
@@ -122,14 +122,13 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     part = parts[0]
     side = part.slow_side()
     assert side is not None
-    turning = "counter-clockwise" if part.mechanism.direction > 0.0 else "clockwise"
-    other = "clockwise" if part.mechanism.direction > 0.0 else "counter-clockwise"
+    turning, other = ("counter-clockwise", "clockwise")[:: 1 if part.mechanism.direction > 0.0 else -1]
+    where = "above" if side > 0.0 else "below"
     raise InputError(
         f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
-        f"{part.slow_stroke} stroke is the slow one where the offset is {'above' if side > 0.0 else 'below'} 0; got an "
+        f"{part.slow_stroke} stroke is the slow one where the offset is {where} 0; got an "
         f"offset from {1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset reach "
-        f"{'above' if side > 0.0 else 'below'} 0"
-        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
+        f"{where} 0" + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
     )
 
 
@@ -208,68 +207,55 @@ def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:
 
 def _rules(wanted: dict[str, float]) -> list[Rule]:
     """Return every rule that the wanted values give."""
-    rules: list[Rule] = []
-    if ROD_TO_OFFSET.name in wanted:
-        k = wanted[ROD_TO_OFFSET.name]
-        rules += [
-            Rule(ROD_TO_OFFSET.name, "rod", ("offset",), lambda a: k * a),
-            Rule(ROD_TO_OFFSET.name, "offset", ("rod",), lambda l: l / k),
-        ]
-    if ROD_TO_CRANK.name in wanted:
-        q = wanted[ROD_TO_CRANK.name]
-        rules += [
-            Rule(ROD_TO_CRANK.name, "rod", ("crank",), lambda r: q * r),
-            Rule(ROD_TO_CRANK.name, "crank", ("rod",), lambda l: l / q),
-        ]
-    if TRANSMISSION_ANGLE.name in wanted:
-        c = math.cos(wanted[TRANSMISSION_ANGLE.name])
-        rules += [
-            Rule(TRANSMISSION_ANGLE.name, "rod", ("crank", "offset"), lambda r, a: (r + a) / c),
-            Rule(TRANSMISSION_ANGLE.name, "crank", ("rod", "offset"), lambda l, a: c * l - a),
-            Rule(TRANSMISSION_ANGLE.name, "offset", ("crank", "rod"), lambda r, l: c * l - r),
-        ]
-    if TIME_RATIO.name in wanted:
-        b = math.pi * (wanted[TIME_RATIO.name] - 1.0) / (wanted[TIME_RATIO.name] + 1.0)
-        sine, cosine = math.sin(b), math.cos(b)
-        if STROKE.name in wanted:
-            # Cosine rule in the triangle of crank pivot and dead centres: l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
-            half = 0.5 * wanted[STROKE.name] ** 2
-            rules.append(
-                Rule(
-                    f"{STROKE.name}+{TIME_RATIO.name}",
-                    "crank",
-                    ("rod",),
-                    lambda l: np.sqrt((half - l * l * (1.0 - cosine)) / (1.0 + cosine)),
-                )
-            )
-            if cosine < 1.0:
-                rules.append(
-                    Rule(
-                        f"{STROKE.name}+{TIME_RATIO.name}",
-                        "rod",
-                        ("crank",),
-                        lambda r: np.sqrt((half - r * r * (1.0 + cosine)) / (1.0 - cosine)),
-                    )
-                )
-        rules.append(
-            Rule(
-                TIME_RATIO.name,
-                "offset",
-                ("crank", "rod"),
-                lambda r, l: geometry.offset_from_excess_angle(r, l, sine, cosine),
-            )
-        )
-    if STROKE.name in wanted:
-        s = wanted[STROKE.name]
-        rules += [
-            Rule(STROKE.name, "crank", ("rod", "offset"), lambda l, a: geometry.crank_from_stroke(s, l, a)),
-            Rule(STROKE.name, "rod", ("crank", "offset"), lambda r, a: geometry.rod_from_stroke(s, r, a)),
-            Rule(STROKE.name, "offset", ("crank", "rod"), lambda r, l: geometry.offset_from_stroke(s, r, l)),
-        ]
-    return [replace(rule, wanted=tuple(wanted.items())) for rule in rules]
+    rules = []
+    for (origin, target), (sources, _) in _FORMULAS.items():
+        names = origin.split("+")
+        if all(name in wanted for name in names):
+            rules.append(Rule(origin, target, sources, tuple(wanted[name] for name in names)))
+    # At a time ratio of one the dead centres lie opposite, whatever the rod.
+    if TIME_RATIO.name in wanted and _excess(wanted[TIME_RATIO.name])[1] == 1.0:
+        rules = [rule for rule in rules if (rule.origin, rule.target) != (_PAIR, "rod")]
+    return rules
 
 
-def _again(wanted: tuple[tuple[str, float], ...], origin: str, target: str, sources: tuple[str, ...]) -> Rule:
-    """Return the rule that the wanted values gave."""
-    rules = _rules(dict(wanted))
-    return next(rule for rule in rules if (rule.origin, rule.target, rule.sources) == (origin, target, sources))
+def _excess(ratio: float) -> tuple[float, float]:
+    """Return sine and cosine of the excess angle b that gives a time ratio."""
+    b = math.pi * (ratio - 1.0) / (ratio + 1.0)
+    return math.sin(b), math.cos(b)
+
+
+def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
+    """Return the crank by the cosine rule in the triangle of crank pivot and dead centres.
+
+    l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
+    """
+    cosine = _excess(ratio)[1]
+    return np.sqrt((0.5 * stroke**2 - l * l * (1.0 - cosine)) / (1.0 + cosine))
+
+
+def _rod_of_pair(stroke: float, ratio: float, r: Any) -> Any:
+    """Return the rod by the same rule."""
+    cosine = _excess(ratio)[1]
+    return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
+
+
+_PAIR = f"{STROKE.name}+{TIME_RATIO.name}"
+_FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
+    (ROD_TO_OFFSET.name, "rod"): (("offset",), lambda k, a: k * a),
+    (ROD_TO_OFFSET.name, "offset"): (("rod",), lambda k, l: l / k),
+    (ROD_TO_CRANK.name, "rod"): (("crank",), lambda q, r: q * r),
+    (ROD_TO_CRANK.name, "crank"): (("rod",), lambda q, l: l / q),
+    (TRANSMISSION_ANGLE.name, "rod"): (("crank", "offset"), lambda mu, r, a: (r + a) / math.cos(mu)),
+    (TRANSMISSION_ANGLE.name, "crank"): (("rod", "offset"), lambda mu, l, a: math.cos(mu) * l - a),
+    (TRANSMISSION_ANGLE.name, "offset"): (("crank", "rod"), lambda mu, r, l: math.cos(mu) * l - r),
+    (_PAIR, "crank"): (("rod",), _crank_of_pair),
+    (_PAIR, "rod"): (("crank",), _rod_of_pair),
+    (TIME_RATIO.name, "offset"): (
+        ("crank", "rod"),
+        lambda ratio, r, l: geometry.offset_from_excess_angle(r, l, *_excess(ratio)),
+    ),
+    (STROKE.name, "crank"): (("rod", "offset"), geometry.crank_from_stroke),
+    (STROKE.name, "rod"): (("crank", "offset"), geometry.rod_from_stroke),
+    (STROKE.name, "offset"): (("crank", "rod"), geometry.offset_from_stroke),
+}
+"""Of requirements and target: the sources, and the target by what is wanted and these."""

@@ -15,7 +15,7 @@ from ..engine.chunks import Chunked
 from ..engine.engine import Engine
 from ..engine.serial import Serial
 from ..engine.shared import Shared
-from ..problem.problem import Constraint, Objective, Problem
+from ..problem.problem import Constraint, Objective, Problem, Range
 from .checkpoints import Ledger, floats, integers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly
@@ -23,6 +23,8 @@ from .judging import exactly, joined, quickly
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
 _HUGE = 1e100
+Side = tuple[float, float, float]
+"""A side of what is asked: 1 from above or -1 from below, the bound, and the scale of what lies beyond."""
 
 
 @dataclass(frozen=True)
@@ -164,11 +166,9 @@ class Evaluator:
             turns = (crank > 0.0) & (rod > crank + np.abs(offset))
         violation[~turns] = np.inf
         for name in self.computed:
-            bounds = self.sheet.bounds[name]
             value = np.abs(dimensions[:, UNKNOWNS.index(name)])
-            scale = max(bounds.upper, 1e-300)
-            violation = np.fmax(violation, (value - bounds.upper) / scale)
-            violation = np.fmax(violation, (bounds.lower - value) / scale)
+            for side in _range_sides(self.sheet.bounds[name]):
+                violation = np.fmax(violation, _excess(value, *side))
         rows = np.flatnonzero(turns)
         for constraint in self.problem.constraints:
             if constraint.quantity in self.sheet.eliminated and len(rows):
@@ -207,25 +207,20 @@ class Evaluator:
                 cache[name] = Pieces(values, slopes, found.labels, found.least)
             return cache[name]
 
-        parts = []
+        parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(self.problem.objectives):
-            parts += [(index, *part) for part in _objective_rows(objective, pieces(objective.quantity))]
+            parts += [(index, part) for part in _objective_rows(objective, pieces(objective.quantity))]
         goals = _stack(parts, len(u), self.dimension)
         parts = []
         for index, constraint in enumerate(self.constraints):
-            parts += [(index, *part) for part in _constraint_rows(constraint, pieces(constraint.quantity))]
-        count = len(self.constraints)
-        for name in self.computed:
+            own = pieces(constraint.quantity)
+            parts += [(index, _beyond(_held(own, side[0]), *side)) for side in _sides(constraint)]
+        for index, name in enumerate(self.computed, len(self.constraints)):
             column = UNKNOWNS.index(name)
             sign = self.sheet.sign if name == "offset" else 1.0
             value = sign * dimensions[:, column : column + 1]
-            slope = sign * jacobian[:, column : column + 1, :]
-            bounds = self.sheet.bounds[name]
-            scale = max(bounds.upper, 1e-300)
-            none = np.zeros_like(value)
-            parts.append((count, (value - bounds.upper) / scale, slope / scale, none))
-            parts.append((count, (bounds.lower - value) / scale, -slope / scale, none))
-            count += 1
+            own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
+            parts += [(index, _beyond(own, *side)) for side in _range_sides(self.sheet.bounds[name])]
         return goals, _stack(parts, len(u), self.dimension)
 
     def owner_name(self, owner: int) -> str:
@@ -247,80 +242,67 @@ def _costly(quantity: Quantity) -> bool:
     return not type(quantity).__name__.startswith("ClosedForm")
 
 
-def _scale(bound: float) -> float:
-    return abs(bound) if bound else 1.0
+def _sides(constraint: Constraint) -> list[Side]:
+    """Return the sides of a constraint that are not open."""
+    bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
+    return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
+
+
+def _range_sides(bounds: Range) -> list[Side]:
+    scale = max(bounds.upper, 1e-300)
+    return [(1.0, bounds.upper, scale), (-1.0, bounds.lower, scale)]
 
 
 def _violation(constraint: Constraint, values: Array) -> Array:
     """Relative violation (n,), zero or less where the constraint holds."""
     violation = np.full(len(values), -np.inf)
-    if constraint.upper is not None:
-        violation = np.maximum(violation, (values - constraint.upper) / _scale(constraint.upper))
-    if constraint.lower is not None:
-        violation = np.maximum(violation, (constraint.lower - values) / _scale(constraint.lower))
+    for side in _sides(constraint):
+        violation = np.maximum(violation, _excess(values, *side))
     return np.where(np.isnan(values), np.inf, violation)
 
 
-def _objective_rows(objective: Objective, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
-    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
+def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
     if objective.sense == "minimise":
-        return [_ceiling(pieces)]
-    highest = _floor(pieces)
-    top = (-highest[0], -highest[1], highest[2])
+        return [_held(pieces, 1.0)]
+    top = _held(pieces, -1.0)
     if objective.target is None:
         # What is infinite is no optimum but out of reach.
-        return [(np.where(np.isfinite(top[0]), top[0], np.inf), top[1], top[2])]
-    return [(values - objective.target, slopes, labels), (top[0] + objective.target, top[1], top[2])]
+        return [Pieces(np.where(np.isfinite(top.values), -top.values, np.inf), -top.gradients, top.labels)]
+    return [_beyond(pieces, 1.0, objective.target), _beyond(top, -1.0, objective.target)]
 
 
-def _constraint_rows(constraint: Constraint, pieces: Pieces) -> list[tuple[Array, Array, Array]]:
-    rows = []
-    if constraint.upper is not None:
-        scale = _scale(constraint.upper)
-        values, slopes, labels = _ceiling(pieces)
-        rows.append(((values - constraint.upper) / scale, slopes / scale, labels))
-    if constraint.lower is not None:
-        scale = _scale(constraint.lower)
-        highest = _floor(pieces)
-        rows.append(((constraint.lower - highest[0]) / scale, -highest[1] / scale, highest[2]))
-    return rows
+def _beyond(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
+    """Return by how much pieces lie beyond a side of what is asked, relative."""
+    return Pieces(_excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
-def _ceiling(pieces: Pieces) -> tuple[Array, Array, Array]:
-    """Return the pieces that all must stay low for the quantity to be low: of a least-of only the lowest."""
-    if pieces.least:
-        return _one(pieces, np.argmin(pieces.values, axis=1))
-    return pieces.values, pieces.gradients, pieces.labels
+def _excess(values: Array, side: float, bound: float, scale: float) -> Array:
+    return (values - bound if side > 0.0 else bound - values) / scale
 
 
-def _floor(pieces: Pieces) -> tuple[Array, Array, Array]:
-    """Return the pieces that all must stay high for the quantity to be high: of a greatest-of only the highest.
+def _held(pieces: Pieces, side: float) -> Pieces:
+    """Return the pieces that all must stay low (side 1) or high (-1) for the quantity to be low or high.
 
-    There the others do not tie to hold it up. Peaks come highest first, closed forms in any order.
+    To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
+    to hold it up. Peaks come highest first, closed forms in any order.
     """
-    if pieces.least:
-        return pieces.values, pieces.gradients, pieces.labels
-    return _one(pieces, np.argmax(pieces.values, axis=1))
-
-
-def _one(pieces: Pieces, place: NDArray[np.int64]) -> tuple[Array, Array, Array]:
-    values, slopes, labels = pieces.values, pieces.gradients, pieces.labels
-    first = place[:, None]
-    return (
-        np.take_along_axis(values, first, axis=1),
-        np.take_along_axis(slopes, first[:, :, None], axis=1),
-        np.take_along_axis(labels, first, axis=1),
+    if pieces.least == (side < 0.0):
+        return pieces
+    first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)[:, None]
+    return Pieces(
+        np.take_along_axis(pieces.values, first, axis=1),
+        np.take_along_axis(pieces.gradients, first[:, :, None], axis=1),
+        np.take_along_axis(pieces.labels, first, axis=1),
     )
 
 
-def _stack(parts: list[tuple[int, Array, Array, Array]], n: int, k: int) -> Rows:
+def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
     if not parts:
         return Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, dtype=np.int64))
-    owner = np.concatenate([np.full(values.shape[1], index) for index, values, _, _ in parts])
-    values = np.concatenate([values for _, values, _, _ in parts], axis=1)
+    values = np.concatenate([part.values for _, part in parts], axis=1)
     return Rows(
         np.where(np.isnan(values), np.inf, values),
-        np.concatenate([slopes for _, _, slopes, _ in parts], axis=1),
-        np.concatenate([labels for _, _, _, labels in parts], axis=1),
-        owner,
+        np.concatenate([part.gradients for _, part in parts], axis=1),
+        np.concatenate([part.labels for _, part in parts], axis=1),
+        np.concatenate([np.full(part.values.shape[1], index) for index, part in parts]),
     )
