@@ -15,20 +15,19 @@ from .feasibility.infeasibility import diagnose
 from .front.front import ParetoFront
 from .front.progress import REPEATING, Progress, progress_bar
 from .front.stationarity import Array
-from .methods.auto.deliver import deliver, searched_by
+from .methods.auto.auto import deliver, searched_by
 from .methods.auto.so_far import so_far
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
 from .problem.gradients import without_gradient
 from .problem.problem import Problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
-from .search.checkpoints import Cancelled, Ledger, Record
+from .search.checkpoints import Cancelled, Checkpoints, Record
 from .search.elimination import Sheet, sheets
-from .search.enumeration import searched
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
 from .search.mirror import once
-from .search.search import Archive, Callback, Run, zoom
+from .search.search import Archive, Callback, Run, searched, zoom
 
 
 def solve(
@@ -46,7 +45,7 @@ def solve(
 
     progress: called after every round; True shows a live bar, in a notebook too. stages: called about twice a second in
     a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of the
-    front so far, see `Run.front_so_far`. cancelled: asked many times a second; when it says so, what was found so far
+    front so far, see `Run.latest`. cancelled: asked many times a second; when it says so, what was found so far
     is returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
     keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
@@ -71,14 +70,14 @@ def solve(
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)
-    ledger = Ledger(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    evaluators = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
+    checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
+    evaluators = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
-    run = Run(problem, 1, told, ledger, stages=stages)
+    run = Run(problem, 1, told, checkpoints, stages=stages)
     if fronts is not None:
 
         def with_front(entry: Progress) -> None:
-            fronts(run.front_so_far())
+            fronts(run.latest)
             if told is not None:
                 told(entry)
 
@@ -86,7 +85,7 @@ def solve(
     if resume:
         run.stand(REPEATING, 0, 1, now=True)
     try:
-        with interrupted_by(ledger.interrupt) as interruption:
+        with interrupted_by(checkpoints.interrupt) as interruption:
             return _searched(problem, evaluators, run)
     except Cancelled:
         return so_far(problem, evaluators, run, silent=interruption.killed)
@@ -99,7 +98,7 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
         return front
     if without_gradient(problem):
         return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
-    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.ledger, evaluators[0].engine)
+    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine)
     if len(diagnosis.feasible) and not method.polishes and free:
         return empty(problem, evaluators, run, "infeasible", _MISSED.format(method.name))
     if len(diagnosis.feasible) and free:
@@ -138,7 +137,7 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | 
     def stand(at: Progress) -> None:
         run.stand(_DIAGNOSING, at.round, at.rounds)
 
-    found = best_of(problem, run.ledger, evaluators[0].engine, stand)
+    found = best_of(problem, run.checkpoints, evaluators[0].engine, stand)
     run.tell(_DIAGNOSING, searched(evaluators), Archive.empty(len(run.problem.objectives)))
     return found
 

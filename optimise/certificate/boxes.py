@@ -16,6 +16,7 @@ from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Constraint, Objective, Problem, Range
+from ..search.candidates import Table
 from ..search.elimination import UNKNOWNS
 from ..search.evaluation import Evaluator, constraints_of
 from .cycle import Curve, best_angles
@@ -53,8 +54,8 @@ def usable(problem: Problem, constraint: Constraint) -> bool:
     return constraint.upper is not None and not covered(problem, wanted)
 
 
-@dataclass(frozen=True)
-class Bounded:
+@dataclass
+class Bounded(Table):
     """Bounds that hold for the designs of n boxes.
 
     alive: whether one may be feasible; what follows means nothing where not. lower, upper: (n, k), the part of the box
@@ -69,17 +70,6 @@ class Bounded:
     corner: Array
     smear: Array
     trial: Array
-
-    def __getitem__(self, rows: NDArray[np.int64] | Mask) -> Bounded:
-        return Bounded(
-            self.alive[rows], self.lower[rows], self.upper[rows], self.corner[rows], self.smear[rows], self.trial[rows]
-        )
-
-
-def together(parts: list[Bounded]) -> Bounded:
-    """Return boxes one after the other."""
-    fields = ("alive", "lower", "upper", "corner", "smear", "trial")
-    return Bounded(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
 
 
 class Boxes:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...model.kernel.arithmetic import kernel
 from ...model.kernel.batches import in_chunks
-from ..front.hypervolume import REFERENCE, nondominated
+from ..front.hypervolume import hypervolume, nondominated
 from .enclosure import Array
 
 _EXACT = 4000  # points in three and more dimensions of which the hypervolume takes about a second
@@ -111,16 +111,8 @@ def thinned(points: Array, values: Array, epsilon: float) -> NDArray[np.int64]:
 
 def volume(values: Array) -> float:
     """Return the hypervolume of scaled values in the units of fronts; what lies beyond the ideal counts too."""
-    values = values[(values < REFERENCE).all(axis=1)]
-    if not len(values):
-        return 0.0
-    m = values.shape[1]
-    if m == 1:
-        return float((REFERENCE - values.min()) / REFERENCE)
-    import moocore
-
-    values = np.ascontiguousarray(values[nondominated(values)])
-    return float(moocore.hypervolume(values, ref=REFERENCE) / REFERENCE**m)
+    none, one = np.zeros(values.shape[1]), np.ones(values.shape[1])
+    return hypervolume(values[nondominated(values)], none, one, within=False)
 
 
 def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> float:

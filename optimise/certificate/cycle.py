@@ -26,7 +26,7 @@ from ...model.signals.screening import screen, screens
 from ...model.signals.signals import Signal, design_motion, signal
 from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
-from .enclosure import UNIT, Array, Enclosure, beside, between
+from .enclosure import UNIT, Array, Enclosure, beside, between, chosen
 
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
@@ -80,7 +80,7 @@ class Curve:
         if jump is not None and jump.any():
             # The peak is the greater of what the curve tends to from either side, which are the two strokes.
             sides = [
-                _chosen(jump, between(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
+                chosen(jump, between(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
             return beside(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
         value = self._signal(sine, cosine, m, d, block, theta, outward)
@@ -178,9 +178,9 @@ def _at_share(
     q = (d.r * d.r + square - d.l * d.l) / (square * 2.0)
     h = np.sqrt(d.r * d.r / square - q * q) * side
     on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
-    q = _chosen(on_inner, -d.r / (d.l - d.r), _chosen(on_outer, d.r / (d.l + d.r), q))
-    h = _chosen(on_inner | on_outer, 0.0 * d.r, h)
-    x = _chosen(on_inner, d.inner * d.branch, _chosen(on_outer, d.outer * d.branch, x))
+    q = chosen(on_inner, -d.r / (d.l - d.r), chosen(on_outer, d.r / (d.l + d.r), q))
+    h = chosen(on_inner | on_outer, 0.0 * d.r, h)
+    x = chosen(on_inner, d.inner * d.branch, chosen(on_outer, d.outer * d.branch, x))
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
@@ -192,26 +192,11 @@ def _at_dead_centre(
     at = motion(sine, cosine, r, l, e, d.branch)
     on = np.abs(at.x_1) < _AT_REST * r
     far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
-    q = _chosen(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
-    x = _chosen(far, d.outer * d.branch, d.inner * d.branch)
+    q = chosen(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
+    x = chosen(far, d.outer * d.branch, d.inner * d.branch)
     k = len(q.slopes)
     return (
         on,
-        _chosen(on, q * d.e / d.r, between(sine, sine, k)),
-        _chosen(on, q * x / d.r, between(cosine, cosine, k)),
+        chosen(on, q * d.e / d.r, between(sine, sine, k)),
+        chosen(on, q * x / d.r, between(cosine, cosine, k)),
     )
-
-
-def _chosen(mask: NDArray[np.bool_], one: Enclosure, two: Enclosure) -> Enclosure:
-    return Enclosure(
-        np.where(mask, one.centre, two.centre),
-        np.where(mask, one.slopes, two.slopes),
-        np.where(mask, one.rest, two.rest),
-        _where(mask, one.empty, two.empty),
-    )
-
-
-def _where(mask: NDArray[np.bool_], one: NDArray[np.bool_] | None, two: NDArray[np.bool_] | None) -> Any:
-    if one is None and two is None:
-        return None
-    return np.where(mask, False if one is None else one, False if two is None else two)

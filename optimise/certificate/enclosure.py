@@ -78,13 +78,9 @@ class Enclosure:
         clear = self.reach <= high - low
         if clear.all():
             return self
-        inside = between(low, np.maximum(low, high), len(self.slopes))
-        return Enclosure(
-            np.where(clear, self.centre, inside.centre),
-            np.where(clear, self.slopes, inside.slopes),
-            np.where(clear, self.rest, inside.rest),
-            self.empty,
-        )
+        found = chosen(clear, self, between(low, np.maximum(low, high), len(self.slopes)))
+        found.empty = self.empty
+        return found
 
     def magnitude(self) -> Enclosure:
         """Return the absolute value."""
@@ -188,12 +184,9 @@ class Enclosure:
             return Enclosure(centre, slopes, rest, self.empty)
         # What is defined lies between zero and the root of the greatest value.
         half = np.where(np.isfinite(most), 0.5 * np.sqrt(np.maximum(most, 0.0)) * (1.0 + INFLATION), np.nan)
-        return Enclosure(
-            np.where(clear, centre, half),
-            np.where(clear, slopes, 0.0),
-            np.where(clear, rest, half),
-            _either(self.empty, most < -INFLATION * np.abs(self.centre)),
-        )
+        found = chosen(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
+        found.empty = _either(self.empty, most < -INFLATION * np.abs(self.centre))
+        return found
 
     def _arcsine(self) -> Enclosure:
         """Tangent at the centre; the second derivative x / (1 - x^2)^(3/2) grows with |x|."""
@@ -209,12 +202,10 @@ class Enclosure:
         low = np.arcsin(np.clip(self.centre - self.reach, -1.0, 1.0))
         high = np.arcsin(np.clip(self.centre + self.reach, -1.0, 1.0))
         outside = np.abs(self.centre) - self.reach > 1.0 + INFLATION
-        return Enclosure(
-            np.where(clear, centre, 0.5 * (low + high)),
-            np.where(clear, slopes, 0.0),
-            np.where(clear, rest, 0.5 * (high - low) + 8.0 * UNIT),
-            _either(self.empty, outside),
-        )
+        wide = Enclosure(0.5 * (low + high), 0.0, 0.5 * (high - low) + 8.0 * UNIT)
+        found = chosen(clear, Enclosure(centre, slopes, rest), wide)
+        found.empty = _either(self.empty, outside)
+        return found
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         """Run NumPy's functions on enclosures: what formulas call, and arrays on the left of an operator."""
@@ -258,6 +249,19 @@ def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
     slopes[column, :, 0] = 0.5 * (high - low)
     size = np.abs(low) + np.abs(high)
     return Enclosure(0.5 * (low + high)[:, None], slopes, (UNIT * size)[:, None])
+
+
+def chosen(mask: Mask, one: Enclosure, two: Enclosure) -> Enclosure:
+    """Return one number where the mask holds, another elsewhere."""
+    empty = None
+    if one.empty is not None or two.empty is not None:
+        empty = np.where(mask, False if one.empty is None else one.empty, False if two.empty is None else two.empty)
+    return Enclosure(
+        np.where(mask, one.centre, two.centre),
+        np.where(mask, one.slopes, two.slopes),
+        np.where(mask, one.rest, two.rest),
+        empty,
+    )
 
 
 def _either(one: Mask | None, two: Mask | None) -> Mask | None:

@@ -29,7 +29,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
         return False
     start = time.perf_counter()
     one = np.ones(len(problem.objectives))
-    tree = Tree([Boxes(Evaluator(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
+    tree = Tree.of([Boxes(Evaluator(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
     with pool() as threads:
         fresh = [(index, *tree.first(index)) for index in range(len(tree.sheets))]
         while fresh:

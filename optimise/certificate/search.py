@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
 from ..search.assemble import span_of
+from ..search.candidates import Candidates
 from ..search.elimination import sheets
 from ..search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
 from ..search.recorded import polish
@@ -58,10 +59,9 @@ class Search:
         self.front = self._scaled(values)
         self.designs = self.front
         self.evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-        self.tree = Tree([Boxes(evaluator, self.span) for evaluator in self.evaluators])
+        self.tree = Tree.of([Boxes(evaluator, self.span) for evaluator in self.evaluators])
         m = len(problem.objectives)
-        self.sheet: NDArray[np.int64] = np.zeros(0, np.int64)
-        self.u, self.added = np.zeros((0, 3)), np.zeros((0, m))
+        self.added = Candidates.empty(m)  # values scaled
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
         self.closed = 0.0  # largest excess of closed boxes, of the set and of the front alone
         self.closed_by_front = 0.0
@@ -145,10 +145,8 @@ class Search:
         if not len(rows):
             return found
         fresh = self._exact(dimensions[rows])
-        padded = np.zeros((len(rows), 3))
-        padded[:, : trial.shape[1]] = trial[rows]
-        self.sheet = np.concatenate([self.sheet, np.full(len(rows), index)])
-        self.u, self.added = np.concatenate([self.u, padded]), np.concatenate([self.added, fresh])
+        own = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
+        self.added = self.added.join(own)
         self.designs = np.concatenate([self.designs, fresh])
         return excess(corner, fresh, known=found, enough=self.epsilon)
 
@@ -193,9 +191,9 @@ class Search:
         self._thin(needy)
         self._polish()
         self._thin(needy)
-        self.designs = np.concatenate([self.front, self.added])
-        dimensions = self._dimensions()
-        beyond = excess(self.added, self.front)
+        self.designs = np.concatenate([self.front, self.added.values])
+        dimensions = self.added.dimensions(self.evaluators)
+        beyond = excess(self.added.values, self.front)
         if len(beyond) and beyond.max() > self.gap:
             self._note(dimensions[int(np.argmax(beyond))])
         # Whoever is covered by an added design is covered by the front to the sum of both excesses.
@@ -215,7 +213,7 @@ class Search:
             hypervolume_gap=volume_gap(self.front, self.designs, proven, np.concatenate([needy, tree.corner])),
             span=self.span,
             added=dimensions,
-            added_values=self.added * self.span + self.ideal,
+            added_values=self.added.values * self.span + self.ideal,
             table=analyse(self.problem.mechanism, dimensions) if len(dimensions) else pd.DataFrame(),
             boxes=tree.bounded,
             open=len(tree),
@@ -236,35 +234,27 @@ class Search:
                 found.append(f"the bounds do not use that {quantity.title} has a least value")
         return tuple(found)
 
-    def _dimensions(self) -> Array:
-        found = np.zeros((len(self.u), 3))
-        for index, evaluator in enumerate(self.evaluators):
-            own = self.sheet == index
-            found[own] = evaluator.sheet.dimensions(self.u[own][:, : evaluator.dimension])
-        return found
-
     def _thin(self, needy: Array) -> None:
         """Leave out added designs whose corners others cover."""
         if not len(self.tree) and len(self.added) * len(needy) <= _THIN:
-            rows = thinned(needy, self.added, self.epsilon)
-            self.sheet, self.u, self.added = self.sheet[rows], self.u[rows], self.added[rows]
+            self.added = self.added[thinned(needy, self.added.values, self.epsilon)]
 
     def _polish(self) -> None:
         """Move added designs onto the front where that makes no objective worse: what they cover stays covered."""
         if len(self.added) > _POLISHED:
             return
         for index, evaluator in enumerate(self.evaluators):
-            own = np.flatnonzero(self.sheet == index)
+            own = np.flatnonzero(self.added.sheet == index)
             for begin in range(0, len(own), 32):
                 rows = own[begin : begin + 32]
                 if time.perf_counter() - self.start > self.seconds or self.stopped:
                     return
                 k = evaluator.dimension
-                part = polish(evaluator, self.u[rows][:, :k], self.span, iterations=_STEPS)
+                part = polish(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
                 fresh = self._exact(evaluator.sheet.dimensions(part.u))
-                better = (part.violation <= FEASIBLE) & (fresh <= self.added[rows]).all(axis=1)
-                self.u[rows[better], :k] = part.u[better]
-                self.added[rows[better]] = fresh[better]
+                better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
+                self.added.u[rows[better], :k] = part.u[better]
+                self.added.values[rows[better]] = fresh[better]
 
     def _where(self) -> Array:
         tree = self.tree

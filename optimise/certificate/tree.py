@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import itertools
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from os import cpu_count
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import Bounded, Boxes, together
+from ..search.candidates import Table
+from .boxes import Bounded, Boxes
 from .enclosure import Array
 
 _FIRST = {0: 1, 1: 64, 2: 24, 3: 12}  # boxes along each axis to begin with
@@ -18,26 +20,29 @@ _FINEST = 2.0**-40
 """Width of a box, in the unit box, below which it is not split further."""
 
 
-class Tree:
+@dataclass
+class Tree(Table):
     """The open boxes of all sheets.
 
-    sheet: (n,). lower, upper: (n, 3), padded with zeros. corner: (n, m), scaled. excess: (n,). seen: (n,), how many
-    designs it counts. axis: (n,), which to split; -1 where none is left.
+    sheet: (n,). lower, upper: (n, k), padded with zeros. corner: (n, m), scaled. excess: (n,). seen: (n,), how many
+    designs it counts. axis: (n,), which to split; -1 where none is left. bounded: boxes so far.
     """
 
-    def __init__(self, sheets: list[Boxes]) -> None:
-        """Start without boxes."""
-        self.sheets = sheets
-        m = len(sheets[0].objectives)
-        self.sheet: NDArray[np.int64] = np.zeros(0, np.int64)
-        self.lower, self.upper = np.zeros((0, 3)), np.zeros((0, 3))
-        self.corner, self.excess = np.zeros((0, m)), np.zeros(0)
-        self.seen: NDArray[np.int64] = np.zeros(0, np.int64)
-        self.axis: NDArray[np.int64] = np.zeros(0, np.int64)
-        self.bounded = 0
+    sheet: NDArray[np.int64]
+    lower: Array
+    upper: Array
+    corner: Array
+    excess: Array
+    seen: NDArray[np.int64]
+    axis: NDArray[np.int64]
+    sheets: list[Boxes] = field(kw_only=True)
+    bounded: int = field(default=0, kw_only=True)
 
-    def __len__(self) -> int:
-        return len(self.sheet)
+    @classmethod
+    def of(cls, sheets: list[Boxes]) -> Tree:
+        """Return the tree of these sheets, without boxes."""
+        none, wide = np.zeros(0, np.int64), np.zeros((0, 3))
+        return cls(none, wide, wide, np.zeros((0, len(sheets[0].objectives))), np.zeros(0), none, none, sheets=sheets)
 
     def volume(self) -> float:
         """Return the open boxes' share of the whole, sheets counting alike."""
@@ -58,7 +63,8 @@ class Tree:
         """Return the bounds of boxes of a sheet, those that cannot hold a feasible design left out."""
         self.bounded += len(lower)
         parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
-        found = together(list(pool.map(lambda part: self.sheets[index].bound(lower[part], upper[part]), parts)))
+        first, *others = pool.map(lambda part: self.sheets[index].bound(lower[part], upper[part]), parts)
+        found = first.join(*others)
         return found[found.alive]
 
     def put(self, index: int, boxes: Bounded, corner: Array, excess: Array, seen: int) -> None:
@@ -69,19 +75,12 @@ class Tree:
         smear = np.where(np.isfinite(boxes.smear), boxes.smear, 0.0) + 0.05 * wide
         smear = np.where(wide > _FINEST, smear, -1.0)
         axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
-        padded = np.zeros((2, n, 3))
-        padded[0, :, :k], padded[1, :, :k] = boxes.lower, boxes.upper
-        self.sheet = np.concatenate([self.sheet, np.full(n, index)])
-        self.lower, self.upper = np.concatenate([self.lower, padded[0]]), np.concatenate([self.upper, padded[1]])
-        self.corner = np.concatenate([self.corner, corner])
-        self.excess = np.concatenate([self.excess, excess])
-        self.seen = np.concatenate([self.seen, np.full(n, seen)])
-        self.axis = np.concatenate([self.axis, axis])
+        own = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, seen), axis)
+        self.become(self.join(Tree(*own, sheets=self.sheets)))
 
     def keep(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> None:
         """Keep only these boxes."""
-        for name in ("sheet", "lower", "upper", "corner", "excess", "seen", "axis"):
-            setattr(self, name, getattr(self, name)[rows])
+        self.become(self[rows])
 
     def largest(self, count: int) -> NDArray[np.int64]:
         """Return boxes that can be split, those of the largest excess."""

@@ -9,10 +9,9 @@ from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.registry import QUANTITIES
 from ..engine.engine import Engine
 from ..front.stationarity import Array
-from ..methods.auto.auto import AUTO
-from ..methods.auto.deliver import searched_by
+from ..methods.auto.auto import AUTO, searched_by
 from ..problem.problem import Constraint, Objective, Problem, Sense, Settings, Variant
-from ..search.checkpoints import Ledger
+from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
 from ..search.evaluation import Evaluator
 from ..search.mirror import once
@@ -31,14 +30,17 @@ class Best:
 
 
 def best_of(
-    problem: Problem, ledger: Ledger | None = None, engine: Engine | None = None, stand: Callback | None = None
+    problem: Problem,
+    checkpoints: Checkpoints | None = None,
+    engine: Engine | None = None,
+    stand: Callback | None = None,
 ) -> Best | None:
     """Return the best of a problem's only objective, None where nothing is feasible.
 
-    ledger, engine: of the search that wants to know it. stand: called with how far this one is.
+    checkpoints, engine: of the search that wants to know it. stand: called with how far this one is.
     """
-    own = [Evaluator(problem, sheet, ledger, engine) for sheet in once(problem, sheets(problem))]
-    front = searched_by(AUTO, problem, own, Run(problem, 1, stand, ledger or Ledger(), stages=stand))
+    own = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
+    front = searched_by(AUTO, problem, own, Run(problem, 1, stand, checkpoints or Checkpoints(), stages=stand))
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..engine.engine import Engine
 from ..front.stationarity import Array
 from ..problem.problem import Problem, Settings
-from ..search.checkpoints import Ledger, floats
+from ..search.checkpoints import Checkpoints, floats
 from ..search.elimination import sheets
 from ..search.evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from ..search.recorded import polished
@@ -56,18 +56,18 @@ class _Violations:
 def diagnose(
     problem: Problem,
     best: Callable[[Problem], Best | None],
-    ledger: Ledger | None = None,
+    checkpoints: Checkpoints | None = None,
     engine: Engine | None = None,
 ) -> Diagnosis:
     """Return feasible designs after all, or which requirements contradict each other.
 
-    best: gives the best of a problem with one objective, None if it is infeasible too. ledger, engine: of the search
-    that wants to know it. First the greatest relative violation is minimised from many starts, without eliminating
+    best: gives the best of a problem with one objective, None if it is infeasible too. checkpoints, engine: of the
+    search that wants to know it. First the greatest relative violation is minimised from many starts, without eliminating
     anything. If it stays positive, each requirement in turn becomes the objective of the problem without it; one that
     is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
     `certificate.infeasible` gives the proof where it can.
     """
-    feasible, turning, nearest = _least_violation(problem, ledger, engine)
+    feasible, turning, nearest = _least_violation(problem, checkpoints, engine)
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
@@ -99,13 +99,15 @@ def diagnose(
     return Diagnosis(feasible, tuple(found), message)
 
 
-def _least_violation(problem: Problem, ledger: Ledger | None, engine: Engine | None) -> tuple[Array, bool, str]:
+def _least_violation(
+    problem: Problem, checkpoints: Checkpoints | None, engine: Engine | None
+) -> tuple[Array, bool, str]:
     """Return feasible designs, whether any sampled design turns fully, and the design nearest to feasible in words."""
     feasible = []
     turning = False
     nearest, least = "", np.inf
     for index, sheet in enumerate(sheets(problem, eliminate=False)):
-        evaluator = Evaluator(problem, sheet, ledger, engine)
+        evaluator = Evaluator(problem, sheet, checkpoints, engine)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         u = u[evaluator.valid(u)]
         if not len(u):
@@ -150,4 +152,4 @@ def _greatest(evaluator: Evaluator, u: Array) -> Array:
     def greatest() -> tuple[Array]:
         return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
 
-    return floats(evaluator.ledger.step("violation", (u,), greatest, evaluator)[0])
+    return floats(evaluator.step("violation", (u,), greatest)[0])

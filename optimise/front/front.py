@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
+from ...objectives.quantity import Quantity
 from ..problem.problem import Objective, Problem
 from .constant import spread
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
@@ -21,10 +22,8 @@ from .progress import Progress
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
@@ -75,7 +74,7 @@ class ParetoFront:
         """Table of the first designs and a picture, for notebooks."""
         if not len(self):
             return f"<p>{escape(self.problem.name)}: {escape(self.message)}</p>"
-        columns = [self.problem.quantity(objective.quantity).field for objective in self.objectives]
+        columns = [quantity.field for quantity in self._quantities]
         sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.designs.columns]
         table = self.designs[list(dict.fromkeys([*columns, *sizes]))].to_html(max_rows=8, float_format="{:.5g}".format)
         return f"<div><p>{escape(repr(self))}</p>{svg(self._shown(), self._labels())}{table}</div>"
@@ -87,12 +86,14 @@ class ParetoFront:
         return figure(self._shown(), self._labels(), self.problem.name)
 
     def _labels(self) -> list[str]:
-        known = [self.problem.quantity(objective.quantity) for objective in self.objectives]
-        return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in known]
+        return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in self._quantities]
 
     def _shown(self) -> Array:
-        columns = [self.problem.quantity(objective.quantity).field for objective in self.objectives]
-        return self.designs[columns].to_numpy(dtype=np.float64)
+        return self.designs[[quantity.field for quantity in self._quantities]].to_numpy(dtype=np.float64)
+
+    @property
+    def _quantities(self) -> list[Quantity]:
+        return [self.problem.quantity(objective.quantity) for objective in self.objectives]
 
     @property
     def objectives(self) -> tuple[Objective, ...]:
@@ -180,7 +181,7 @@ class ParetoFront:
         """
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
-        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
+        units = np.array([quantity.unit.factor for quantity in self._quantities])
         reach = spread(self.values, size=self._sizes)
         spans = units * np.where(reach > 0.0, reach, 1.0)
         left = self.values[row] - self.values.min(axis=0)
@@ -207,7 +208,7 @@ class ParetoFront:
         units that they are told in.
         """
         rates, reach = self.rates(row), spread(self.values, size=self._sizes)
-        units = np.array([self.problem.quantity(objective.quantity).unit.factor for objective in self.objectives])
+        units = np.array([quantity.unit.factor for quantity in self._quantities])
         better = (self.values[row] - self.values.min(axis=0)) * units
         worse = (self.values.max(axis=0) - self.values[row]) * units
         sentences = []

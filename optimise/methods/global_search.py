@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from ..search.checkpoints import floats
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
-from .local import by_slsqp, found_by
+from .local import by_slsqp, keep
 from .method import Method
 from .registry import budget
 from .scalar import Form, Programme
@@ -46,7 +45,7 @@ class _Exact:
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        values, violation = map(floats, self.evaluator.ledger.step("points", (u,), lambda: self._at(u), self.evaluator))
+        values, violation = map(floats, self.evaluator.step("points", (u,), lambda: self._at(u)))
         self.known = {
             point.tobytes(): value
             for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
@@ -146,15 +145,13 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     run.archive = seen
     run.rounds = 1 + len(evaluators)
     for index in range(len(evaluators)):
-        for u, values in _basins(problem, evaluators, index, seen):
-            archive.take(index, u[None], values[None])
-            archive.feasible += 1
+        _descend(problem, evaluators, index, archive, seen)
         run.tell("descending", evaluators, archive)
     return archive
 
 
-def _basins(problem: Problem, evaluators: list[Evaluator], index: int, seen: Archive) -> Iterator[tuple[Array, Array]]:
-    """Yield the optima of a sheet with their objectives (1,), SI; the archive takes in what comes on the way."""
+def _descend(problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive) -> None:
+    """Put the optima of the basins of one sheet into the archive, what comes on the way into what was seen."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]
@@ -178,10 +175,7 @@ def _basins(problem: Problem, evaluators: list[Evaluator], index: int, seen: Arc
     values = evaluator.screen(basins, band=np.inf)[1]
     ideal, span = np.nanmin(values, axis=0), span_of(problem, values)
     for start in basins:
-        optimum = found_by(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start)
-        if optimum is not None:
-            u, scaled = optimum
-            yield u, scaled * span + ideal
+        keep(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
 
 
 DIFFERENTIAL_EVOLUTION = Method(

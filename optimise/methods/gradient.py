@@ -8,7 +8,7 @@ from ..problem.problem import Problem
 from ..search.assemble import span_of
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .local import Local, by_slsqp, by_trust_constr, found_by
+from .local import Local, by_slsqp, by_trust_constr, keep
 from .method import Method
 from .registry import budget
 from .scalar import Form, Programme
@@ -43,11 +43,7 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
             break
         index = int(begun.sheet[row])
         programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
-        optimum = found_by(solve, programme, begun.u[row, : programme.k])
-        if optimum is not None:
-            u, scaled = optimum
-            archive.take(index, u[None], scaled[None] * span + ideal)
-            archive.feasible += 1
+        keep(solve, programme, begun.u[row], archive, index)
         run.tell("descending", evaluators, archive)
     return archive
 

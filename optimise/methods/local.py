@@ -11,6 +11,7 @@ import numpy as np
 from ..front.stationarity import Array
 from ..search.checkpoints import floats
 from ..search.evaluation import FEASIBLE
+from ..search.search import Archive
 from .scalar import Programme
 
 REACH = 1e-6
@@ -28,7 +29,7 @@ Local = Callable[[Programme, Array], Array | None]
 
 
 def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array] | None:
-    """Return the optimum near u (k,), a step of the ledger, with its scaled objectives (m,); None if not feasible."""
+    """Return the optimum near u (k,), a recorded step, with its scaled objectives (m,); None if not feasible."""
     form, evaluator = programme.form, programme.evaluator
     scaling, shares = (programme.ideal, programme.span), (form.weights, form.reference, form.ceilings)
 
@@ -36,8 +37,20 @@ def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array
         found = solve(programme, u)
         return () if found is None else (found, programme.objectives(found))
 
-    found = evaluator.ledger.step("descent", (u, *shares, np.array([form.rho]), *scaling), compute, evaluator)
+    found = evaluator.step("descent", (u, *shares, np.array([form.rho]), *scaling), compute)
     return (floats(found[0]), floats(found[1])) if found else None
+
+
+def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
+    """Take the optimum near u (k,) of a sheet into an archive, and return its objectives (m,), SI; None without one."""
+    optimum = found_by(solve, programme, u[: programme.k])
+    if optimum is None:
+        return None
+    found, scaled = optimum
+    values = np.asarray(scaled * programme.span + programme.ideal)
+    archive.take(index, found[None], values[None])
+    archive.feasible += 1
+    return values
 
 
 def by_slsqp(programme: Programme, u: Array) -> Array | None:

@@ -77,7 +77,7 @@ def divisions(population: int, objectives: int) -> int:
 
 def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
     with quiet():
-        breed = _Genetic(problem, evaluators, run.ledger.poll, sampler, options)
+        breed = _Genetic(problem, evaluators, run.checkpoints.poll, sampler, options)
         return evolve(problem, evaluators, run, breed, size=breed.size)
 
 

@@ -1,8 +1,7 @@
 """Generation after generation: breed, evaluate at once, remember.
 
 A method says only how a brood is bred from the generations before it. Every brood has random numbers of its own, seeded
-by the run's seed and its number, and depends on nothing but these generations: a brood that the ledger has need not be
-bred again.
+by the run's seed and its number, and depends on these generations alone: a brood on record need not be bred again.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
-from ..search.checkpoints import Counts, Numbers, floats, integers
+from ..search.checkpoints import Numbers, floats, integers
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation
@@ -43,7 +42,7 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     past: list[Generation] = []
     count = 0
     while True:
-        brood = _bred(run, evaluators[0], breed, past)
+        brood = _bred(evaluators[0], breed, past)
         if count + len(brood) > allowed and past:
             break
         past.append(seen.evaluate(brood))
@@ -52,13 +51,13 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     return seen.archive
 
 
-def _bred(run: Run, counts: Counts, breed: Breed, past: list[Generation]) -> Brood:
+def _bred(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
     def compute() -> tuple[Numbers, ...]:
-        run.ledger.poll()
+        evaluator.checkpoints.poll()
         brood = breed(past)
         return brood.sheet, brood.u, brood.parents
 
-    sheet, u, parents = run.ledger.step("breeding", (np.array([len(past)]),), compute, counts)
+    sheet, u, parents = evaluator.step("breeding", (np.array([len(past)]),), compute)
     return Brood(integers(sheet), floats(u), integers(parents))
 
 

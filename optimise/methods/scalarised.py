@@ -20,7 +20,7 @@ from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .gradient import spent
-from .local import by_slsqp, found_by
+from .local import by_slsqp, keep
 from .method import Method
 from .reference import grid, simplex
 from .scalar import Form, Programme
@@ -137,14 +137,7 @@ class _Front:
     def optimum(self, form: Form, index: int, u: Array) -> Array | None:
         """Keep the design that is the form's optimum near a point; return its objectives (m,), SI, None without one."""
         programme = Programme(self.evaluators[index], form, self.ideal, self.span)
-        optimum = found_by(by_slsqp, programme, u[: programme.k])
-        if optimum is None:
-            return None
-        found, scaled = optimum
-        values = scaled * self.span + self.ideal
-        self.archive.take(index, found[None], values[None])
-        self.archive.feasible += 1
-        return values
+        return keep(by_slsqp, programme, u, self.archive, index)
 
     def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
         """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""

@@ -30,7 +30,7 @@ poor ones (constant liar), so that a batch spreads."""
 def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that the tree-structured Parzen estimator finds."""
     with quiet():
-        breed = _Parzen(problem, evaluators, run.ledger.poll)
+        breed = _Parzen(problem, evaluators, run.checkpoints.poll)
         return evolve(problem, evaluators, run, breed, size=breed.size)
 
 

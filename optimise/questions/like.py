@@ -23,14 +23,13 @@ from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY, Array
 from ..methods.registry import require_gradients
 from ..problem.problem import Constraint, Problem, Range, Settings
-from ..search.assemble import empty, only
+from ..search.assemble import assemble, empty
 from ..search.candidates import Finished
 from ..search.elimination import UNKNOWNS, sheets
-from ..search.enumeration import enumerate_settled, searched
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.recorded import polish
 from ..search.sampling import generator
-from ..search.search import Archive, Run, explore
+from ..search.search import Archive, Run, enumerate_settled, explore, searched
 from ..solve import solve
 
 Ends = tuple[float | None, float | None]
@@ -81,7 +80,7 @@ def like(
     if not len(finished):
         return _nearest(solve(asked), values, span)
     _zoom(finished, free, archive, values, asked.settings.seed)
-    return only(asked, evaluators, finished, run, int(_ranked(finished, archive, values)[0]))
+    return assemble(asked, evaluators, finished[_ranked(finished, archive, values)[:1]], run)
 
 
 def like_design(

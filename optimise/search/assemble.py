@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,15 +57,13 @@ def assemble(
     table = table_of(problem, variants, dimensions, run.stage(FINISHING))
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
-    evaluations = sum(evaluator.evaluations for evaluator in evaluators)
-    message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluations} evaluated"
+    evaluated = sum(evaluator.evaluations for evaluator in evaluators)
+    message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluated} evaluated"
     if status == "cancelled":
         message = f"cancelled: {message}, the front may be incomplete"
     ideal = values.min(axis=0)
-    return ParetoFront(
-        problem=problem,
-        status=status,
-        message=message,
+    return replace(
+        empty(problem, evaluators, run, status, message),
         designs=table,
         dimensions=dimensions,
         values=values,
@@ -72,10 +71,6 @@ def assemble(
         active=tuple(active),
         hypervolume=hypervolume(values, ideal, span),
         history=run.history(ideal, span, *((_GLIMPSE,) if status == "cancelled" else ())),
-        evaluations=evaluations,
-        seconds=run.ledger.seconds,
-        seed=problem.settings.seed,
-        versions=versions(),
         variants=tuple(variants.tolist()) if problem.variants else (),
     )
 
@@ -152,15 +147,10 @@ def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Statu
         hypervolume=0.0,
         history=tuple(run.told),
         evaluations=sum(evaluator.evaluations for evaluator in evaluators),
-        seconds=run.ledger.seconds,
+        seconds=run.checkpoints.seconds,
         seed=problem.settings.seed,
         versions=versions(),
     )
-
-
-def only(problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, row: int) -> ParetoFront:
-    """Return a front of one of finished designs; its residual is scaled by their span."""
-    return assemble(problem, evaluators, finished[np.array([row])], run)
 
 
 def span_of(problem: Problem, values: Array) -> Array:

@@ -31,7 +31,7 @@ Words = NDArray[np.int64]
 
 
 class Cancelled(Exception):
-    """The search is to end with what it has; see `Ledger.poll`."""
+    """The search is to end with what it has; see `Checkpoints.poll`."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Record:
     """Some steps of a search, the next ones after those of the record before.
 
     identity: whose. number: counted from zero. told: rounds told up to here. seconds: of the search up to here. words:
-    the steps end to end, numbers of 64 bits as they lie in memory; see `Ledger`.
+    the steps end to end, numbers of 64 bits as they lie in memory; see `Checkpoints`.
     """
 
     identity: Identity
@@ -63,7 +63,7 @@ class Counts(Protocol):
     evaluations: int
 
 
-class Ledger:
+class Checkpoints:
     """The steps of one search: first those of an earlier run, then those that are computed now, which it keeps.
 
     told: rounds told so far. before: those that the earlier run told. repeated: records of the earlier run that are

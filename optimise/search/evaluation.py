@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..engine.engine import Engine
 from ..engine.serial import Serial
 from ..engine.shared import Shared
 from ..problem.problem import Constraint, Objective, Problem, Range
-from .checkpoints import Ledger, floats, integers
+from .checkpoints import Checkpoints, Numbers, floats, integers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly
 
@@ -91,13 +92,13 @@ class Evaluator:
     """
 
     def __init__(
-        self, problem: Problem, sheet: Sheet, ledger: Ledger | None = None, engine: Engine | None = None
+        self, problem: Problem, sheet: Sheet, checkpoints: Checkpoints | None = None, engine: Engine | None = None
     ) -> None:
         """Prepare the constraints that remain on the sheet, cheapest first.
 
-        ledger: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
+        checkpoints: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
         """
-        self.ledger = ledger or Ledger()
+        self.checkpoints = checkpoints or Checkpoints()
         self.engine = engine or Serial()
         problem = problem.part(sheet.variant)
         self.problem = problem
@@ -109,10 +110,16 @@ class Evaluator:
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
-        self.chunked = Chunked(Shared(self), self.engine, self.ledger.poll)
+        self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
 
     def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
         return Evaluator, (self.problem, self.sheet)
+
+    def step(
+        self, kind: str, given: Sequence[Numbers], compute: Callable[[], tuple[Numbers, ...]]
+    ) -> tuple[Numbers, ...]:
+        """Return the result of a recorded step, see `Checkpoints.step`."""
+        return self.checkpoints.step(kind, given, compute, self)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
@@ -124,16 +131,14 @@ class Evaluator:
         (see `model.signals.screening`).
         """
         dimensions = self.sheet.dimensions(u)
-        rows, found, violation = self.ledger.step(
-            "screening", (u, np.array([band])), lambda: self._screened(dimensions, band), self
-        )
+        rows, found, violation = self.step("screening", (u, np.array([band])), lambda: self._screened(dimensions, band))
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
         objectives[integers(rows)] = floats(found)
         return dimensions, objectives, floats(violation)
 
     def _screened(self, dimensions: Array, band: float) -> tuple[NDArray[np.int64], Array, Array]:
         """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
-        self.ledger.poll()
+        self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)
         self.evaluations += len(dimensions)
         # What is out of reach already needs no cycle computed.
@@ -185,7 +190,7 @@ class Evaluator:
 
     def exact(self, u: Array) -> tuple[Rows, Rows]:
         """Return objective rows and constraint rows, in unit-box coordinates, of points where `valid` holds."""
-        self.ledger.poll()
+        self.checkpoints.poll()
         dimensions = self.sheet.dimensions(u)
         jacobian = self.sheet.jacobian(u)
         self.evaluations += len(u)

@@ -16,7 +16,7 @@ noise. Designs advance together, so that every evaluation is a batch.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -114,14 +114,18 @@ class _Batch:
         self.u = np.clip(start, 0.0, 1.0)
         self.goals, self.limits = self._evaluate(self.u)
         n, k = start.shape
+        self.weight = np.full(n, VIOLATION)
+        self.hessians = np.tile(np.eye(k), (n, 1, 1))
+        self._begin()
+        self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
+
+    def _begin(self) -> None:
+        n, k = self.u.shape
         self.open = np.full(n, k > 0)
         self.stalls = np.zeros(n, dtype=np.int64)
         self.radius = np.full(n, 0.25)
         self.moved = np.ones(n, dtype=bool)
-        self.weight = np.full(n, VIOLATION)
-        self.hessians = np.tile(np.eye(k), (n, 1, 1))
-        self.held = greatest(self.goals, len(scale))
-        self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
+        self.held = greatest(self.goals, len(self.scale))
 
     def restore(self) -> None:
         """Move designs that violate constraints onto them, the shortest way."""
@@ -131,11 +135,7 @@ class _Batch:
                 break
             steps = [self._programme(row, ()).move for row in outside.tolist()]
             self._search(outside, np.array(steps), (), correct=False)
-        self.open[:] = self.u.shape[1] > 0
-        self.moved[:] = True
-        self.radius[:] = 0.25
-        self.stalls[:] = 0
-        self.held = greatest(self.goals, len(self.scale))
+        self._begin()
 
     def advance(self) -> bool:
         """Take one step with every open design; return whether any was open."""
@@ -184,7 +184,7 @@ class _Batch:
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
         goals, limits = self.evaluator.exact(u)
         factor = 1.0 / self.scale[goals.owner]
-        return Rows(goals.values * factor, goals.gradients * factor[:, None], goals.labels, goals.owner), limits
+        return replace(goals, values=goals.values * factor, gradients=goals.gradients * factor[:, None]), limits
 
     def _put(self, row: int, u: Array, goals: Rows, limits: Rows, source: int) -> None:
         self.u[row] = u
@@ -292,7 +292,7 @@ class _Batch:
     def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
         """Return the step that also holds what the first one bends out of; rows are those at its end."""
         goals, limits = [
-            Rows(bent(here, there, step), here.gradients, here.labels, here.owner)
+            replace(here, values=bent(here, there, step))
             for here, there in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
         ]
         return self._solve(row, goals, limits, chosen).move

@@ -95,7 +95,7 @@ def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: 
             np.concatenate([np.zeros((0, k)), *found.active]),
         )
 
-    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.ledger.step(
+    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.checkpoints.step(
         kind, given, arrays, evaluator
     )
     n, ends = len(pieces), np.cumsum(integers(pieces))[:-1]

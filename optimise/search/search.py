@@ -14,9 +14,10 @@ from ..front.progress import REPEATING, Progress
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from .candidates import Candidates, Finished
-from .checkpoints import Ledger
+from .checkpoints import Checkpoints
 from .evaluation import FEASIBLE, Evaluator
 from .growth import Growth
+from .recorded import polished
 from .sampling import around, first_samples, generator
 
 FIRST = 16384
@@ -32,6 +33,7 @@ ENOUGH = 32
 """Samples that are enough to zoom on."""
 LEAST = 1024
 """Designs of a round on each of many sheets."""
+_ROUND = 100  # of sheets that leave nothing free
 _CROWD = 2000  # parents of a round
 _BEST = 1000  # designs kept of a single objective
 _SHOWN = 400  # designs of a front so far, and of that of a round in the history
@@ -93,16 +95,17 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 class Run:
     """State of a running search: its rounds, the front at the end of each, and the result so far.
 
-    ledger: of its steps, the one that its evaluators have. settled: evaluators of the sheets that leave nothing free.
-    archive: what the search has found on the others. finished: the designs of the settled ones, and what the
-    polish has made of the archive. fronts: of each round, feasible designs that its hypervolume is told of.
-    progress: called after every round. stages: called in long stages between two.
+    checkpoints: of its steps, which its evaluators have too. settled: evaluators of the sheets that leave nothing free.
+    archive: what the search has found on the others. finished: the designs of the settled ones, and what the polish
+    has made of the archive. fronts: of each round, feasible designs that its hypervolume is told of. latest: objectives
+    (n, m) of the front after the last round, SI, as minimised; of many some hundreds. progress: called after every
+    round. stages: called in long stages between two.
     """
 
     problem: Problem
     rounds: int
     progress: Callback | None = None
-    ledger: Ledger = field(default_factory=Ledger)
+    checkpoints: Checkpoints = field(default_factory=Checkpoints)
     told: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)
     archive: Archive | None = None
@@ -112,7 +115,7 @@ class Run:
 
     def __post_init__(self) -> None:
         self._growth = Growth(self._targets)
-        self._latest: Array = np.zeros((0, len(self.problem.objectives)))
+        self.latest: Array = np.zeros((0, len(self.problem.objectives)))
         self._heard = time.monotonic()
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
@@ -125,7 +128,7 @@ class Run:
         polished = [] if self.finished is None else [self.finished.values]
         values = np.concatenate([archive.values, *polished])
         values = values[nondominated(values)]
-        self._latest = values[:: 1 + len(values) // _SHOWN]
+        self.latest = values[:: 1 + len(values) // _SHOWN]
         entry = Progress(
             stage,
             len(self.told) + 1,
@@ -133,11 +136,11 @@ class Run:
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
             archive.feasible + (0 if self.finished is None else int((~self.finished.free).sum())),
             self._growth.take(np.concatenate([archive.values[archive.met], *polished])),
-            self.ledger.seconds,
+            self.checkpoints.seconds,
         )
         self.told.append(entry)
         self.fronts.append(self._growth.front[:: 1 + len(self._growth.front) // _SHOWN])
-        if self.ledger.turn():
+        if self.checkpoints.turn():
             self._say(entry, self.progress)
         else:
             self.stand(stage, 0, 1)
@@ -146,7 +149,7 @@ class Run:
         """Return the callback of a long stage, many times a second: it ends a cancelled search and tells progress."""
 
         def stand(done: int, of: int) -> None:
-            self.ledger.poll()
+            self.checkpoints.poll()
             self.stand(name, done, of)
 
         return stand
@@ -155,10 +158,12 @@ class Run:
         """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told, or now."""
         if self.stages is None or (time.monotonic() - self._heard < TELL and not now):
             return
-        if self.ledger.told < self.ledger.before or self.ledger.replaying:
-            stage, done, of = REPEATING, self.ledger.repeated, self.ledger.resumed
+        if self.checkpoints.told < self.checkpoints.before or self.checkpoints.replaying:
+            stage, done, of = REPEATING, self.checkpoints.repeated, self.checkpoints.resumed
         last = self.told[-1] if self.told else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
-        self._say(replace(last, stage=stage, seconds=self.ledger.seconds, step=done, steps=max(done, of)), self.stages)
+        self._say(
+            replace(last, stage=stage, seconds=self.checkpoints.seconds, step=done, steps=max(done, of)), self.stages
+        )
 
     def _say(self, entry: Progress, hearing: Callback | None) -> None:
         if hearing is not None:
@@ -179,9 +184,29 @@ class Run:
             replace(entry, hypervolume=growth.take(front)) for entry, front in zip(self.told, self.fronts, strict=True)
         )
 
-    def front_so_far(self) -> Array:
-        """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
-        return self._latest
+
+def searched(evaluators: list[Evaluator]) -> list[Evaluator]:
+    """Return the evaluators of sheets that leave something free; they come first, so that indices stay the same."""
+    return [evaluator for evaluator in evaluators if evaluator.dimension]
+
+
+def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -> Finished:
+    """Return the feasible designs of all sheets that leave nothing free, and give them to the run.
+
+    Each such sheet has one design, which is evaluated exactly: no sampling decides about these.
+    """
+    count = len(problem.objectives)
+    free = searched(evaluators)
+    finished = run.finished = Finished.none(np.ones(count))
+    run.settled = evaluators[len(free) :]
+    point = np.zeros((1, 0))
+    for place, evaluator in enumerate(run.settled):
+        run.checkpoints.poll()
+        if evaluator.valid(point)[0]:
+            finished.add(len(free) + place, polished(evaluator, point, finished.span))
+        if (place + 1) % _ROUND == 0 or place + 1 == len(run.settled):
+            run.tell("enumerating", free, Archive.empty(count))
+    return finished
 
 
 def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:

@@ -39,7 +39,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...model.machine.mechanism import Mechanism
@@ -79,14 +79,7 @@ class BarLoads:
 
     def each(self, above: Above) -> BarLoads:
         """Return the same with `above` applied to each that own mass adds to."""
-        return BarLoads(
-            above(self.axial),
-            above(self.compression),
-            above(self.moment),
-            above(self.fatigue_axial),
-            above(self.fatigue_moment),
-            self.pins,
-        )
+        return replace(self, **{name: above(load) for name, load in vars(self).items() if name != "pins"})
 
 
 def limit_states(

@@ -12,8 +12,7 @@ import pytest
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import choose
 from slidercrank.optimise.front.progress import REPEATING, Progress
-from slidercrank.optimise.search import checkpoints as ledger
-from slidercrank.optimise.search import search
+from slidercrank.optimise.search import checkpoints, search
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
@@ -29,7 +28,7 @@ GIVEN = problem(
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tell at every occasion, and keep every step at once."""
     monkeypatch.setattr(search, "TELL", 0.0)
-    monkeypatch.setattr(ledger, "PAUSE", 0.0)
+    monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
 
 
 def searched(**more: object) -> tuple[ParetoFront, list[Progress], list[Record]]:

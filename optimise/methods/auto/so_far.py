@@ -18,7 +18,7 @@ from ...search.candidates import Finished
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
 from ...search.search import Archive, Run
-from .deliver import move
+from .auto import move
 
 _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
@@ -35,8 +35,8 @@ def so_far(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: b
     none where functions of the job's own do not return in that time. silent: they did not when the search was told to
     end, and are not asked again.
     """
-    begin = time.perf_counter() if run.ledger.ended is None else run.ledger.ended
-    run.ledger.close()
+    begin = time.perf_counter() if run.checkpoints.ended is None else run.checkpoints.ended
+    run.checkpoints.close()
 
     def give_up() -> None:
         if silent or time.perf_counter() - begin > _OWN:

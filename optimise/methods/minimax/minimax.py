@@ -130,13 +130,13 @@ def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def _end(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
-    """Return where the descent from a point ends, with its greatest piece and its violation; a step of the ledger."""
+    """Return where the descent from a point ends, with its greatest piece and its violation; a recorded step."""
 
     def compute() -> tuple[Array, Array]:
         point = descent.run(u)
         return point.u, np.array([point.top, point.violation])
 
-    end, measures = evaluator.ledger.step("descent", (u, np.array([descent.scale])), compute, evaluator)
+    end, measures = evaluator.step("descent", (u, np.array([descent.scale])), compute)
     top, violation = floats(measures).tolist()
     return floats(end), top, violation
 
@@ -168,8 +168,10 @@ def _starts(
 
 
 def _top(evaluator: Evaluator, u: Array) -> float:
-    """Return the greatest piece at a point; a step of the ledger."""
-    found = evaluator.ledger.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),), evaluator)
+    """Return the greatest piece at a point; a recorded step."""
+    found = evaluator.checkpoints.step(
+        "top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),), evaluator
+    )
     return float(found[0][0])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -100,7 +100,7 @@ class Descent:
 
     def _at(self, u: Array) -> Point:
         goals, limits = self.evaluator.exact(u[None])
-        scaled = Rows(goals.values / self.scale, goals.gradients / self.scale, goals.labels, goals.owner)
+        scaled = replace(goals, values=goals.values / self.scale, gradients=goals.gradients / self.scale)
         return Point(u, alone(scaled, 0), alone(limits, 0))
 
     def _solve(
@@ -156,7 +156,7 @@ class Descent:
         if other is None:
             return None
         # Judged by what the first step promised: the bent rows promise what they were made to.
-        return self._try(point, Step(other.move, step.top, step.slack, *_duals(step)), root, weight)
+        return self._try(point, replace(step, move=other.move), root, weight)
 
     def _root(self, point: Point, step: Step) -> Array:
         """Return R with R'R the Lagrangian's Hessian, convexified along what holds the step."""
@@ -167,7 +167,7 @@ class Descent:
         if not valid.all():
             return np.zeros((k, k))
         goals, limits = self.evaluator.exact(moved)
-        goals = Rows(goals.values, goals.gradients / self.scale, goals.labels, goals.owner)
+        goals = replace(goals, gradients=goals.gradients / self.scale)
         hessian = np.stack(
             [
                 difference(point.goals, alone(goals, i), step.goals)
@@ -194,10 +194,6 @@ def residual_of(point: Point, step: Step) -> float:
         + step.above @ (1.0 - point.u)
     )
     return float(np.linalg.norm(left)) + float(gap) + point.violation
-
-
-def _duals(step: Step) -> tuple[Array, Array, Array, Array]:
-    return step.goals, step.limits, step.below, step.above
 
 
 def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:

@@ -8,7 +8,7 @@ import pytest
 
 from tests.recipes import code_of, require_taken_up
 
-SUITES = ("test_ledger.py", "methods/test_registry.py", "test_enumeration.py")
+SUITES = ("test_checkpoints.py", "methods/test_registry.py", "test_enumeration.py")
 
 
 def test_a_method_in_one_file_is_taken_up_by_the_suites_of_all_methods(

@@ -17,9 +17,9 @@ from slidercrank.optimise.methods import starts
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust
-from slidercrank.optimise.search import checkpoints as ledger
+from slidercrank.optimise.search import checkpoints
 from slidercrank.optimise.search import fingerprint as identity
-from slidercrank.optimise.search.checkpoints import Cancelled, Identity, Ledger, Numbers, Record
+from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record
 from slidercrank.optimise.search.fingerprint import identity_of
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, shipped
@@ -48,7 +48,7 @@ SLOW = ("trust_constr", "shgo", "minimax")
 @pytest.fixture(autouse=True)
 def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep every step at once, so that runs can be cut within their rounds; start from few samples."""
-    monkeypatch.setattr(ledger, "PAUSE", 0.0)
+    monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
     monkeypatch.setattr(starts, "SAMPLES", 512)
 
 
@@ -261,10 +261,10 @@ def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
         first.evaluations += 7
         yield given
 
-    one = Ledger(keep=kept.append, identity=lambda: mine)
+    one = Checkpoints(keep=kept.append, identity=lambda: mine)
     one.step("x", (np.ones(2),), lambda: next(compute()), first)
     one.turn()
-    two = Ledger(past=kept, identity=lambda: mine)
+    two = Checkpoints(past=kept, identity=lambda: mine)
     assert two.replaying
     found = two.step("x", (np.ones(2),), tuple, again)
     assert not two.replaying
@@ -273,9 +273,9 @@ def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
         assert (here.dtype, here.shape, here.tobytes()) == (there.dtype, there.shape, there.tobytes())
 
 
-def test_a_ledger_that_is_closed_neither_asks_nor_keeps() -> None:
+def test_closed_checkpoints_neither_ask_nor_keep() -> None:
     kept: list[Record] = []
-    one = Ledger(cancelled=lambda: True, keep=kept.append, identity=lambda: Identity("a", "b"))
+    one = Checkpoints(cancelled=lambda: True, keep=kept.append, identity=lambda: Identity("a", "b"))
     with pytest.raises(Cancelled):
         one.poll()
     one.close()
@@ -295,11 +295,11 @@ class Clock:
 
 def test_the_time_of_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, kept = Clock(), list[Record]()
-    monkeypatch.setattr(ledger, "time", clock)
-    one = Ledger(keep=kept.append, identity=lambda: Identity("a", "b"))
+    monkeypatch.setattr(checkpoints, "time", clock)
+    one = Checkpoints(keep=kept.append, identity=lambda: Identity("a", "b"))
     clock.now = 5.0
     one.step("x", (), lambda: (np.ones(1),), Counter())
     clock.now = 100.0
-    two = Ledger(past=kept, identity=lambda: Identity("a", "b"))
+    two = Checkpoints(past=kept, identity=lambda: Identity("a", "b"))
     clock.now = 101.0
     assert two.seconds == 6.0
