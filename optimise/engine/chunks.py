@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from statistics import median
 from time import perf_counter
@@ -12,11 +14,10 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import Engine, Poll
-from .serial import LONGEST, Serial
-from .shared import Shared
+from .engine import LONGEST, Engine, Poll, Serial
 
 Array = NDArray[np.float64]
+Value = TypeVar("Value")
 Subject = TypeVar("Subject")
 Asked = TypeVar("Asked", bound=Hashable)
 Part = TypeVar("Part")
@@ -29,6 +30,42 @@ CHUNK = 0.05
 _EACH = 4  # chunks for every worker, so that none waits long for the last one
 _FIRST = 4  # rows, of the first chunk of a kind: kernels are loaded and samples drawn with it
 _SURE = 0.5 * CHUNK  # s, after which a pace is believed
+
+
+class Shared(Generic[Value]):
+    """A value that goes along with every chunk but is made only once in each process that works on them.
+
+    A problem pickles into some kB, nothing next to a chunk of 50 ms. What costs is making it: functions of your own
+    start a process, samples are drawn.
+    """
+
+    def __init__(self, value: Value) -> None:
+        """Take the value; it is pickled when it first leaves this process."""
+        self.value = value
+
+    @cached_property
+    def pickled(self) -> bytes:
+        """The value as bytes. Raises what pickle does for one that cannot leave this process."""
+        return pickle.dumps(self.value, protocol=pickle.HIGHEST_PROTOCOL)
+
+    @property
+    def portable(self) -> bool:
+        """Whether the value can leave this process: functions given from Python may not."""
+        try:
+            return bool(self.pickled)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            return False
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return _known, (self.pickled,)
+
+
+@lru_cache(maxsize=16)
+def _known(pickled: bytes) -> Shared[Any]:
+    """Return the value of these bytes, the same one for the same bytes."""
+    found = Shared(pickle.loads(pickled))
+    found.__dict__["pickled"] = pickled
+    return found
 
 
 @dataclass

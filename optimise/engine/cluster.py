@@ -93,7 +93,7 @@ class Cluster:
                 self._round(self._connected(), function, items, found, killed, poll)
             except (_Lost, OSError, CancelledError, TimeoutError) as error:
                 lost = self._client is not None
-                self._drop()
+                self.close()
                 if time.monotonic() - self._reached >= self.patience:
                     raise EngineError(
                         f"the scheduler must be reached within {self.patience:g} s; {self.address} was not "
@@ -106,7 +106,10 @@ class Cluster:
 
     def close(self) -> None:
         """End the connection; the cluster goes on."""
-        self._drop()
+        client, self._client = self._client, None
+        if client is not None:
+            with contextlib.suppress(Exception):  # it may be lost already
+                client.close(timeout=_CONNECT)
 
     def _round(
         self,
@@ -191,12 +194,6 @@ class Cluster:
                 )
             self._client = dask.Client(self.address, timeout=_CONNECT, set_as_default=False, security=security)
         return self._client
-
-    def _drop(self) -> None:
-        client, self._client = self._client, None
-        if client is not None:
-            with contextlib.suppress(Exception):  # it may be lost already
-                client.close(timeout=_CONNECT)
 
 
 def _call(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:

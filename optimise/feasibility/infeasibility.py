@@ -62,9 +62,9 @@ def diagnose(
     """Return feasible designs after all, or which requirements contradict each other.
 
     best: gives the best of a problem with one objective, None if it is infeasible too. checkpoints, engine: of the
-    search that wants to know it. First the greatest relative violation is minimised from many starts, without eliminating
-    anything. If it stays positive, each requirement in turn becomes the objective of the problem without it; one that
-    is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
+    search that wants to know it. First the greatest relative violation is minimised from many starts, without
+    eliminating anything. If it stays positive, each requirement in turn becomes the objective of the problem without
+    it; one that is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
     `certificate.infeasible` gives the proof where it can.
     """
     feasible, turning, nearest = _least_violation(problem, checkpoints, engine)

@@ -17,8 +17,8 @@ but them.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -26,14 +26,11 @@ from ...model.errors import InputError
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, Rows, generation_seed
+from .generation import Brood, Generation, generation_seed
 from .method import Method
 from .population import evolve
 from .registry import budget
-from .trials import asked, quiet, space, stored
-
-if TYPE_CHECKING:
-    from optuna.samplers import BaseGASampler
+from .trials import asked, new_study, quiet, space, stored
 
 POPULATION = 100
 """Designs of a generation where the job sets no number of samples."""
@@ -76,54 +73,28 @@ def divisions(population: int, objectives: int) -> int:
 
 
 def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
-    with quiet():
-        breed = _Genetic(problem, evaluators, run.checkpoints.poll, sampler, options)
-        return evolve(problem, evaluators, run, breed, size=breed.size)
+    """Return the designs that one of Optuna's genetic samplers finds."""
+    from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
 
+    size, axes = population_size(problem), space(evaluators)
 
-class _Genetic:
-    """Breeds by one of Optuna's genetic samplers."""
-
-    def __init__(
-        self,
-        problem: Problem,
-        evaluators: list[Evaluator],
-        poll: Callable[[], None],
-        sampler: Any,
-        options: dict[str, Any],
-    ) -> None:
-        from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
-
-        self.poll = poll
-        self.sampler = sampler
-        self.size = population_size(problem)
-        self.seed = problem.settings.seed
-        self.objectives = len(problem.objectives)
-        self.space = space(evaluators)
-        self.options = {"crossover": SBXCrossover(), "mutation": PolynomialMutation(), **options}
-
-    def __call__(self, past: Sequence[Generation]) -> Brood:
-        import optuna
-
-        seed = generation_seed(self.seed, len(past))
-        sampler: BaseGASampler = self.sampler(population_size=self.size, seed=seed, **self.options)
-        study = optuna.create_study(directions=["minimize"] * self.objectives, sampler=sampler)
+    def breed(past: Sequence[Generation]) -> Brood:
+        seed = generation_seed(problem.settings.seed, len(past))
+        genetic = sampler(population_size=size, seed=seed, crossover=crossover, mutation=mutation, **options)
+        study = new_study(problem, genetic)
         pool = np.zeros(0, np.int64)
         if past:
             history = past[0].join(*past[1:])
             pool = np.concatenate([past[-1].parents, np.arange(len(history))[-len(past[-1]) :]])
             # To the sampler all of them are one generation: it selects from both parts alike.
-            mark = {sampler._get_generation_key(): 0}
-            study.add_trials(stored(self.space, history[pool], mark))
-        sheet, u = asked(study, self.space, self.size, self.poll)
-        return Brood(sheet, u, _survivors(study, sampler, pool))
+            study.add_trials(stored(axes, history[pool], {genetic._get_generation_key(): 0}))
+        sheet, u = asked(study, axes, size, run.checkpoints.poll)
+        kept = [trial.number for trial in genetic.get_parent_population(study, 1)] if past else []
+        return Brood(sheet, u, pool[kept])
 
-
-def _survivors(study: Any, sampler: BaseGASampler, pool: Rows) -> Rows:
-    """Return the rows that selection has left of the pool."""
-    if not len(pool):
-        return pool
-    return pool[[trial.number for trial in sampler.get_parent_population(study, 1)]]
+    with quiet():
+        crossover, mutation = SBXCrossover(), PolynomialMutation()
+        return evolve(problem, evaluators, run, breed, size=size)
 
 
 NSGA2 = Method(

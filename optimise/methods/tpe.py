@@ -9,7 +9,7 @@ all coordinates together, since feasible regions lie aslant in the box.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from .generation import Brood, Generation, generation_seed
 from .method import Method
 from .population import evolve
 from .registry import budget
-from .trials import asked, quiet, space, stored
+from .trials import asked, new_study, quiet, space, stored
 
 BATCH = 20
 """Designs proposed before any of them is evaluated, where the job sets no number of samples; those under way count as
@@ -28,32 +28,21 @@ poor ones (constant liar), so that a batch spreads."""
 
 
 def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs that the tree-structured Parzen estimator finds."""
-    with quiet():
-        breed = _Parzen(problem, evaluators, run.checkpoints.poll)
-        return evolve(problem, evaluators, run, breed, size=breed.size)
+    """Return the designs that the tree-structured Parzen estimator finds; its densities are fitted anew every time."""
+    from optuna.samplers import TPESampler
 
+    size, axes = min(problem.settings.samples or BATCH, budget(problem)), space(evaluators)
 
-class _Parzen:
-    """Breeds by Optuna's TPE, whose densities it fits anew to all designs for each batch."""
-
-    def __init__(self, problem: Problem, evaluators: list[Evaluator], poll: Callable[[], None]) -> None:
-        self.poll = poll
-        self.size = min(problem.settings.samples or BATCH, budget(problem))
-        self.seed = problem.settings.seed
-        self.objectives = len(problem.objectives)
-        self.space = space(evaluators)
-
-    def __call__(self, past: Sequence[Generation]) -> Brood:
-        import optuna
-
-        seed = generation_seed(self.seed, len(past))
-        sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
-        study = optuna.create_study(directions=["minimize"] * self.objectives, sampler=sampler)
+    def breed(past: Sequence[Generation]) -> Brood:
+        seed = generation_seed(problem.settings.seed, len(past))
+        study = new_study(problem, TPESampler(seed=seed, multivariate=True, constant_liar=True))
         if past:
-            study.add_trials(stored(self.space, past[0].join(*past[1:]), {}))
-        sheet, u = asked(study, self.space, self.size, self.poll)
+            study.add_trials(stored(axes, past[0].join(*past[1:]), {}))
+        sheet, u = asked(study, axes, size, run.checkpoints.poll)
         return Brood(sheet, u, np.zeros(0, np.int64))
+
+    with quiet():
+        return evolve(problem, evaluators, run, breed, size=size)
 
 
 TPE = Method(

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..front.stationarity import Array
+from ..problem.problem import Problem
 from ..search.evaluation import FEASIBLE, Evaluator
 from .generation import Generation, Rows
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
+    from optuna.samplers import BaseSampler
     from optuna.study import Study
     from optuna.trial import FrozenTrial
 
@@ -46,6 +48,13 @@ def space(evaluators: list[Evaluator]) -> Space:
     if len(evaluators) > 1:
         found[_SHEET] = CategoricalDistribution(list(range(len(evaluators))))
     return found
+
+
+def new_study(problem: Problem, sampler: BaseSampler) -> Study:
+    """Return a study in memory with a problem's objectives, without trials."""
+    import optuna
+
+    return optuna.create_study(directions=["minimize"] * len(problem.objectives), sampler=sampler)
 
 
 def _coordinates(evaluators: list[Evaluator]) -> list[str]:

@@ -12,9 +12,8 @@ from ...model.tolerance.spreads import Shape, spread
 from ...objectives.quantity import Array, Quantity
 from ...objectives.robust.points import limits_of
 from ...objectives.robust.quantity import RobustQuantity
-from ..engine.engine import Engine
-from ..engine.serial import Serial
-from ..engine.shared import Shared
+from ..engine.chunks import Shared
+from ..engine.engine import Engine, Serial
 from ..front.front import ParetoFront
 from ..problem.problem import Problem
 from ..problem.robust import robust_quantities

@@ -1,9 +1,10 @@
-"""Designs with their values, row by row: screened ones, and finished ones that are worth delivering."""
+"""Designs with their values, row by row: screened ones, polished ones, and those that are worth delivering."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,6 @@ from ..front.hypervolume import Stand, nondominated, unheard
 from ..front.stationarity import STATIONARY, Array
 from .evaluation import FEASIBLE, Evaluator
 from .sampling import apart
-
-if TYPE_CHECKING:
-    from .polish import Polished
 
 EQUAL = 1e-9
 """Of the objectives' range: a design as good as another one to this everywhere, and better somewhere, displaces it."""
@@ -53,8 +51,15 @@ def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
     """Return arrays under each other; those of points with fewer columns are padded with zeros."""
     if parts[0].ndim == 2:
         width = max(part.shape[1] for part in parts)
-        parts = tuple(np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
+        parts = tuple(
+            part if part.shape[1] == width else np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts
+        )
     return np.concatenate(parts)
+
+
+def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
+    """Return one entry a design, (n,), of any shape."""
+    return np.fromiter(parts, dtype=np.object_)
 
 
 @dataclass
@@ -107,10 +112,27 @@ class Candidates(Table):
 
 
 @dataclass
+class Polished(Table):
+    """Designs after the polish.
+
+    u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative. residual: (n,), see
+    `stationarity.multipliers`. goals: for each design, owner and gradient of the active objective pieces. active: the
+    gradients of its active constraints and bounds.
+    """
+
+    u: Array
+    values: Array
+    violation: Array
+    residual: Array
+    goals: NDArray[np.object_]
+    active: NDArray[np.object_]
+
+
+@dataclass
 class Finished(Candidates):
     """Candidates for the front: polished designs, all feasible, and those of sheets that leave nothing free.
 
-    residual: (n,). goals, active: (n,), see `polish.Polished`. span: (m,), what objectives are scaled by.
+    residual: (n,). goals, active: (n,), see `Polished`. span: (m,), what objectives are scaled by.
     """
 
     residual: Array

@@ -12,10 +12,8 @@ from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..engine.chunks import Chunked
-from ..engine.engine import Engine
-from ..engine.serial import Serial
-from ..engine.shared import Shared
+from ..engine.chunks import Chunked, Shared
+from ..engine.engine import Engine, Serial
 from ..problem.problem import Constraint, Objective, Problem, Range
 from .checkpoints import Checkpoints, Numbers, floats, integers
 from .elimination import UNKNOWNS, Sheet

@@ -47,15 +47,16 @@ def joined(parts: list[list[Pieces]]) -> list[Pieces]:
 
 
 def _joined(parts: tuple[Pieces, ...]) -> Pieces:
-    least = parts[0].least
-    most = max(part.values.shape[1] for part in parts)
-    room = [((0, 0), (0, most - part.values.shape[1])) for part in parts]
-    absent = np.inf if least else -np.inf
+    most, least = max(part.values.shape[1] for part in parts), parts[0].least
+
+    def rows(columns: list[Array], absent: float = 0.0) -> Array:
+        room = [[(0, 0), (0, most - each.shape[1]), *[(0, 0)] * (each.ndim - 2)] for each in columns]
+        filled = [np.pad(each, more, constant_values=absent) for each, more in zip(columns, room, strict=True)]
+        return np.concatenate(filled)
+
     return Pieces(
-        np.concatenate(
-            [np.pad(part.values, more, constant_values=absent) for part, more in zip(parts, room, strict=True)]
-        ),
-        np.concatenate([np.pad(part.gradients, (*more, (0, 0))) for part, more in zip(parts, room, strict=True)]),
-        np.concatenate([np.pad(part.labels, more) for part, more in zip(parts, room, strict=True)]),
+        rows([part.values for part in parts], np.inf if least else -np.inf),
+        rows([part.gradients for part in parts]),
+        rows([part.labels for part in parts]),
         least,
     )

@@ -15,15 +15,14 @@ noise. Designs advance together, so that every evaluation is a batch.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..front.stationarity import Array, multipliers, strict_multipliers
-from .candidates import Table
+from .candidates import Polished, ragged
 from .evaluation import Rows
 from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
 from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
@@ -51,28 +50,6 @@ class Evaluates(Protocol):
     def exact(self, u: Array) -> tuple[Rows, Rows]:
         """Return objective rows and constraint rows."""
         ...
-
-
-@dataclass
-class Polished(Table):
-    """Designs after the polish.
-
-    u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative. residual: (n,), see
-    `stationarity.multipliers`. goals: for each design, owner and gradient of the active objective pieces. active: the
-    gradients of its active constraints and bounds.
-    """
-
-    u: Array
-    values: Array
-    violation: Array
-    residual: Array
-    goals: NDArray[np.object_]
-    active: NDArray[np.object_]
-
-
-def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
-    """Return one entry a design, (n,), of any shape."""
-    return np.fromiter(parts, dtype=np.object_)
 
 
 def polish(

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.serial import Serial
+from ..engine.engine import Serial
 from ..front.stationarity import Array
+from .candidates import Polished, ragged
 from .checkpoints import Numbers, floats, integers
 from .evaluation import Evaluator
-from .polish import ITERATIONS, Evaluates, Polished, ragged
+from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 from .polish import project as project_here
 
@@ -95,9 +96,7 @@ def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: 
             np.concatenate([np.zeros((0, k)), *found.active]),
         )
 
-    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.checkpoints.step(
-        kind, given, arrays, evaluator
-    )
+    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.step(kind, given, arrays)
     n, ends = len(pieces), np.cumsum(integers(pieces))[:-1]
     goals = zip(np.split(floats(owners), ends), np.split(floats(slopes), ends), strict=True)
     held = np.split(floats(active), np.cumsum(integers(edges))[:-1])

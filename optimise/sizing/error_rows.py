@@ -48,13 +48,11 @@ class ErrorRows:
 
     def scaled(self, tolerances: Array) -> Array:
         """Return x of tolerances (n,), m and rad."""
-        found: Array = tolerances**self.power / self.scale
-        return found
+        return np.asarray(tolerances**self.power / self.scale)
 
     def tolerances(self, x: Array) -> Array:
         """Return the tolerances (n,), m and rad, of x."""
-        found: Array = (x * self.scale) ** (1.0 / self.power)
-        return found
+        return np.asarray((x * self.scale) ** (1.0 / self.power))
 
     def machine(self, x: Array) -> Mechanism:
         """Return the mechanism with the tolerances of x."""

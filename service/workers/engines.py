@@ -101,7 +101,7 @@ def _made(options: EngineOptions) -> Engine:
             tls = Tls(options.tls_ca, options.tls_cert, options.tls_key)
         return Cluster(options.scheduler, tls=tls)
     if (options.cores or os.cpu_count() or 1) == 1:
-        from ...optimise.engine.serial import Serial
+        from ...optimise.engine.engine import Serial
 
         return Serial()
     from ...optimise.engine.processes import Processes

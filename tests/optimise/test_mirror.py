@@ -16,10 +16,9 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem, Variant
-from slidercrank.optimise.search.candidates import Finished
+from slidercrank.optimise.search.candidates import Finished, Polished, ragged
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.mirror import once
-from slidercrank.optimise.search.polish import Polished, ragged
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem

@@ -6,8 +6,8 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.engine.cluster import Cluster
+from slidercrank.optimise.engine.engine import Serial
 from slidercrank.optimise.engine.processes import Processes
-from slidercrank.optimise.engine.serial import Serial
 from slidercrank.service.workers.engines import EngineOptions, engine_of, engine_options
 
 

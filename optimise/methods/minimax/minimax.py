@@ -169,9 +169,7 @@ def _starts(
 
 def _top(evaluator: Evaluator, u: Array) -> float:
     """Return the greatest piece at a point; a recorded step."""
-    found = evaluator.checkpoints.step(
-        "top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),), evaluator
-    )
+    found = evaluator.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),))
     return float(found[0][0])
 
 

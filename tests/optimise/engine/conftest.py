@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from slidercrank.optimise.engine.cluster import Cluster
-from slidercrank.optimise.engine.engine import Engine
+from slidercrank.optimise.engine.engine import Engine, Serial
 from slidercrank.optimise.engine.processes import Processes
-from slidercrank.optimise.engine.serial import Serial
 from tests.faults.dask_cluster import DaskCluster
 
 

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.engine import chunks
-from slidercrank.optimise.engine.chunks import Chunked
-from slidercrank.optimise.engine.engine import Poll
+from slidercrank.optimise.engine.chunks import Chunked, Shared
+from slidercrank.optimise.engine.engine import Poll, Serial
 from slidercrank.optimise.engine.processes import Processes
-from slidercrank.optimise.engine.serial import Serial
-from slidercrank.optimise.engine.shared import Shared
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
 from tests.optimise.problems import shipped

@@ -5,8 +5,7 @@ import os
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.engine.engine import Engine
-from slidercrank.optimise.engine.serial import Serial
+from slidercrank.optimise.engine.engine import Engine, Serial
 from tests.optimise.engine import work
 
 
