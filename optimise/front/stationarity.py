@@ -26,10 +26,7 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     from scipy.optimize import nnls
 
     p, q = len(goals), len(active)
-    lengths = np.linalg.norm(active, axis=1)
-    lengths[lengths == 0.0] = 1.0
-    # Objective rows are brought to a common size so that the sum row weighs alike at any scale.
-    size = float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0
+    size, lengths = _sizes(goals, active)
     matrix = np.zeros((goals.shape[1] + 1, p + q))
     matrix[:-1, :p] = goals.T / size
     matrix[:-1, p:] = (active / lengths[:, None]).T
@@ -59,9 +56,7 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
 
     names = np.unique(owner)
     p, q, m = len(goals), len(active), len(names)
-    lengths = np.linalg.norm(active, axis=1)
-    lengths[lengths == 0.0] = 1.0
-    size = float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0
+    size, lengths = _sizes(goals, active)
     k = goals.shape[1]
     matrix = np.zeros((k + m, p + q + m))
     matrix[:k, :p] = goals.T / size
@@ -77,3 +72,10 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
         return float("inf"), np.full(p, 1.0 / p), np.zeros(q)
     residual = float(np.linalg.norm(matrix[:k, : p + q] @ solution[: p + q])) * size
     return residual, solution[:p], solution[p : p + q] * size / lengths
+
+
+def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
+    """Return one size for all objective rows, so that sums weigh alike at any scale, and the length of each active."""
+    lengths = np.linalg.norm(active, axis=1)
+    lengths[lengths == 0.0] = 1.0
+    return float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0, lengths

@@ -232,6 +232,12 @@ class Evaluator:
             return self.constraints[owner].quantity
         return self.computed[owner - len(self.constraints)]
 
+    def sides(self, owner: int) -> list[Side]:
+        """Return the sides that the constraint rows of an owner stand for, in their order."""
+        if owner < len(self.constraints):
+            return _sides(self.constraints[owner])
+        return _range_sides(self.sheet.bounds[self.owner_name(owner)])
+
 
 def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     return quickly(evaluator.problem, names, dimensions)

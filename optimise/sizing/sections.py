@@ -18,6 +18,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
+from ...model.linkage.single import single
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
@@ -66,11 +67,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     pins.
     """
     require_frictionless(mechanism.friction, "section sizing")
-    linkage.require_full_rotation()
-    if np.shape(linkage.rotates_fully):
-        raise InputError(
-            f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"
-        )
+    linkage = single(mechanism, linkage)
     task = Task(mechanism, linkage, material, limits, whip_of(mechanism, linkage))
     sizes = np.log([limits.width[0], limits.depth[0]] * 2)
     programme = SectionProgramme(task, list(task.terms(sizes)))

@@ -110,11 +110,6 @@ def allocate(
     if not (math.isfinite(limit) and limit > 0.0):
         raise InputError(f"the limit of the position error must be positive and finite; got {limit:g} m")
     given = Mechanism(branch=linkage.branch) if mechanism is None else mechanism
-    if linkage.branch != given.branch:
-        raise InputError(
-            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {given.branch}; "
-            "set branch in both"
-        )
     if window is not None:
         given = replace(given, tolerances=replace(given.tolerances, window=window))
     return _Programme(ErrorRows(given, single(given, linkage), costs, limit, kind), costs).solve()
@@ -251,9 +246,8 @@ class _Programme:
             saving = abs(slope) * self.error.power * x / t  # dx = p x dt / t
             parts.append(Part(name, float(t), cost.of(float(t)), bound, float(saving)))
         order = np.argsort(point.angles)
-        savings = (
-            point.multipliers[order] * self.error.power / self.error.limit
-        )  # d(limit^p) = p limit^p dlimit / limit
+        # d(limit^p) = p limit^p dlimit / limit
+        savings = point.multipliers[order] * self.error.power / self.error.limit
         return Allocation(
             "worst case" if self.error.power == 1 else "rss",
             self.error.limit,

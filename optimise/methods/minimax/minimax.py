@@ -227,32 +227,16 @@ def _rates(evaluator: Evaluator, point: Point, scale: float) -> dict[str, float]
     owners = point.limits.owner
     for row in np.flatnonzero(point.step.limits > _CARRIES).tolist():
         owner = int(owners[row])
-        lower, upper, size = _bounds(evaluator, owner)
         # The rows of an upper bound come first; a lower bound has one row, the last.
-        below = lower is not None and row == int(np.flatnonzero(owners == owner)[-1])
-        unit = abs((lower if below else upper) or 0.0) or 1.0 if size is None else size
+        last = row == int(np.flatnonzero(owners == owner)[-1])
+        side, _, unit = evaluator.sides(owner)[-1 if last else 0]
         name = evaluator.owner_name(owner)
-        rates[name] = rates.get(name, 0.0) + (1.0 if below else -1.0) * float(point.step.limits[row]) * scale / unit
-    for name, low, high, below, above in zip(
-        evaluator.sheet.free,
-        evaluator.sheet.lower,
-        evaluator.sheet.upper,
-        point.step.below,
-        point.step.above,
-        strict=True,
-    ):
-        if max(below, above) > _CARRIES:
-            rates[name] = float(below - above) * scale / float(high - low)
+        rates[name] = rates.get(name, 0.0) + -side * float(point.step.limits[row]) * scale / unit
+    sheet, below, above = evaluator.sheet, point.step.below, point.step.above
+    for column in np.flatnonzero(np.maximum(below, above) > _CARRIES).tolist():
+        width = float(sheet.upper[column] - sheet.lower[column])
+        rates[sheet.free[column]] = float(below[column] - above[column]) * scale / width
     return rates
-
-
-def _bounds(evaluator: Evaluator, owner: int) -> tuple[float | None, float | None, float | None]:
-    """Return lower bound, upper bound and, where it is not their own size, the scale of constraint rows."""
-    if owner < len(evaluator.constraints):
-        constraint = evaluator.constraints[owner]
-        return constraint.lower, constraint.upper, None
-    span = evaluator.sheet.bounds[evaluator.owner_name(owner)]
-    return span.lower, span.upper, max(span.upper, 1e-300)
 
 
 MINIMAX = Method(
