@@ -20,6 +20,7 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..search.candidates import stacked
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
 from .generation import Brood, Generation, generation_seed
@@ -38,33 +39,19 @@ _RESTART = 1_000_000  # stream of random numbers, beyond those of any generation
 
 def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that CMA-ES with restarts finds for the problem's only objective."""
-    breed = _Climbs(problem, evaluators)
-    return evolve(problem, evaluators, run, breed, size=breed.size)
+    seed, widest = problem.settings.seed, max(evaluator.dimension for evaluator in evaluators)
+    default = 4 + math.floor(3.0 * math.log(widest))
+    size = max(4, min(problem.settings.samples or default, budget(problem)))
+    climbs = [_Climb(index, evaluator.dimension, size, seed) for index, evaluator in enumerate(evaluators)]
 
+    def breed(past: Sequence[Generation]) -> Brood:
+        climb = climbs[len(past) % len(climbs)]
+        for generation in past[climb.index :: len(climbs)][climb.told :]:
+            climb.tell(generation)
+        u = climb.ask(generation_seed(seed, len(past)))
+        return Brood(np.full(len(u), climb.index), stacked(np.zeros((0, widest)), u), np.zeros(0, np.int64))
 
-class _Climbs:
-    """Breeds from each sheet in turn."""
-
-    def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
-        self.seed = problem.settings.seed
-        self.dimension = max(evaluator.dimension for evaluator in evaluators)
-        default = 4 + math.floor(3.0 * math.log(self.dimension))
-        self.size = max(4, min(problem.settings.samples or default, budget(problem)))
-        self.dimensions = [evaluator.dimension for evaluator in evaluators]
-        self.climbs: list[_Climb] = []
-        self.told = 0
-
-    def __call__(self, past: Sequence[Generation]) -> Brood:
-        if not self.climbs:
-            self.climbs = [_Climb(*sheet, self.size, self.seed) for sheet in enumerate(self.dimensions)]
-        for generation in past[self.told :]:
-            self.climbs[self.told % len(self.climbs)].tell(generation)
-            self.told += 1
-        climb = self.climbs[len(past) % len(self.climbs)]
-        u = climb.ask(generation_seed(self.seed, len(past)))
-        padded = np.zeros((len(u), self.dimension))
-        padded[:, : u.shape[1]] = u
-        return Brood(np.full(len(u), climb.index), padded, np.zeros(0, np.int64))
+    return evolve(problem, evaluators, run, breed, size=size)
 
 
 class _Climb:
@@ -72,7 +59,7 @@ class _Climb:
 
     def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
         self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
-        self.starts = 0
+        self.starts, self.told = 0, 0
         self.begin()
 
     def begin(self) -> None:
@@ -92,6 +79,7 @@ class _Climb:
 
     def tell(self, generation: Generation) -> None:
         """Take in what a generation was worth."""
+        self.told += 1
         u, values = generation.u[:, : self.dimension], generation.values[:, 0]
         excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)
         if np.isinf(excess).all():  # nothing to rank by
