@@ -30,6 +30,12 @@ class Around:
     labels: Array
     turns: NDArray[np.bool_]
 
+    def highest(self, slopes: Array) -> tuple[Array, Array]:
+        """Return values (n, q) of the highest piece at each point, and its slopes of those of all (n, q, p, d)."""
+        first = np.argmax(self.values, axis=2)[:, :, None]
+        values = np.take_along_axis(self.values, first, axis=2)[:, :, 0]
+        return values, np.take_along_axis(slopes, first[:, :, :, None], axis=2)[:, :, 0]
+
 
 def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
     """Return how far crank, rod and offset of designs (n, 3 + k) may be off, (n, 3), m.

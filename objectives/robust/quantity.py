@@ -166,9 +166,7 @@ class RobustQuantity(Quantity):
         if self.side == "high":
             n, _, _, width = here.gradients.shape
             return here.values.reshape(n, -1), here.gradients.reshape(n, -1, width), labels.reshape(n, -1)
-        first = np.argmax(here.values, axis=2)[:, :, None]
-        values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
-        slopes = np.take_along_axis(here.gradients, first[:, :, :, None], axis=2)[:, :, 0]
+        values, slopes = here.highest(here.gradients)
         point = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
         # Infinite where friction locks: nothing is high there.
         return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, point
@@ -210,12 +208,11 @@ class RobustQuantity(Quantity):
         kept: NDArray[np.bool_] = np.logical_and.reduce(found, axis=1)
         values = np.where(kept[:, None, :], values, -np.inf)
         # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
-        top = here.values.max(axis=2)
+        top, steepest = here.highest(here.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
         lost = np.flatnonzero((greatest < top).any(axis=1))
-        place = np.argmax(here.values, axis=2)[:, :, None]
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
-        slopes[lost, :, 0] = np.take_along_axis(here.gradients, place[:, :, :, None], axis=2)[lost, :, 0]
+        slopes[lost, :, 0] = steepest[lost]
         kinked = self._kinked(mechanism, dimensions, columns)
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
@@ -242,9 +239,7 @@ class RobustQuantity(Quantity):
     def _of_machines(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from every machine of the sample, evaluated exactly."""
         here = around(self.inner, mechanism, dimensions, sample(columns, self.shape, self.samples, self.seed))
-        top = np.argmax(here.values, axis=2)[:, :, None]
-        machines = np.take_along_axis(here.values, top, axis=2)[:, :, 0]
-        slopes = np.take_along_axis(here.gradients, top[:, :, :, None], axis=2)[:, :, 0]
+        machines, slopes = here.highest(here.gradients)
         if self.side == "low":
             machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
         order, rank = self._ranked(machines)

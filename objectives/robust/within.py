@@ -76,9 +76,7 @@ def within(
 
 def _worst(here: Around, low: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage turns."""
-    first = np.argmax(here.values, axis=2)[:, :, None]
-    values = np.take_along_axis(here.values, first, axis=2)[:, :, 0]
-    slopes = np.take_along_axis(here.local, first[:, :, :, None], axis=2)[:, :, 0]
+    values, slopes = here.highest(here.local)
     sign = -1.0 if low else 1.0
     return np.where(here.turns, sign * values, np.inf), sign * slopes, here.turns
 

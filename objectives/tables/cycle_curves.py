@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.cycle.cycle import Cycle, cycle
+from ...model.cycle.cycle import cycle
 from ...model.errors import InputError
 from ...model.kinematics.position import motion, third_derivative
 from ...model.linkage.linkage import Linkage
@@ -80,7 +80,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("torque", "drive torque", acting.torque, *_TORQUE),
         Curve("power", "drive power", speed * acting.torque if speed else nothing, *_POWER),
         Curve("load", "load on the slider", acting.load, *_FORCE),
-        *(Curve(name, _force_title(name), _of(acting, name), *_FORCE) for name in _FORCES),
+        *(Curve(name, _force_title(name), getattr(acting, name), *_FORCE) for name in _FORCES),
         Curve("guide", "guide force", acting.guide, *_FORCE),
         Curve("position_error", "position error, worst case", acting.position_error, *_LENGTH),
         Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, *_LENGTH),
@@ -121,8 +121,3 @@ def _jerk(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Array:
 
 def _force_title(name: str) -> str:
     return f"{name[:-2].replace('_', ' ')} force along {name[-1]}"
-
-
-def _of(curves: Cycle, name: str) -> Array:
-    values: Array = getattr(curves, name)
-    return values

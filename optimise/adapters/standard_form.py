@@ -131,26 +131,18 @@ class StandardForm:
         if lacking:
             raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
         constraints: list[LinearConstraint | NonlinearConstraint] = []
+        first = 0
         if self._sheet is None:
             share, rest = _share(self._asked), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
-        first = 0 if constraints == [] else 2
+            first = 2  # rows of G that are linear
         if len(self.inequalities) > first:
-            constraints.append(
-                NonlinearConstraint(
-                    lambda x: self.arrays(x).G[first:],
-                    -np.inf,
-                    0.0,
-                    jac=lambda x: self.arrays(x, gradients=True).dG[first:],
-                )
-            )
+            inner, slope = (lambda x: self.arrays(x).G[first:]), (lambda x: self.arrays(x, gradients=True).dG[first:])
+            constraints.append(NonlinearConstraint(inner, -np.inf, 0.0, jac=slope))
         if self.equalities:
-            constraints.append(
-                NonlinearConstraint(
-                    lambda x: self.arrays(x).H, 0.0, 0.0, jac=lambda x: self.arrays(x, gradients=True).dH
-                )
-            )
+            held, slope = (lambda x: self.arrays(x).H), (lambda x: self.arrays(x, gradients=True).dH)
+            constraints.append(NonlinearConstraint(held, 0.0, 0.0, jac=slope))
         return ScipyForm(
             lambda x: float(self.arrays(x).F[column]),
             lambda x: self.arrays(x, gradients=True).dF[column],
@@ -209,47 +201,42 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
             "take one of problem.parts()"
         )
     asked = constraints_of(problem)
-    ranges = [problem.crank, problem.rod, problem.offset, *problem.mechanism.varying]
-    lower, upper = (np.array([getattr(item, end) for item in ranges], dtype=np.float64) for end in ("lower", "upper"))
-    side = problem.slow_side()
-    if side is not None:
-        lower[2], upper[2] = (max(lower[2], 0.0), upper[2]) if side > 0.0 else (lower[2], min(upper[2], 0.0))
-    if eliminate:
-        return _eliminated(problem, asked)
+    sheet = _sheet(problem) if eliminate else None
+    if sheet is None:
+        names: tuple[str, ...] = ("crank", "rod", "offset", *(item.name for item in problem.mechanism.varying))
+        ranges = [problem.crank, problem.rod, problem.offset, *problem.mechanism.varying]
+        lower, upper = (np.array([getattr(item, end) for item in ranges], np.float64) for end in ("lower", "upper"))
+        side = problem.slow_side()
+        if side is not None:
+            lower[2], upper[2] = (max(lower[2], 0.0), upper[2]) if side > 0.0 else (lower[2], min(upper[2], 0.0))
+    else:
+        names, lower, upper = sheet.free, np.zeros(len(sheet.free)), np.ones(len(sheet.free))
+        asked = tuple(c for c in asked if c.quantity not in sheet.eliminated)
+    bounded = [name for c in asked if not c.equality for name in _sides(c)]
+    computed = [] if sheet is None else [name for name in _computed(sheet) for _ in range(2)]
     return StandardForm(
         problem,
-        ("crank", "rod", "offset", *(item.name for item in problem.mechanism.varying)),
+        names,
         lower,
         upper,
         tuple(objective.quantity for objective in problem.objectives),
-        ("turning", "turning", *(name for c in asked if not c.equality for name in _sides(c))),
+        ("turning", "turning", *bounded, *computed),
         tuple(c.quantity for c in asked if c.equality),
         asked,
+        sheet,
     )
 
 
-def _eliminated(problem: Problem, asked: tuple[Constraint, ...]) -> StandardForm:
+def _sheet(problem: Problem) -> Sheet:
+    """Return the one sheet of a problem whose equalities are eliminated. Raises `InputError`."""
     found = sheets(problem)
     if len(found) > 1:
         raise InputError(
             "equalities are eliminated for one sign of the offset; got a range on both sides of 0; keep it on one side"
         )
-    sheet = found[0]
-    if not sheet.free:
+    if not found[0].free:
         raise InputError("the equalities and ranges leave nothing free; got no unknown; widen a range, or use solve")
-    left = tuple(c for c in asked if c.quantity not in sheet.eliminated)
-    inequalities = ["turning", "turning", *(name for c in left if not c.equality for name in _sides(c))]
-    return StandardForm(
-        problem,
-        sheet.free,
-        np.zeros(len(sheet.free)),
-        np.ones(len(sheet.free)),
-        tuple(objective.quantity for objective in problem.objectives),
-        (*inequalities, *(name for name in _computed(sheet) for _ in range(2))),
-        tuple(c.quantity for c in left if c.equality),
-        left,
-        sheet,
-    )
+    return found[0]
 
 
 def _computed(sheet: Sheet) -> list[str]:

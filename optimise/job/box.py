@@ -32,7 +32,12 @@ class Box:
     crank: Range
     rod: Range
     offset: Range
-    share: Range = Range(lower=0.0, upper=1.0)
+    share: Range = _ANY
+
+    @classmethod
+    def of(cls, problem: Problem) -> Box:
+        """Return the ranges of a problem, narrowed by nothing yet."""
+        return cls(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
 
     def possible(self, of: Quantity) -> tuple[float, float]:
         """Return bounds of a quantity that has a reach, SI; needs `turns`."""
@@ -49,7 +54,7 @@ class Box:
 
 def require_reachable(problem: Problem) -> None:
     """Raise JobError if full rotation or a constraint on geometry is out of reach within the ranges."""
-    box = Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
+    box = Box.of(problem)
     if not box.turns:
         raise JobError(
             "variables: the rod must exceed crank + |offset| for full rotation; "
@@ -68,7 +73,7 @@ def require_reachable(problem: Problem) -> None:
 
 def greatest_within(problem: Problem, of: Quantity) -> float:
     """Return a bound, SI, that a quantity with a reach does not exceed within the ranges."""
-    return Box(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset)).possible(of)[1]
+    return Box.of(problem).possible(of)[1]
 
 
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
-from ...model.errors import JobError
-from ..problem.problem import Problem
+from ...model.errors import InputError, JobError
+from ...objectives.time_ratio import TIME_RATIO
+from ..problem.problem import Problem, Range
 from ..problem.zero_objectives import require_ranking
-from .box import require_reachable
-from .slow_stroke import require_slow_stroke
+from ..search.elimination import require_slow_side
+from .box import greatest_within, require_reachable
 
 
 def require_consistent(problem: Problem) -> None:
@@ -65,3 +67,55 @@ def _require_free(problem: Problem, name: str) -> None:
             f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
             "at 0; give variables.offset a range or leave out the objective"
         )
+
+
+def require_slow_stroke(problem: Problem) -> None:
+    """Raise JobError, naming rule, value and remedy, if no design of the ranges has the slow stroke that is asked.
+
+    The ranges must be known to have designs that turn fully.
+    """
+    try:
+        parts = problem.parts()
+        require_slow_side(problem, parts)
+    except InputError as error:
+        raise JobError(str(error)) from None
+    if any(part.slow_stroke is None for part in parts):
+        return
+    ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
+    if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
+        raise JobError(
+            "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
+            f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
+            "or leave out slow_stroke"
+        )
+    sides = list(_sides(parts))
+    narrowed = replace(
+        problem,
+        offset=Range(lower=min(ends.lower for ends in sides), upper=max(ends.upper for ends in sides)),
+        choices=(),
+        variants=(),
+    )
+    try:
+        require_reachable(narrowed)
+    except JobError as error:
+        where = "above" if narrowed.offset.lower >= 0.0 else "below"
+        raise JobError(f"{error}, or leave out constraints.slow_stroke, which keeps the offset {where} 0") from None
+    greatest = greatest_within(narrowed, TIME_RATIO)
+    floor = TIME_RATIO.floor or 1.0
+    if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
+        least = 1.0 + 0.5 * (greatest - 1.0)
+        raise JobError(
+            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {floor:g} on, unless "
+            f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
+            f"let crank or offset be greater, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"
+        )
+
+
+def _sides(parts: tuple[Problem, ...]) -> Iterator[Range]:
+    """Yield the offsets of each part that has some on the side of its slow stroke."""
+    for part in parts:
+        lower, upper = part.offset.lower, part.offset.upper
+        if (part.slow_side() or 1.0) > 0.0 and upper > 0.0:
+            yield Range(lower=max(lower, 0.0), upper=upper)
+        elif (part.slow_side() or 1.0) < 0.0 and lower < 0.0:
+            yield Range(lower=lower, upper=min(upper, 0.0))

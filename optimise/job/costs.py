@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
 from ...model.errors import InputError
 from ...objectives import kinds
 from ..problem.costs import Cost, Costs
-from .values import AngleTolerance, Fraction, Part, Physical, PositiveLength, PositiveRatio, Radius
+from .values import AngleTolerance, Built, Checked, Fraction, Physical, PositiveLength, PositiveRatio, Radius
 
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
 
-class _CostPart(Part):
+class _CostPart(Checked[Cost]):
     """The fields that all costs have. Any currency, the same in all."""
+
+    makes = Cost
+    renamed: ClassVar = {"min": "least", "max": "greatest"}
 
     cost: PositiveRatio = Field(
         description="of the part that depends on the tolerance, where that is `at`", examples=[8.0]
@@ -34,11 +36,6 @@ class LengthCostPart(_CostPart):
     min: Radius = Field(0.0, description="least tolerance that can be made", examples=["0.005 mm"])
     max: PositiveLength | None = Field(None, description="greatest tolerance that is allowed", examples=["0.2 mm"])
 
-    @model_validator(mode="after")
-    def _possible(self) -> LengthCostPart:
-        _build(self)
-        return self
-
 
 class AngleCostPart(_CostPart):
     """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
@@ -47,25 +44,11 @@ class AngleCostPart(_CostPart):
     min: AngleTolerance = Field(0.0, description="least tolerance that can be made", examples=["0.01 deg"])
     max: PositiveAngle | None = Field(None, description="greatest tolerance that is allowed", examples=["1 deg"])
 
-    @model_validator(mode="after")
-    def _possible(self) -> AngleCostPart:
-        _build(self)
-        return self
 
-
-def _build(part: LengthCostPart | AngleCostPart) -> Cost:
-    return Cost(
-        cost=part.cost,
-        at=part.at,
-        fixed=part.fixed,
-        exponent=part.exponent,
-        least=part.min,
-        greatest=math.inf if part.max is None else part.max,
-    )
-
-
-class CostsPart(Part):
+class CostsPart(Built[Costs]):
     """Costs of holding each tolerance, for the allocation of tolerances; one without a cost stays as given."""
+
+    makes = Costs
 
     crank: LengthCostPart | None = Field(
         None, description="of the crank", examples=[{"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"}]
@@ -88,8 +71,3 @@ class CostsPart(Part):
                 'add for example crank = { cost = 8.0, at = "0.05 mm" }'
             )
         return self
-
-    def build(self) -> Costs:
-        """Return the costs as an allocation takes them."""
-        given = {name: getattr(self, name) for name in ("crank", "rod", "offset", "crank_angle")}
-        return Costs(**{name: _build(part) for name, part in given.items() if part is not None})

@@ -2,57 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from ...model.machine import drive as model
 from .kinds import Kinds
-from .values import AngularSpeed, Inertia, Part, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
+from .values import AngularSpeed, Built, Checked, Inertia, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
 
 
-class ConstantMotor(Part):
+class ConstantMotor(Built[model.Motor]):
     """A motor with the same torque at every speed."""
+
+    makes = model.ConstantTorque
 
     torque: PositiveTorque = Field(description="at every speed", examples=["20 N m"])
 
-    def build(self) -> model.Motor:
-        """Return the motor as the model has it."""
-        return model.ConstantTorque(torque=self.torque)
 
-
-class LineMotor(Part):
+class LineMotor(Built[model.Motor]):
     """A motor whose torque falls linearly from standstill to its no-load speed."""
+
+    makes = model.LinearMotor
 
     stall_torque: PositiveTorque = Field(description="at standstill", examples=["60 N m"])
     no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["400 rpm"])
 
-    def build(self) -> model.Motor:
-        """Return the motor as the model has it."""
-        return model.LinearMotor(stall_torque=self.stall_torque, no_load_speed=self.no_load_speed)
 
-
-class RatedMotor(Part):
+class RatedMotor(Checked[model.Motor]):
     """A motor whose torque is linear in speed, by its rated point and its no-load (synchronous) speed."""
+
+    makes = model.LinearMotor.through
+    renamed: ClassVar = {"rated_torque": "torque", "rated_speed": "speed"}
 
     rated_torque: PositiveTorque = Field(description="at the rated speed", examples=["14.6 N m"])
     rated_speed: PositiveAngularSpeed = Field(description="under the rated torque", examples=["1440 rpm"])
     no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["1500 rpm"])
 
-    @model_validator(mode="after")
-    def _possible(self) -> RatedMotor:
-        self.build()
-        return self
 
-    def build(self) -> model.Motor:
-        """Return the motor as the model has it."""
-        return model.LinearMotor.through(
-            torque=self.rated_torque, speed=self.rated_speed, no_load_speed=self.no_load_speed
-        )
-
-
-class TableMotor(Part):
+class TableMotor(Checked[model.Motor]):
     """A motor by its torque at several speeds, joined by a smooth curve without overshoot."""
+
+    makes = model.TorqueTable
 
     speeds: tuple[AngularSpeed, ...] = Field(
         min_length=2,
@@ -63,15 +53,6 @@ class TableMotor(Part):
     torques: tuple[Torque, ...] = Field(
         min_length=2, max_length=1000, description="at each speed", examples=[["30 N m", "45 N m", "0 N m"]]
     )
-
-    @model_validator(mode="after")
-    def _possible(self) -> TableMotor:
-        self.build()
-        return self
-
-    def build(self) -> model.Motor:
-        """Return the motor as the model has it."""
-        return model.TorqueTable(speeds=self.speeds, torques=self.torques)
 
 
 # The key that tells a kind of motor, in the order in which kinds are told apart.
@@ -96,8 +77,10 @@ AnyMotor = Annotated[
 ]
 
 
-class DrivePart(Part):
+class DrivePart(Built[model.Drive]):
     """The motor and what turns with it; it turns the crank the way the sign of mechanism.speed says."""
+
+    makes = model.Drive
 
     motor: AnyMotor = Field(
         description="torque over the motor's own speed",
@@ -108,12 +91,3 @@ class DrivePart(Part):
         0.0, description="of the rotor and all that turns at motor speed", examples=["0.004 kg m^2"]
     )
     gear_ratio: PositiveRatio = Field(1.0, description="turns of the motor for one turn of the crank", examples=[5.0])
-
-    def build(self) -> model.Drive:
-        """Return the drive as the model has it."""
-        return model.Drive(
-            motor=self.motor.build(),
-            flywheel=self.flywheel,
-            motor_inertia=self.motor_inertia,
-            gear_ratio=self.gear_ratio,
-        )

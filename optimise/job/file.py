@@ -14,7 +14,6 @@ from typing import Any
 from ...model.errors import JobError
 from .messages import key_of
 from .units import shown
-from .unquoted import remedy
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes a fifth of it, notes and comments aside."""
@@ -30,6 +29,11 @@ _DEEP = rf"{_WORD}(?:{_DOT}{_WORD}){{{DEEPEST}}}"
 _PASSED = re.compile(rf"(?s)(?:{_TEXT})|\"(?:[^\"\\\n]|\\.)*+\"?+|'[^'\n]*+'?+|#[^\n]*+")
 """Texts and comments."""
 _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_DOT}{_WORD})*+|.))*+{_DEEP}")
+_LONGEST = 60  # of a value that is repeated in a message
+_QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'|#.*")
+_BARE = r"(?:[+-]?\d[\d.]*(?:e[+-]?\d+)?[ \t]*)?[A-Za-zµ°%]"  # how a word begins, or a number with its unit
+_LINE = re.compile(rf"[^=\[{{]+=\s*({_BARE}[^=\[{{]*)")
+_PART = re.compile(rf"[=:,\[{{]\s*({_BARE}[^=,:\]}}]*)(?=[,\]}}]|$)")
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -85,7 +89,7 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except JobError:
         raise
     except ValueError as error:
-        raise JobError(f"the file is no valid JSON: {error}; {remedy(text, str(error))}") from None
+        raise JobError(f"the file is no valid JSON: {error}; {_remedy(text, str(error))}") from None
     if not isinstance(data, dict):
         raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
     return data
@@ -112,7 +116,20 @@ def toml_tables(text: str) -> dict[str, Any]:
             raise JobError(
                 "the file is no valid TOML: a number of a job has a few digits; got one of thousands; shorten it"
             ) from None
-        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; {remedy(text, str(error))}") from None
+        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; {_remedy(text, str(error))}") from None
+
+
+def _remedy(text: str, error: str) -> str:
+    """Return the remedy for a parser's error, told with its line: quotes for a value that lacks them."""
+    place = re.search(r"line (\d+)", error)
+    lines = text.splitlines()
+    line = lines[min(int(place[1]), len(lines)) - 1] if place else lines[-1]  # "at end of document"
+    line = "" if line.lstrip().startswith("[") else _QUOTED.sub("", line)
+    whole = _LINE.fullmatch(line)
+    for value in (match[1].strip() for match in ([whole] if whole else _PART.finditer(line))):
+        if len(value) <= _LONGEST and value not in ("true", "false", "null", "nan", "inf"):
+            return f'put {value} in quotes: "{value}"'
+    return "correct the line"
 
 
 def _too_deep() -> JobError:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 from functools import cached_property, reduce
 from operator import or_
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -16,7 +15,6 @@ from pydantic import (
     ValidatorFunctionWrapHandler,
     WrapValidator,
     create_model,
-    model_validator,
 )
 
 from ...model.errors import InputError
@@ -25,7 +23,7 @@ from ...model.machine.loads.registry import kinds
 from . import values
 from .kinds import Kinds
 from .units import shown
-from .values import Part
+from .values import Checked
 
 
 def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
@@ -37,15 +35,8 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     return points
 
 
-class LoadPart(Part):
+class LoadPart(Checked[model.Load]):
     """A load."""
-
-    builds: ClassVar[Callable[..., model.Load]]
-
-    @model_validator(mode="after")
-    def _possible(self) -> LoadPart:
-        self.build()
-        return self
 
     def build(self) -> model.Load:
         """Return the load as the model has it."""
@@ -54,7 +45,7 @@ class LoadPart(Part):
     @cached_property
     def built(self) -> model.Load:
         """The load as the model has it, which takes a time where a table is long."""
-        return type(self).builds(**{name: getattr(self, name) for name in type(self).model_fields})
+        return super().build()
 
 
 def _part(table: model.Table) -> type[LoadPart]:
@@ -65,7 +56,7 @@ def _part(table: model.Table) -> type[LoadPart]:
         "x-load": {"key": table.key, "title": table.title, "first": dict(table.first)}
     }
     part.model_rebuild(force=True)
-    part.builds = staticmethod(table.build)
+    part.makes = staticmethod(table.build)
     return part
 
 

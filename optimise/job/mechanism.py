@@ -11,9 +11,8 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag,
 from ...model.errors import InputError
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
-from .clearance import ClearancePart
 from .drive import DrivePart
-from .friction import FrictionPart
+from .joints import ClearancePart, FrictionPart
 from .loads import Load
 from .units import shown
 from .values import (
@@ -21,6 +20,7 @@ from .values import (
     AngleTolerance,
     AngularAcceleration,
     AngularSpeed,
+    Built,
     Clearance,
     Density,
     Fraction,
@@ -38,20 +38,20 @@ from .values import (
 During = Literal["cycle", "outward stroke", "inward stroke"]
 
 
-class SectionLink(Part):
+class SectionLink(Built[Link]):
     """A link as a round-ended bar of rectangular section: its mass and inertia follow its length."""
+
+    makes = Bar
 
     width: PositiveLength = Field(description="in the plane of motion", examples=["30 mm"])
     depth: PositiveLength = Field(description="normal to the plane", examples=["20 mm"])
     density: Density = Field(description="of the material", examples=["7800 kg/m^3"])
 
-    def build(self) -> Link:
-        """Return the link as the model has it."""
-        return Bar(width=self.width, depth=self.depth, density=self.density)
 
-
-class MassLink(Part):
+class MassLink(Built[Link]):
     """A link by its mass properties, the same for every length."""
+
+    makes = RigidLink
 
     mass: Mass = Field(description="of the link", examples=["0.5 kg"])
     inertia: Inertia | None = Field(
@@ -70,15 +70,6 @@ class MassLink(Part):
         description="distance of the mass centre from the link's axis, positive to the left",
         examples=["2 mm"],
     )
-
-    def build(self) -> Link:
-        """Return the link as the model has it."""
-        return RigidLink(
-            mass=self.mass,
-            inertia=self.inertia,
-            centre=self.centre,
-            centre_across=self.centre_across,
-        )
 
 
 _SECTION = frozenset(SectionLink.model_fields)
@@ -116,8 +107,10 @@ AnyLink = Annotated[
 ]
 
 
-class CounterweightPart(Part):
+class CounterweightPart(Built[Counterweight]):
     """A mass fixed to the crank."""
+
+    makes = Counterweight
 
     mass: Mass = Field(description="of the counterweight", examples=["0.4 kg"])
     radius: Radius = Field(description="from the crank pivot to its mass centre", examples=["25 mm"])
@@ -127,10 +120,6 @@ class CounterweightPart(Part):
         examples=["180 deg"],
     )
     inertia: Inertia = Field(0.0, description="about its own mass centre", examples=["0.0001 kg m^2"])
-
-    def build(self) -> Counterweight:
-        """Return the counterweight as the model has it."""
-        return Counterweight(mass=self.mass, radius=self.radius, angle=self.angle, inertia=self.inertia)
 
 
 class SliderPart(Part):
@@ -211,8 +200,8 @@ class MechanismPart(Part):
         drive: DrivePart | None = None,
     ) -> Mechanism:
         """Return the machine as the model has it."""
-        parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod}
-        parts["counterweight"] = self.counterweight
+        parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod, "counterweight": self.counterweight}
+        parts |= {"drive": drive, "clearance": clearance}
         return Mechanism(
             speed=self.speed,
             acceleration=self.acceleration,
@@ -222,8 +211,6 @@ class MechanismPart(Part):
             tolerances=tolerances.build(),
             friction=friction.build(),
             branch=self.branch,
-            drive=None if drive is None else drive.build(),
-            clearance=None if clearance is None else clearance.build(),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 
@@ -244,19 +231,15 @@ def _part(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
-class ClearancesPart(Part):
+class ClearancesPart(Built[Clearances]):
     """Radial clearances of the joints: half the difference of the diameters of bearing and pin."""
+
+    makes = Clearances
 
     crank_pivot: Clearance = Field(0.0, description="of the bearing of the crank in the frame", examples=["0.02 mm"])
     crank_pin: Clearance = Field(0.0, description="of the joint of crank and rod", examples=["0.02 mm"])
     slider_pin: Clearance = Field(0.0, description="of the joint of rod and slider", examples=["0.02 mm"])
     guide: Clearance = Field(0.0, description="of the slider, to either side of its line", examples=["0.05 mm"])
-
-    def build(self) -> Clearances:
-        """Return the clearances as the model has them."""
-        return Clearances(
-            crank_pivot=self.crank_pivot, crank_pin=self.crank_pin, slider_pin=self.slider_pin, guide=self.guide
-        )
 
 
 class TolerancesPart(Part):

@@ -10,20 +10,20 @@ from pydantic_core import CoreSchema, core_schema
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ..methods.registry import methods
-from .clearance import ClearancePart
+from ..problem.problem import Settings
 from .costs import CostsPart
 from .drive import DrivePart
-from .friction import FrictionPart
+from .joints import ClearancePart, FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
-from .own import MOST_OWN, Declared, QuantityPart, named
+from .own import MOST_OWN, Declared, QuantityPart, named, one_line
 from .quantities import ConstraintsPart, ObjectivesPart, tables
 from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart
 from .units import shown
-from .values import Part
+from .values import Built, Part
 from .variables import ChoicePart, VariablesPart, choice_with
 
 
@@ -34,8 +34,10 @@ class _MethodName:
         return core_schema.literal_schema(list(methods()))
 
 
-class OptimiserPart(Part):
+class OptimiserPart(Built[Settings]):
     """Settings of the search."""
+
+    makes = Settings
 
     method: Annotated[str, _MethodName()] = Field(
         "auto",
@@ -69,12 +71,6 @@ def _printable(text: str) -> str:
     return text
 
 
-def _one_line(text: str) -> str:
-    if not text.strip() or not text.isprintable():
-        raise InputError(f"must be one line of text, not empty; got {shown(text)}")
-    return text
-
-
 def _some(objectives: ObjectivesPart) -> ObjectivesPart:
     if not objectives.model_fields_set:
         raise InputError(
@@ -86,7 +82,7 @@ def _some(objectives: ObjectivesPart) -> ObjectivesPart:
 class Job(Part):
     """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
 
-    name: Annotated[str, Field(max_length=80), AfterValidator(_one_line)] = Field(
+    name: Annotated[str, Field(max_length=80), AfterValidator(one_line)] = Field(
         description="of the job; names the run too", examples=["Vibrating sieve"]
     )
     description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = Field(

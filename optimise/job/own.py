@@ -37,7 +37,8 @@ def _unit(text: str) -> str:
     return text
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
+    """Return a text; refuse one that is empty or of several lines."""
     if not text.strip() or not text.isprintable():
         raise InputError(f"must be one line of text, not empty; got {shown(text)}")
     return text
@@ -57,7 +58,7 @@ class QuantityPart(Part):
     unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = Field(
         "", description='in which it is shown; the function returns SI; "" for a ratio', examples=["m/s^3"]
     )
-    title: Annotated[str, Field(max_length=60), AfterValidator(_one_line)] | None = Field(
+    title: Annotated[str, Field(max_length=60), AfterValidator(one_line)] | None = Field(
         None, description="for people; the name if left out", examples=["greatest jerk of the slider"]
     )
     gradient: Gradient = Field(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ...model.errors import InputError, JobError
 from ...model.tolerance.spreads import Shape
@@ -14,11 +14,14 @@ from ...objectives.robust.quantity import SAMPLES, Case
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.robust import Robust, robust
-from .values import Part
+from .values import Checked
 
 
-class RobustPart(Part):
+class RobustPart(Checked[Robust]):
     """Tolerances within the optimisation; each quantity by itself. Equalities, targets, position errors stay as is."""
+
+    makes = Robust
+    renamed: ClassVar = {"spread": "shape"}
 
     kind: Case = Field(
         "percentile",
@@ -46,22 +49,6 @@ class RobustPart(Part):
         description="which objectives and constraints; if left out, all that can be",
         examples=[[PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]],
     )
-
-    @model_validator(mode="after")
-    def _possible(self) -> RobustPart:
-        self.build()
-        return self
-
-    def build(self) -> Robust:
-        """Return the plan as the optimiser has it."""
-        return Robust(
-            kind=self.kind,
-            share=self.share,
-            order=self.order,
-            shape=self.spread,
-            samples=self.samples,
-            quantities=self.quantities,
-        )
 
 
 def robustly(problem: Problem, part: RobustPart | None) -> Problem:

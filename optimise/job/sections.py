@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ..sizing.section_limits import Material, SectionLimits
-from .values import Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure
+from .values import Checked, Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure
 
 EXAMPLE = {
     "material": {
@@ -23,8 +23,10 @@ EXAMPLE = {
 """The least that the table holds."""
 
 
-class MaterialPart(Part):
+class MaterialPart(Checked[Material]):
     """Material of crank and rod."""
+
+    makes = Material
 
     density: Density = Field(description="of the material", examples=["7850 kg/m^3"])
     elasticity: Pressure = Field(description="Young's modulus", examples=["207 GPa"])
@@ -37,15 +39,6 @@ class MaterialPart(Part):
         description="permissible at the pins, on their projected area", examples=["20 MPa"]
     )
 
-    @model_validator(mode="after")
-    def _valid(self) -> MaterialPart:
-        self.build()
-        return self
-
-    def build(self) -> Material:
-        """Return the material as the sizing has it."""
-        return Material(**dict(self))
-
 
 class PinsPart(Part):
     """Diameters of the three pins."""
@@ -55,7 +48,7 @@ class PinsPart(Part):
     slider_pin: PositiveLength = Field(description="between connecting rod and slider", examples=["10 mm"])
 
 
-class SectionsPart(Part):
+class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
 
     material: MaterialPart = Field(description="of crank and rod", examples=[EXAMPLE["material"]])
@@ -70,11 +63,6 @@ class SectionsPart(Part):
     criterion: Literal["goodman", "soderberg"] = Field(
         "goodman", description="how mean stresses count in fatigue", examples=["goodman"]
     )
-
-    @model_validator(mode="after")
-    def _valid(self) -> SectionsPart:
-        self.build()
-        return self
 
     def build(self) -> tuple[Material, SectionLimits]:
         """Return material and limits as the sizing has them."""

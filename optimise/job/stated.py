@@ -7,7 +7,7 @@ from pathlib import Path
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ..methods.registry import require_fit
-from ..problem.problem import Problem, Settings
+from ..problem.problem import Problem
 from .contradictions import require_consistent
 from .model import Job
 from .own import folders_of
@@ -37,13 +37,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         constraints=tuple(constraints_of(job.constraints)),
         slow_stroke=slow_stroke_of(job.constraints),
         costs=None if job.costs is None else job.costs.build(),
-        settings=Settings(
-            method=job.optimiser.method,
-            designs=job.optimiser.designs,
-            samples=job.optimiser.samples,
-            evaluations=job.optimiser.evaluations,
-            seed=job.optimiser.seed,
-        ),
+        settings=job.optimiser.build(),
         own=(
             *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
             *(part.build(name, folders_of(folder)) for name, part in job.quantity.items()),

@@ -89,23 +89,7 @@ kilogram_force = 9.80665 * newton = kgf = kp
 
 _BASES = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[angle]": "rad"}
 _COMMON = (
-    *(
-        "mm",
-        "cm",
-        "m",
-        "µm",
-        "inch",
-        "foot",
-        "thou",
-        "deg",
-        "rad",
-        "arcmin",
-        "rpm",
-        "rad/s",
-        "kg",
-        "g",
-        "t",
-    ),
+    *("mm", "cm", "m", "µm", "inch", "foot", "thou", "deg", "rad", "arcmin", "rpm", "rad/s", "kg", "g", "t"),
     *("pound", "s", "min", "N", "kN", "lbf", "kgf", "Nm", "W", "kW", "Pa", "MPa"),
 )
 _HINTS = {
@@ -136,10 +120,9 @@ def kind_of(symbol: str) -> Kind:
     for kind in KINDS:
         if symbol in (kind.unit, kind.metric.symbol):  # without pint, which takes 0.2 s to import
             return kind
-    _, dimension = _unit(symbol)
-    for kind in KINDS:
-        if _unit(kind.unit)[1] == dimension:
-            return kind
+    kind = kind_for(symbol)
+    if kind in KINDS:
+        return kind
     raise InputError(f"no kind of value has the unit {shown(symbol)}; add one to the list of kinds")
 
 

@@ -5,11 +5,11 @@ Each says in the JSON Schema what it accepts, and writes back what it reads: SI 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
@@ -29,18 +29,58 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def _note(info: core_schema.ValidationInfo, value: object, kind: Kind) -> None:
-    """Add numbers without a unit to the validation context if that is a list: name, number, kind."""
-    if not isinstance(info.context, list) or not kind.unit:
-        return
-    given = value["choices"] if isinstance(value, Mapping) else value
-    for one in given if isinstance(given, list | tuple) else [given]:
-        if isinstance(one, int | float):
-            info.context.append((info.field_name, one, kind))
+Made = TypeVar("Made")
+
+
+class Built(Part, Generic[Made]):
+    """A table that states a part of the model, entry by entry; what is left out is as the model has it by default.
+
+    makes: gives the part from its values. renamed: the model's name for an entry, where that differs.
+    """
+
+    makes: ClassVar[Callable[..., object]]
+    renamed: ClassVar[Mapping[str, str]] = {}
+
+    def build(self) -> Made:
+        """Return what the table states as the model has it. Raises InputError for values that exclude each other."""
+        given = {self.renamed.get(name, name): getattr(self, name) for name in type(self).model_fields}
+        parts = {name: part.build() if isinstance(part, Built) else part for name, part in given.items()}
+        return cast(Made, type(self).makes(**{name: part for name, part in parts.items() if part is not None}))
+
+
+class Checked(Built[Made], Generic[Made]):
+    """A table whose values may exclude each other: it is built when it is read."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        self.build()
+        return self
+
+
+class _Read:
+    """Marks a value that `read` turns into SI. kind: of numbers without a unit."""
+
+    kind: Kind
+
+    def read(self, value: object) -> object:
+        raise NotImplementedError
+
+    def _noted(self, value: object, info: core_schema.ValidationInfo) -> object:
+        """Add numbers without a unit to the validation context if that is a list: name, number, kind."""
+        found = self.read(value)
+        if isinstance(info.context, list) and self.kind.unit:
+            given = value["choices"] if isinstance(value, Mapping) else value
+            for one in given if isinstance(given, list | tuple) else [given]:
+                if isinstance(one, int | float):
+                    info.context.append((info.field_name, one, self.kind))
+        return found
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._noted)
 
 
 @dataclass(frozen=True)
-class Physical:
+class Physical(_Read):
     """Marks a number as a physical value of a kind, read by `to_si`."""
 
     kind: Kind
@@ -49,14 +89,6 @@ class Physical:
     def read(self, value: object) -> float:
         """Return the value in SI; raises InputError."""
         return to_si(value, self.kind, sign=self.sign)
-
-    def _noted(self, value: object, info: core_schema.ValidationInfo) -> float:
-        found = self.read(value)
-        _note(info, value, self.kind)
-        return found
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return described(self.kind, self.sign)
@@ -82,10 +114,11 @@ class Choices:
 
 
 @dataclass(frozen=True)
-class RangeOf:
+class RangeOf(_Read):
     """Marks a range of a length: [lower, upper], one value that fixes it, or { choices = [standard lengths] }."""
 
     sign: Sign = "any"
+    kind = kinds.LENGTH
 
     def read(self, value: object) -> tuple[float, float] | Choices:
         """Return lower and upper end, m, or what there is to choose from; raises InputError."""
@@ -120,14 +153,6 @@ class RangeOf:
             raise InputError(f"choices must differ; got {shown(values)}; leave out the second")
         return Choices(tuple(lengths))
 
-    def _noted(self, value: object, info: core_schema.ValidationInfo) -> tuple[float, float] | Choices:
-        found = self.read(value)
-        _note(info, value, kinds.LENGTH)
-        return found
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self._noted)
-
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         one = described(kinds.LENGTH, self.sign)["anyOf"]
         pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
@@ -140,8 +165,10 @@ class RangeOf:
         return {"anyOf": [pair, *one, choices], "examples": [["20 mm", "200 mm"], "140 mm"]}
 
 
-class ToleranceOf:
+class ToleranceOf(_Read):
     """Marks a value as the tolerance of a length: "0.05 mm", or a share of the length, "0.1 %"."""
+
+    kind = kinds.LENGTH
 
     @staticmethod
     def share(value: object) -> float | None:
@@ -171,14 +198,6 @@ class ToleranceOf:
         if isinstance(value, str):
             return Tolerance(fraction=cls.share(value) or 0.0)
         return Tolerance(absolute=value)
-
-    def _noted(self, value: object, info: core_schema.ValidationInfo) -> float | str:
-        found = self.read(value)
-        _note(info, value, kinds.LENGTH)
-        return found
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self._noted)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         share = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$"}

@@ -26,7 +26,7 @@ from .model import Job
 from .quantities import constraints_of, slow_stroke_of
 from .schema import schema_of
 from .units import closest, shown
-from .values import Choices, Part, ToleranceOf
+from .values import Choices, Part, RangeOf, ToleranceOf
 from .variables import ROOTS
 
 MOST = 200
@@ -155,15 +155,11 @@ def _single(name: str, option: _Option) -> tuple[str, ...]:
     return paths if len(paths) == 1 and paths[0].removeprefix("mechanism.") == name else ()
 
 
-def _length(name: str, value: Any) -> tuple[float, float]:
-    from .values import AnyRange, PositiveRange
-
-    kind: Any = AnyRange if name == "offset" else PositiveRange
+def _length(name: str, value: Any) -> tuple[float, float] | Choices:
     try:
-        found: tuple[float, float] = kind.__metadata__[0].read(value)
+        return RangeOf("any" if name == "offset" else "positive").read(value)
     except InputError as error:
         raise JobError(f"choice: {name} {error}") from None
-    return found
 
 
 def _varying(job: Job, key: str, path: str, given: Any) -> Varying:

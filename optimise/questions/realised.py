@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ...objectives.quantity import Array, Quantity
 from ...objectives.robust.points import limits_of
@@ -98,11 +99,11 @@ def sampling_error(quantity: RobustQuantity, front: ParetoFront, *, scrambles: i
     return np.asarray(np.std(np.array(found), axis=0, ddof=1))
 
 
-def _evaluated(quantity: Quantity, mechanism: object, machines: Array) -> Array:
+def _evaluated(quantity: Quantity, mechanism: Mechanism, machines: Array) -> Array:
     turns = (machines[:, 0] > 0.0) & (machines[:, 1] > machines[:, 0] + np.abs(machines[:, 2]))
     values = np.full(len(machines), np.nan)  # keeps nothing
     rows = np.flatnonzero(turns)
     for begin in range(0, len(rows), _CHUNK):
         some = rows[begin : begin + _CHUNK]
-        values[some] = quantity.evaluate(mechanism, machines[some]).values  # type: ignore[arg-type]
+        values[some] = quantity.evaluate(mechanism, machines[some]).values
     return values
