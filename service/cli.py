@@ -26,6 +26,7 @@ from .commands.cases import cases
 from .commands.certify import certify
 from .commands.compare import compare
 from .commands.doctor import doctor
+from .commands.ending import FAULT, INTERRUPTED, WRONG_INPUT
 from .commands.export import export
 from .commands.job import check, schema
 from .commands.like import like
@@ -39,10 +40,10 @@ from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
 from .resources.disk import full_places, is_full
+from .text.options import spread_groups
 from .text.screen import give, say
 from .text.streams import give_up_output, guard_streams
 
-WRONG_INPUT, INTERRUPTED, FAULT = 2, 130, 1
 _DEBUG = "SLIDERCRANK_DEBUG"
 _SHORT = ("can't start new thread", "failed to map segment", "Cannot allocate memory", "cannot allocate memory")
 _MORE_MEMORY = (
@@ -142,33 +143,12 @@ def slidercrank(
 
 
 COMMANDS = (
-    optimise,
-    analyse,
-    sweep,
-    allocate,
-    balance,
-    sections,
-    certify,
-    compare,
-    like,
-    check,
-    schema,
-    front,
-    export,
-    report,
-    cases,
-    serve,
-    submit,
-    jobs,
-    watch,
-    cancel,
-    resume,
-    delete,
-    worker,
-    doctor,
+    *(optimise, analyse, sweep, allocate, balance, sections, certify, compare, like),
+    *(check, schema, front, export, report, cases),
+    *(serve, submit, jobs, watch, cancel, resume, delete, worker, doctor),
 )
 for command in COMMANDS:
-    app.command()(command)
+    app.command()(spread_groups(command))
 
 
 def main() -> None:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ..designs.cycle_table import LEAST, MOST, cycle_table
 from ..runs.result import Row, finite
-from ..text.options import lengths_of, speed_option
+from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .fronts import ColumnModel, OfDesign
@@ -125,7 +125,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))
-    lengths = lengths_of(problem, asked.crank, asked.rod, asked.offset)
+    lengths = Dimensions(asked.crank, asked.rod, asked.offset).lengths(problem)
     row = numbers_of(mechanism, lengths, problem.own)
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     record, notes = _with_topics(row, mechanism, linkage, topics, lenient=ALL in asked.show)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
+from functools import cache
+from importlib.resources import files
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..presets.shipped import presets
+from .. import presets
 from .job_requests import EXAMPLE, TOML, Asked, asked_for
 from .problems import problem_responses
 
@@ -40,7 +43,23 @@ class Tables(BaseModel):
 @router.get("/presets")
 def list_presets() -> PresetList:
     """Give the shipped jobs, to start from."""
-    return PresetList(presets=[PresetModel(**vars(preset)) for preset in presets()])
+    return _presets()
+
+
+@cache
+def _presets() -> PresetList:
+    """Return the files of runs/, which every installation carries."""
+    jobs = {
+        file.name.removesuffix(".toml"): tomllib.loads(file.read_text(encoding="utf-8"))
+        for file in files(presets).iterdir()
+        if file.name.endswith(".toml")
+    }
+    return PresetList(
+        presets=[
+            PresetModel(name=name, title=job["name"], sentence=job.get("description", ""), job=job)
+            for name, job in sorted(jobs.items())
+        ]
+    )
 
 
 @router.post("/parse", responses=problem_responses(415))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +12,14 @@ from matplotlib.figure import Figure
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
-from ...model.linkage.linkage import Linkage
 from ..figures.panels import save_sheet
-from ..figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, over_turn
+from ..figures.sheets import CRANK_ANGLE, Array, Line, Panel, Sheet, over_turn
 from ..topics.clearance.figure import speed_runs, speeds_figure
 from ..topics.polygons.analysis import both_branches, polygon_sheet
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)
+_SIEVE = "crank 140, rod 310, offset −60 mm, 300 rpm"
 
 
 def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
@@ -43,77 +44,62 @@ def polygon_figure() -> Sheet:
     )
 
 
+def over_turns(
+    title: str, *curves: tuple[str, Array], theta: Array = _TURN, styles: Sequence[int] = (0, 1, 2)
+) -> Panel:
+    """Return a panel of named curves over the crank angle, each in a line style of its own."""
+    degrees = np.degrees(theta)
+    lines = (Line(label, degrees, y, style) for style, (label, y) in zip(styles, curves, strict=False))
+    return over_turn(title, *lines)
+
+
 def sieve_figure() -> Sheet:
     """Return rod and slider motion of the sieve over the cycle (case 2, its Figs. 4 to 6 and 19)."""
     at = case_2.SIEVE.at(_TURN, speed=case_2.SPEED)
-    degrees = np.degrees(_TURN)
-    curves = (
-        ("slider position, mm", 1e3 * at.slider_position),
-        ("rod angle, deg", np.degrees(at.rod_angle)),
-        ("slider velocity, m/s", at.slider_velocity),
-        ("rod angular velocity, rad/s", at.rod_velocity),
-        ("slider acceleration, m/s²", at.slider_acceleration),
-        ("rod angular acceleration, rad/s²", at.rod_acceleration),
+    panels = (
+        over_turns("slider position, mm", ("", 1e3 * at.slider_position)),
+        over_turns("rod angle, deg", ("", np.degrees(at.rod_angle))),
+        over_turns("slider velocity, m/s", ("", at.slider_velocity)),
+        over_turns("rod angular velocity, rad/s", ("", at.rod_velocity)),
+        over_turns("slider acceleration, m/s²", ("", at.slider_acceleration)),
+        over_turns("rod angular acceleration, rad/s²", ("", at.rod_acceleration)),
     )
-    panels = tuple(over_turn(title, Line("", degrees, y)) for title, y in curves)
     return Sheet(
-        "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)",
-        "crank 140, rod 310, offset −60 mm, 300 rpm",
-        panels,
-        columns=2,
+        "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)", _SIEVE, panels, columns=2
     )
 
 
 def sensitivity_figure() -> Sheet:
     """Return slider motion with a longer crank and with a longer rod, one at a time (case 2, its Figs. 7 to 12)."""
-    changed = (("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
-    panels = []
-    for title, field, factor in (
-        ("slider position, mm", "slider_position", 1e3),
-        ("slider velocity, m/s", "slider_velocity", 1.0),
-        ("slider acceleration, m/s²", "slider_acceleration", 1.0),
-    ):
-        for label, linkage in changed:
-            lines = tuple(
-                Line(name, np.degrees(_TURN), factor * getattr(of.at(_TURN, speed=case_2.SPEED), field), style)
-                for style, (name, of) in enumerate((("as designed", case_2.SIEVE), (label, linkage)))
-            )
-            panels.append(over_turn(title, *lines))
-    return Sheet(
-        "Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)",
-        "crank 140, rod 310, offset −60 mm, 300 rpm",
-        tuple(panels),
-        columns=2,
+    designs = (("as designed", case_2.SIEVE), ("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
+    designed, *changed = ((name, linkage.at(_TURN, speed=case_2.SPEED)) for name, linkage in designs)
+    panels = tuple(
+        over_turns(title, *((name, factor * getattr(at, field)) for name, at in (designed, other)))
+        for title, field, factor in (
+            ("slider position, mm", "slider_position", 1e3),
+            ("slider velocity, m/s", "slider_velocity", 1.0),
+            ("slider acceleration, m/s²", "slider_acceleration", 1.0),
+        )
+        for other in changed
     )
+    return Sheet("Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)", _SIEVE, panels, columns=2)
 
 
 def in_line_figure() -> Sheet:
     """Return paths, velocities and static forces of the in-line example (case 3)."""
-    linkage, degrees = case_3.LINKAGE, np.degrees(_TURN)
+    linkage = case_3.LINKAGE
     at = linkage.at(_TURN, speed=case_3.SPEED)
     pin = 1e3 * linkage.crank_point(_TURN, along=float(linkage.crank)).position
     forces = static_forces(linkage, _TURN, load=case_3.LOAD)
     x = 1e3 * at.slider_position
+    paths = (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1))
     panels = (
-        Panel(
-            "paths: y, mm",
-            "x, mm",
-            (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1)),
-            equal=True,
-        ),
-        over_turn("slider position, mm", Line("", degrees, x)),
-        over_turn(
-            "angular velocities, rad/s",
-            Line("crank", degrees, np.full_like(x, case_3.SPEED)),
-            Line("rod", degrees, at.rod_velocity, 1),
-        ),
-        over_turn("slider velocity, m/s", Line("", degrees, at.slider_velocity)),
-        over_turn(
-            "static forces, N",
-            Line("rod, compression", degrees, forces.rod_force),
-            Line("guide", degrees, forces.guide_reaction, 1),
-        ),
-        over_turn("crank torque, N m", Line("", degrees, forces.crank_torque)),
+        Panel("paths: y, mm", "x, mm", paths, equal=True),
+        over_turns("slider position, mm", ("", x)),
+        over_turns("angular velocities, rad/s", ("crank", np.full_like(x, case_3.SPEED)), ("rod", at.rod_velocity)),
+        over_turns("slider velocity, m/s", ("", at.slider_velocity)),
+        over_turns("static forces, N", ("rod, compression", forces.rod_force), ("guide", forces.guide_reaction)),
+        over_turns("crank torque, N m", ("", forces.crank_torque)),
     )
     return Sheet(
         "Case 3: in-line slider-crank, motion and static forces (its formulas for one example)",
@@ -156,46 +142,38 @@ def position_error_figure() -> Sheet:
 def offset_figure() -> Sheet:
     """Return acceleration and inertia torque over two cycles for the three offsets (case 5, its Figs. 15 to 18)."""
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
-    degrees = np.degrees(theta)
-    _, reciprocating = case_5.masses()
+    exact, formula = (partial(of, crank_angle=theta) for of in (case_5.exact_torque, case_5.formula_torque))
+    two_turns = partial(over_turns, theta=theta)
+    centred = case_5.linkage(0.0)
+    series = series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.masses()[1])
 
-    def over_offsets(curve: Callable[[float], np.ndarray]) -> tuple[Line, ...]:
-        return tuple(
-            Line(f"e = {1e3 * offset:.0f} mm", degrees, curve(offset), style)
-            for style, offset in enumerate(case_5.OFFSETS)
-        )
-
-    def acceleration(linkage: Linkage) -> np.ndarray:
-        found: np.ndarray = linkage.at(theta, speed=case_5.SPEED).slider_acceleration
+    def acceleration(offset: float) -> Array:
+        found: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
         return found
 
-    centred = case_5.linkage(0.0)
+    def over_offsets(title: str, curve: Callable[[float], Array]) -> Panel:
+        return two_turns(title, *((f"e = {1e3 * offset:.0f} mm", curve(offset)) for offset in case_5.OFFSETS))
+
     panels = (
-        over_turn(
-            "slider acceleration, exact, m/s²", *over_offsets(lambda offset: acceleration(case_5.linkage(offset)))
-        ),
-        over_turn(
+        over_offsets("slider acceleration, exact, m/s²", acceleration),
+        two_turns(
             "slider acceleration, e = 0, m/s²",
-            Line("exact", degrees, acceleration(centred)),
-            Line("series, Eq. 52", degrees, series_acceleration(centred, theta, speed=case_5.SPEED), 1),
+            ("exact", acceleration(0.0)),
+            ("series, Eq. 52", series_acceleration(centred, theta, speed=case_5.SPEED)),
         ),
-        over_turn("inertia torque, exact, N m", *over_offsets(lambda offset: case_5.exact_torque(offset, theta))),
-        over_turn("torque by k F tan(alpha), N m", *over_offsets(lambda offset: case_5.formula_torque(offset, theta))),
-        over_turn(
+        over_offsets("inertia torque, exact, N m", exact),
+        over_offsets("torque by k F tan(alpha), N m", formula),
+        two_turns(
             "inertia torque, e = 0, N m",
-            Line("exact", degrees, case_5.exact_torque(0.0, theta)),
-            Line(
-                "series, Eq. 53",
-                degrees,
-                series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=reciprocating),
-                1,
-            ),
-            Line("k F tan(alpha)", degrees, case_5.formula_torque(0.0, theta), 2),
+            ("exact", exact(0.0)),
+            ("series, Eq. 53", series),
+            ("k F tan(alpha)", formula(0.0)),
         ),
-        over_turn(
+        two_turns(
             "inertia torque, e = 20 mm, N m",
-            Line("exact", degrees, case_5.exact_torque(0.020, theta)),
-            Line("k F tan(alpha)", degrees, case_5.formula_torque(0.020, theta), 2),
+            ("exact", exact(0.020)),
+            ("k F tan(alpha)", formula(0.020)),
+            styles=(0, 2),  # as in the panel before
         ),
     )
     return Sheet(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ..text.tables import print_table
@@ -19,35 +20,28 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     full: every cell of a long printed table; else one line for each of its columns.
     """
     from rich import box
-    from rich.table import Table
+    from rich.table import Column, Table
 
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)
     screen.print(f"Given: {case.given}.", style="dim", soft_wrap=True)
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, pad_edge=False)
-    table.add_column("quantity")
-    for name in ("printed", "exact"):
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
+    values = (Column(name, justify="right", no_wrap=True) for name in ("printed", "exact"))
+    others = (Column(name, no_wrap=True) for name in ("unit", "verdict"))
+    table = Table("quantity", *values, *others, box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, pad_edge=False)
     reasons: list[str] = []
     folded = 0
-    for rows in _groups(case.rows, full):
-        first = rows[0]
-        note = ""
-        if first.why:
-            if first.why not in reasons:
-                reasons.append(first.why)
-            note = f" [{reasons.index(first.why) + 1}]"
-        if len(rows) > 1:
+    for _, group in groupby(case.rows, key=lambda row: _column(row, full)):
+        first, *more = rows = list(group)
+        if first.why and first.why not in reasons:
+            reasons.append(first.why)
+        note = f" [{reasons.index(first.why) + 1}]" if first.why else ""
+        if more:
             folded += len(rows)
-            table.add_row(
-                first.what.partition(" at ")[0], f"{len(rows)} rows", "", first.unit, f"{_counted(rows)}{note}"
-            )
-            continue
-        printed = "-" if first.printed is None else first.printed
-        exact = "-" if first.exact is None else _like(first)
-        table.add_row(first.what, printed, exact, first.unit, f"{first.verdict}{note}")
+            name = first.what.partition(" at ")[0]
+            table.add_row(name, f"{len(rows)} rows", "", first.unit, f"{_counted(rows)}{note}")
+        else:
+            exact = "-" if first.exact is None else _like(first)
+            table.add_row(first.what, first.printed or "-", exact, first.unit, f"{first.verdict}{note}")
     print_table(screen, table)
     for index, reason in enumerate(reasons, start=1):
         screen.print(f"[{index}] {reason}.", soft_wrap=True)
@@ -56,20 +50,9 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     screen.print()
 
 
-def _groups(rows: Sequence[Row], full: bool) -> list[list[Row]]:
-    """Return the rows, those of one column of a printed table together unless `full`."""
-    groups: list[list[Row]] = []
-    for row in rows:
-        if (
-            not full
-            and ", row " in row.where
-            and groups
-            and groups[-1][0].key.rpartition("_")[0] == (row.key.rpartition("_")[0])
-        ):
-            groups[-1].append(row)
-        else:
-            groups.append([row])
-    return groups
+def _column(row: Row, full: bool) -> str:
+    """Return the column of a printed table whose cells are shown as one; the row alone if `full`."""
+    return row.key.rpartition("_")[0] if ", row " in row.where and not full else row.key
 
 
 def counted(rows: Sequence[Row]) -> str:

@@ -14,15 +14,13 @@ import uuid
 from collections.abc import Collection, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, ServiceError
 from ..runs.result import Result, Row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
-from .connection import Connection
-from .events import followed
+from .connection import Connection, followed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,9 +57,7 @@ class Client:
     def __enter__(self) -> Client:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def submit(
@@ -79,7 +75,7 @@ class Client:
         make a second job. Raises `InputError` for a job that is not valid.
         """
         body = {"job": tables_of(job), "priority": priority, "limits": dict(limits or {})}
-        return self._post("jobs", body, again=True, headers={"Idempotency-Key": key or uuid.uuid4().hex})
+        return self._post("jobs", body, key=key or uuid.uuid4().hex)
 
     def clone(
         self,
@@ -91,18 +87,16 @@ class Client:
         key: str | None = None,
     ) -> Record:
         """Queue a copy of a job and return it. changes: to its tables, as a merge patch; None takes a key away."""
-        body: Record = {"changes": dict(changes or {})}
-        body |= {} if priority is None else {"priority": priority}
-        body |= {} if limits is None else {"limits": dict(limits)}
-        headers = {"Idempotency-Key": key or uuid.uuid4().hex}
-        return self._post(f"jobs/{number}/clone", body, again=True, headers=headers)
+        body = _given(priority=priority, limits=None if limits is None else dict(limits))
+        body["changes"] = dict(changes or {})
+        return self._post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
 
     def jobs(
         self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
     ) -> list[Record]:
         """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this."""
-        query: Record = {"state": list(states), "name": name, "limit": limit}
-        found: list[Record] = self._get("jobs", query if before is None else {**query, "before": before})["jobs"]
+        query = {"state": list(states), "name": name, "limit": limit, **_given(before=before)}
+        found: list[Record] = self._get("jobs", query)["jobs"]
         return found
 
     def job(self, number: int) -> Record:
@@ -115,7 +109,7 @@ class Client:
 
     def cancel(self, number: int) -> Record:
         """Cancel a job and return it; it keeps what it found, and can go on."""
-        return self._post(f"jobs/{number}/cancel", again=True)
+        return self._post(f"jobs/{number}/cancel")
 
     def resume(self, number: int) -> Record:
         """Queue a cancelled or failed job again, to go on from where it was, and return it."""
@@ -167,8 +161,7 @@ class Client:
         """
         import pandas as pd
 
-        query: Record = {"where": list(where), "reverse": reverse, "limit": _PAGE, "offset": 0}
-        query |= {name: value for name, value in (("sort", sort), ("columns", columns)) if value is not None}
+        query = {"where": list(where), "reverse": reverse, "limit": _PAGE, **_given(sort=sort, columns=columns)}
         rows: list[Row] = []
         numbers: list[int] = []
         while True:
@@ -200,9 +193,8 @@ class Client:
 
         topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
         """
-        ways = {"knee": knee or None, "topsis": topsis, "lexicographic": lexicographic}
-        query = {"where": list(where), **{name: value for name, value in ways.items() if value is not None}}
-        return self._get(f"jobs/{number}/pick", query)
+        ways = _given(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
+        return self._get(f"jobs/{number}/pick", {"where": list(where), **ways})
 
     def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
         """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
@@ -234,7 +226,7 @@ class Client:
 
     def check(self, job: JobSource) -> Record:
         """Return a job in words, as it is understood; nothing is queued. Raises `InputError` for a wrong one."""
-        return self._post("check", {"job": tables_of(job)}, again=True)
+        return self._post("check", {"job": tables_of(job)})
 
     def analyse(
         self,
@@ -247,16 +239,15 @@ class Client:
     ) -> Record:
         """Return all numbers of any design for a job. Lengths as "40 mm"; those that the job fixes may be left out."""
         body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
-        found: Record = self._post("analyse", body, again=True)["analysis"]
+        found: Record = self._post("analyse", body)["analysis"]
         return found
 
     def _get(self, path: str, query: Record | None = None) -> Record:
         found: Record = self._connection.request("GET", path, again=True, params=query).json()
         return found
 
-    def _post(
-        self, path: str, body: Record | None = None, *, again: bool, headers: dict[str, str] | None = None
-    ) -> Record:
+    def _post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
+        headers = None if key is None else {"Idempotency-Key": key}
         found: Record = self._connection.request("POST", path, again=again, json=body, headers=headers).json()
         return found
 
@@ -268,6 +259,11 @@ class Client:
             )
         write_file(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
         return file
+
+
+def _given(**options: Any) -> Record:
+    """Return the options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
 
 
 def tables_of(job: JobSource) -> Record:

@@ -1,7 +1,8 @@
-"""Requests to a service: tried again where that is safe, and refused in the words of the service."""
+"""Requests to a service, and the events of a job: tried again where that is safe, refused in the service's words."""
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -19,7 +20,8 @@ _TIMEOUT = 60.0  # s without a byte
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
-_AWAY = 503
+_ENDED, _AWAY = 204, 503
+Event = dict[str, Any]
 
 
 class Away(ServiceError):
@@ -133,3 +135,44 @@ def refusal(answer: httpx.Response) -> SlidercrankError:
     kinds: dict[int, type[SlidercrankError]] = {404: NotFound, 409: RunError, _AWAY: Away}
     kinds |= dict.fromkeys((400, 413, 415, 422), InputError)
     return kinds.get(answer.status_code, ServiceError)(detail)
+
+
+def followed(connection: Connection, number: int, after: int) -> Iterator[Event]:
+    """Yield the events of a job after a given one as they happen, until the service has no more.
+
+    Every connection says which event came last, so none is missed and none comes twice.
+    """
+    tries = Tries(connection)
+    while True:
+        headers = {"Accept": "text/event-stream", "Last-Event-ID": str(after)}
+        try:
+            with connection.stream(f"jobs/{number}/events", headers) as answer:
+                if answer.status_code == _ENDED:
+                    return
+                for event in _events(answer.iter_lines()):
+                    tries = Tries(connection)
+                    if event is not None:
+                        after = int(event["number"])
+                        yield event
+        except (httpx.TransportError, Away) as error:
+            tries.wait(error)
+        else:
+            if tries.made:
+                tries.wait(Away("the events of a job end with the job; the service broke them off; see its log"))
+            tries.made += 1
+
+
+def _events(lines: Iterator[str]) -> Iterator[Event | None]:
+    """Yield the data of server-sent events, None for a sign of life; leave out an event cut off.
+
+    WHATWG, HTML standard, 9.2.6.
+    """
+    data: list[str] = []
+    for line in lines:
+        if line.startswith(":"):
+            yield None
+        elif line.startswith("data:"):
+            data.append(line.removeprefix("data:").removeprefix(" "))
+        elif not line and data:
+            yield json.loads("\n".join(data))
+            data = []

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import LENGTH
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
+from ..text.options import Dimensions, Json, drawable, value_option
 from ..text.screen import console, give, say, waiting
-
-if TYPE_CHECKING:
-    pass
 
 
 def allocate(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with [costs].")],
     limit: Annotated[str, typer.Option(metavar="LENGTH", help='Position error that is allowed, such as "0.1 mm".')],
-    crank: Crank = None,
-    rod: Rod = None,
-    offset: Offset = None,
+    *,
+    size: Dimensions,
     kind: Annotated[
         str, typer.Option(metavar="KIND", help='How errors add up: "worst case" or "rss" (root-sum-square).')
     ] = "worst case",
@@ -30,15 +27,13 @@ def allocate(
         Path | None,
         typer.Option(metavar="DIR", callback=drawable, help="Draw error and costs into allocation.png there."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Find the tolerances of least manufacturing cost that keep the position error within a limit.
 
     At every crank angle of the part of the stroke that [tolerances] counts. What has no cost in [costs] keeps its
     tolerance, and takes its part of the limit; so do the clearances.
     """
-    from ...model.linkage.linkage import Linkage
-    from ...objectives.kinds import LENGTH
     from ...optimise.job import load_job
     from ...optimise.sizing import tolerance_allocation as convex
     from ..topics.allocation import analysis
@@ -49,10 +44,9 @@ def allocate(
             "an allocation needs what the tolerances cost; got a job without [costs]; "
             'add for example [costs] crank = { cost = 8.0, at = "0.05 mm" }'
         )
-    lengths = lengths_of(problem, crank, rod, offset)
+    linkage = size.linkage(problem)
     most = value_option("--limit", limit, LENGTH, sign="positive")
     mechanism = problem.mechanism
-    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
     numbers = analysis.numbers(found, linkage, problem.costs, mechanism)

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import System
+from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import Crank, Offset, Rod, Units, drawable, lengths_of, speed_option, value_option
+from ..text.options import Dimensions, Json, Runs, Units, drawable, speed_option, value_option
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
-from .interruption import Interruption
-from .optimise import Runs
+from .ending import INTERRUPTED, Interruption
+from .run_choice import run_of
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
     from ..designs.stored_designs import StoredDesign
 
-INTERRUPTED = 130
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
 
@@ -40,9 +39,8 @@ def analyse(
             metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from. A run with --design."
         ),
     ] = None,
-    crank: Crank = None,
-    rod: Rod = None,
-    offset: Offset = None,
+    *,
+    size: Dimensions,
     speed: Annotated[
         str | None,
         typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
@@ -78,7 +76,7 @@ def analyse(
     ] = None,
     runs: Runs = None,
     units: Units = "metric",
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Analyse one design.
 
@@ -91,14 +89,13 @@ def analyse(
 
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
-    given = {"crank": crank, "rod": rod, "offset": offset}
     problem: Problem | None
     if design is None:
         problem = _load(job, put or [])
         mechanism = Mechanism() if problem is None else problem.mechanism.nominal
-        lengths = lengths_of(problem, crank, rod, offset)
+        lengths = size.lengths(problem)
     else:
-        stored = _stored(job, design, runs, {**given, "set": put or None})
+        stored = _stored(job, design, runs, {**vars(size), "set": put or None})
         problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
@@ -147,8 +144,6 @@ def _topic_options(
     at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
-    from ...objectives.kinds import ANGLE, LENGTH
-
     options: dict[str, dict[str, Any]] = {}
     for option, topic, given in (
         ("--at", "polygons", at),
@@ -192,9 +187,7 @@ def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, 
     """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides."""
     from ..designs.picking_options import require_alone
     from ..designs.stored_designs import stored_design
-    from ..jobs.find_run import find_run
-    from ..runs.run_folder import runs_place
-    from ..runs.stored_runs import problem_of, read_run
+    from ..runs.stored_runs import problem_of
 
     if job is None:
         raise InputError("--design is of a run; got none; name it: slidercrank analyse RUN --design NO")
@@ -203,8 +196,7 @@ def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, 
         raise InputError(
             f"a design of a run has its dimensions; got --design and {besides[0]}; leave out one of the two"
         )
-    folder = find_run(str(job), runs_place(place))
-    result = read_run(folder)
+    folder, result = run_of(str(job), place)
     if not result.designs:
         raise InputError(f"--design is of a run with designs; {folder.name} has none: {result.message}")
     require_alone(design, result, str(job), others=False)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import LENGTH, MASS, Kind
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, drawable, lengths_of, value_option
+from ..text.options import Dimensions, Json, drawable, value_option
 from ..text.screen import console, give, say, waiting
 
 if TYPE_CHECKING:
@@ -21,9 +22,8 @@ _LENGTH = "LENGTH"
 
 def balance(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file: speed and masses come from it.")],
-    crank: Crank = None,
-    rod: Rod = None,
-    offset: Offset = None,
+    *,
+    size: Dimensions,
     measure: Annotated[
         str, typer.Option(metavar="MEASURE", help='What is to be least over the cycle: "peak" or "rms".')
     ] = "peak",
@@ -48,27 +48,23 @@ def balance(
             metavar="DIR", callback=drawable, help="Draw the hodograph before and after into balance.png there."
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Find the counterweight, instead of that of JOB, of least shaking force, and a balance mass on the rod.
 
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
-    from ...model.linkage.linkage import Linkage
-    from ...objectives.kinds import LENGTH, MASS
     from ...optimise.job import load_job
     from ...optimise.sizing import counterweight as balancing
     from ..topics.counterweight import analysis
 
     problem = load_job(job)
-    lengths = lengths_of(problem, crank, rod, offset)
-    mechanism = problem.mechanism
-    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
+    linkage, mechanism = size.linkage(problem), problem.mechanism
 
-    def given(option: str, text: str | None, kind: Any) -> float | None:
+    def given(option: str, text: str | None, kind: Kind) -> float | None:
         return None if text is None else value_option(option, text, kind, sign="positive")
 
-    at = given("--radius", radius, LENGTH) or mechanism.counterweight.radius or lengths[0]
+    at = given("--radius", radius, LENGTH) or mechanism.counterweight.radius or float(linkage.crank)
     heaviest = given("--mass", mass, MASS)
     words: Any = measure.strip().casefold()
     found = balancing.balance(

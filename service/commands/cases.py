@@ -9,7 +9,7 @@ import typer
 
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import drawable
+from ..text.options import Json, drawable
 from ..text.screen import console, give, say
 
 
@@ -21,7 +21,7 @@ def cases(
         Path | None,
         typer.Option(metavar="DIR", callback=drawable, help="Draw the publications' figures anew, as PNG files there."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Show published mechanisms: printed numbers, exact ones, and a verdict.
 

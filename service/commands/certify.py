@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import RunError
-from ..jobs.find_run import find_run
+from ..designs.columns import DIMENSIONS
 from ..runs.result import Result, Row, csv_text, json_text, rows_of
-from ..runs.run_folder import runs_place, write_file
-from ..runs.stored_runs import read_run
+from ..runs.run_folder import write_file
+from ..runs.stored_runs import job_file
+from ..text.options import Json, Run, Runs
 from ..text.screen import console, error_console, give
-from .interruption import Interruption
-from .optimise import INTERRUPTED, Json, Runs
-from .runs import Run
+from .ending import INTERRUPTED, NOT_PROVEN, Interruption
+from .run_choice import run_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from ...optimise.certificate.certificate import Certificate, Step
     from ...optimise.problem.problem import Problem
 
-NOT_PROVEN = 4
 _SHOWN_NOTES = 8
+_SIZES = tuple(f"{name}_mm" for name in DIMENSIONS)
 
 
 def certify(
@@ -46,14 +46,18 @@ def certify(
     them by more than epsilon. Keeps certificate.json, and the added designs as certificate.csv, in the run's folder.
     Exit code 4 if the budget does not suffice; Ctrl-C gives what is proven so far.
     """
-    folder = find_run(run, runs_place(runs))
-    result = read_run(folder)
-    problem = _job(folder)
+    from ...optimise.job import load_job
+
+    folder, result = run_of(run, runs)
+    job = job_file(folder)
+    if job is None:
+        raise RunError(f"a run has a file job.toml or job.json; {folder} has none; name another folder")
+    problem = load_job(job)
     if not result.designs:
         _nothing_feasible(result, problem, seconds, json=json)
-    with Interruption() as interruption, _progress() as show:
-        from ...optimise.certificate.certify import certify_designs
+    from ...optimise.certificate.certify import certify_designs
 
+    with Interruption() as interruption, _progress() as show:
         found = certify_designs(
             problem,
             _dimensions(result),
@@ -75,20 +79,10 @@ def certify(
     raise typer.Exit(0 if found.proven else NOT_PROVEN)
 
 
-def _job(folder: Path) -> Problem:
-    from ...optimise.job import load_job
-
-    for name in ("job.toml", "job.json"):
-        if (folder / name).is_file():
-            return load_job(folder / name)
-    raise RunError(f"a run has a file job.toml or job.json; {folder} has none; name another folder")
-
-
 def _dimensions(result: Result) -> NDArray[np.float64]:
     import numpy as np
 
-    names = ("crank_mm", "rod_mm", "offset_mm")
-    return np.array([[row[name] for name in names] for row in result.designs], dtype=np.float64) / 1e3
+    return np.array([[row[name] for name in _SIZES] for row in result.designs], dtype=np.float64) / 1e3
 
 
 def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json: bool) -> None:
@@ -106,7 +100,6 @@ def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json:
 
 def _record(found: Certificate, problem: Problem, run: str, rows: list[Row]) -> dict[str, Any]:
     wanted = [problem.quantity(objective.quantity) for objective in problem.objectives]
-    sizes = ("crank_mm", "rod_mm", "offset_mm")
     return {
         "run": run,
         "name": problem.name,
@@ -116,17 +109,23 @@ def _record(found: Certificate, problem: Problem, run: str, rows: list[Row]) -> 
         "epsilon": found.epsilon,
         "epsilon_of_delivered": found.delivered,
         "gap_of_delivered": found.gap,
-        "hole": None if found.hole is None else dict(zip(sizes, (1e3 * found.hole).tolist(), strict=True)),
+        "hole": _by_size(found.hole),
         "ranges": {of.field: float(span) * of.unit.factor for of, span in zip(wanted, found.span, strict=True)},
         "hypervolume_gap": found.hypervolume_gap,
         "boxes": found.boxes,
         "open_boxes": found.open,
         "remaining_share": found.remaining,
-        "remaining_where": None if found.where is None else dict(zip(sizes, (1e3 * found.where).tolist(), strict=True)),
+        "remaining_where": None
+        if found.where is None
+        else dict(zip(_SIZES, (1e3 * found.where).tolist(), strict=True)),
         "notes": list(found.notes),
         "seconds": found.seconds,
         "added": rows,
     }
+
+
+def _by_size(values: NDArray[np.float64] | None) -> dict[str, Any] | None:
+    return None if values is None else dict(zip(_SIZES, (1e3 * values).tolist(), strict=True))
 
 
 def _show(found: Certificate, result: Result, folder: Path) -> None:
@@ -138,12 +137,8 @@ def _show(found: Certificate, result: Result, folder: Path) -> None:
     if found.where is not None:
         lines.append(f"Farthest from proven: {_ranges(found.where)}")
     if found.hole is not None:
-        lines.append(
-            "Largest gap of the delivered front: "
-            + ", ".join(
-                f"{name} {1e3 * size:.6g} mm" for name, size in zip(("crank", "rod", "offset"), found.hole, strict=True)
-            )
-        )
+        sizes = (f"{name} {1e3 * size:.6g} mm" for name, size in zip(DIMENSIONS, found.hole, strict=True))
+        lines.append(f"Largest gap of the delivered front: {', '.join(sizes)}")
     if math.isfinite(found.hypervolume_gap):
         lines.append(
             f"Hypervolume: {result.hypervolume:.6g}, the true front's exceeds it by at most {found.hypervolume_gap:.3g}"
@@ -158,8 +153,7 @@ def _show(found: Certificate, result: Result, folder: Path) -> None:
 
 def _ranges(where: NDArray[np.float64]) -> str:
     return ", ".join(
-        f"{name} {1e3 * low:.6g} to {1e3 * high:.6g} mm"
-        for name, (low, high) in zip(("crank", "rod", "offset"), where, strict=True)
+        f"{name} {1e3 * low:.6g} to {1e3 * high:.6g} mm" for name, (low, high) in zip(DIMENSIONS, where, strict=True)
     )
 
 

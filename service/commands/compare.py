@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json as json_format
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,11 +17,10 @@ from ..designs.shown_units import result_in
 from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text, wanted_record
 from ..runs.run_folder import disk, runs_place
-from ..runs.stored_runs import read_run
-from ..text.options import Units, drawable
+from ..runs.stored_runs import job_file, read_run
+from ..text.options import Json, Runs, Units, drawable
 from ..text.screen import console, give, say
 from ..text.tables import print_table
-from .optimise import Json, Runs
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -113,12 +113,9 @@ def _method(folder: Path) -> str:
         return str(record["method"])
     from ...optimise.job import load_job
 
-    for name in ("job.toml", "job.json"):
-        if (folder / name).is_file():
-            try:
-                return load_job(folder / name).settings.method
-            except SlidercrankError:  # written for another version: the fronts compare all the same
-                break
+    job = job_file(folder)
+    with contextlib.suppress(SlidercrankError):  # written for another version: the fronts compare all the same
+        return "unknown" if job is None else load_job(job).settings.method
     return "unknown"
 
 
@@ -237,7 +234,7 @@ def _print(screen: Console, heads: Sequence[str], rows: Sequence[Sequence[str]])
 
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
     for place, head in enumerate(heads):
-        table.add_column(head, justify="left" if place == 0 else "right", vertical="bottom", no_wrap=True)
+        table.add_column(head, justify="right" if place else "left", vertical="bottom", no_wrap=True)
     for row in rows:
         table.add_row(*row)
     print_table(screen, table)

@@ -9,9 +9,8 @@ import shutil
 import tempfile
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ...model.errors import SlidercrankError
 from ..resources.sizes import size_text
@@ -27,8 +26,7 @@ _PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", 
 _OPTIONAL = ("psycopg", "distributed", "pyarrow")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Check:
+class Check(NamedTuple):
     """Something that was looked at. text: what was found, and what to do about it unless it is ok."""
 
     name: str
@@ -59,9 +57,9 @@ def _store(address: str, named: bool) -> Iterator[Check]:
         if named or left:
             why = f"{left[0]} is left of one that was deleted" if left else "the first job makes a new one"
             text = f"there is none at {address}: {why}; put it back, or restore a backup, see docs/service.md"
-            yield Check(name="store", grade="problem", text=text)
+            yield Check("store", "problem", text)
         else:
-            yield Check(name="store", grade="ok", text=f"there is none at {address} yet; the first job makes it")
+            yield Check("store", "ok", f"there is none at {address} yet; the first job makes it")
         yield _writable("place of the store", Path(address).parent)
         return
     try:
@@ -69,7 +67,7 @@ def _store(address: str, named: bool) -> Iterator[Check]:
             yield from _private(address)
             yield from _database(address, database)
     except SlidercrankError as error:
-        yield Check(name="store", grade="problem", text=str(error))
+        yield Check("store", "problem", str(error))
 
 
 def _private(address: str) -> Iterator[Check]:
@@ -78,10 +76,10 @@ def _private(address: str) -> Iterator[Check]:
 
     if "://" not in address and not may_use(Path(address)):
         text = f"{address} may not be written, so that no job gets on; {remedy_of_rights(Path(address))}"
-        yield Check(name="permissions", grade="problem", text=text)
+        yield Check("permissions", "problem", text)
     elif "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
         text = f"others of this machine may read or write {address} (mode {mode:03o} for them); chmod 600 {address}"
-        yield Check(name="permissions", grade="note", text=text)
+        yield Check("permissions", "note", text)
 
 
 def _database(address: str, database: Database) -> Iterator[Check]:
@@ -90,29 +88,29 @@ def _database(address: str, database: Database) -> Iterator[Check]:
 
     if not database.sqlite:
         database.require_ready()
-    yield Check(name="store", grade="ok", text=f"{database.name} answers, {server_version(database)}")
+    yield Check("store", "ok", f"{database.name} answers, {server_version(database)}")
     foreign = strangers(database)
     if foreign:
         text = f"they are of something else ({foreign}); name another store with --store"
-        yield Check(name="tables", grade="problem", text=text)
+        yield Check("tables", "problem", text)
         return
     version, latest, known = versions(database)
     if not known:
         text = f"they have version {version}, this software knows {latest}; install the release that made them"
-        yield Check(name="tables", grade="problem", text=text)
+        yield Check("tables", "problem", text)
         return
     if version != latest:
         text = f"they have version {version or 'none'}; {latest} is made of them when a command opens the store"
-        yield Check(name="tables", grade="note", text=text)
+        yield Check("tables", "note", text)
         return
-    yield Check(name="tables", grade="ok", text=f"version {version}")
+    yield Check("tables", "ok", f"version {version}")
     wrong = damages(database)
     text = "; ".join(wrong) + _REMEDY if wrong else "nothing is damaged"
-    yield Check(name="integrity", grade="problem" if wrong else "ok", text=text)
+    yield Check("integrity", "problem" if wrong else "ok", text)
     ahead = clock_ahead(database)
     text = f"the one of the store differs by {ahead:+.2f} s from the one of this machine"
     far = abs(ahead) > _CLOCKS
-    yield Check(name="clock", grade="note" if far else "ok", text=f"{text}; set them by NTP" if far else text)
+    yield Check("clock", "note" if far else "ok", f"{text}; set them by NTP" if far else text)
     yield from _at_work(address, time.time() + ahead)
 
 
@@ -127,40 +125,39 @@ def _at_work(address: str, now: float) -> Iterator[Check]:
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
     text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
-    yield Check(name="jobs", grade="ok", text=text)
+    yield Check("jobs", "ok", text)
     text = f"{heard} at work"
     if silent:
         text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
     waiting = counts.get("queued", 0) + len(expired)
     if waiting and not heard:
         text += f"; {waiting} jobs wait for one; start slidercrank serve or slidercrank worker"
-    yield Check(name="workers", grade="problem" if waiting and not heard else "note" if silent else "ok", text=text)
+    yield Check("workers", "problem" if waiting and not heard else "note" if silent else "ok", text)
     names = ", ".join(str(job.id) for job in expired[:5])
     text = f"those of jobs {names} have ended; the next free worker goes on with them" if expired else "none has ended"
-    yield Check(name="leases", grade="note" if expired else "ok", text=text)
+    yield Check("leases", "note" if expired else "ok", text)
+
+
+def _existing(folder: Path) -> Path:
+    """Return the folder, or the nearest one above it that is there."""
+    return next((place for place in (folder, *folder.parents) if place.exists()), folder)
 
 
 def _writable(name: str, folder: Path) -> Check:
-    there = folder
-    while not there.exists() and there != there.parent:
-        there = there.parent
     try:
-        with tempfile.TemporaryFile(dir=there):
+        with tempfile.TemporaryFile(dir=_existing(folder)):
             pass
     except OSError as error:
         text = f"{folder} cannot be written: {error.strerror or error}; permit it, or choose another place"
-        return Check(name=name, grade="problem", text=text)
-    return Check(name=name, grade="ok", text=f"{folder} can be written")
+        return Check(name, "problem", text)
+    return Check(name, "ok", f"{folder} can be written")
 
 
 def _room(name: str, folder: Path) -> Check:
-    there = folder.absolute()
-    while not there.exists() and there != there.parent:
-        there = there.parent
-    free = shutil.disk_usage(there).free
+    free = shutil.disk_usage(_existing(folder.absolute())).free
     grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
     remedy = "" if grade == "ok" else "; make room: a full disk stops all writing"
-    return Check(name=name, grade=grade, text=f"{size_text(free)} free{remedy}")
+    return Check(name, grade, f"{size_text(free)} free{remedy}")
 
 
 def _compiled() -> Check:
@@ -169,10 +166,10 @@ def _compiled() -> Check:
 
     folder, _, refused = choose_folder()
     if not refused:
-        return Check(name="compiled model", grade="ok", text=f"{folder} can be written")
+        return Check("compiled model", "ok", f"{folder} can be written")
     grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
     text = f"{refused}; it is {f'kept in {folder}' if folder else 'compiled anew at every start'}"
-    return Check(name="compiled model", grade=grade, text=f"{text}; name a folder in NUMBA_CACHE_DIR")
+    return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 
 def _versions() -> Check:
@@ -184,4 +181,4 @@ def _versions() -> Check:
             found.append(f"{name} {version(name)}")
         except PackageNotFoundError:
             found.append(f"{name} not installed")
-    return Check(name="versions", grade="ok", text=", ".join(found))
+    return Check("versions", "ok", ", ".join(found))

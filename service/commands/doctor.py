@@ -11,8 +11,8 @@ import typer
 from ...model.errors import NotFound
 from ..jobs.stores import Address, has_store, is_named, store_address
 from ..runs.run_folder import runs_place
+from ..text.options import Json, Runs
 from ..text.screen import console, give, say
-from .optimise import Json, Runs
 
 UNHEALTHY = 1
 """Exit code where something is not in order; 2 is for wrong input."""
@@ -41,8 +41,7 @@ def doctor(
     checks = diagnose(address, runs_place(runs), named=is_named(store))
     healthy = all(check.grade != "problem" for check in checks)
     if json:
-        found = [{"name": check.name, "grade": check.grade, "text": check.text} for check in checks]
-        give(json_text({"healthy": healthy, "checks": found}))
+        give(json_text({"healthy": healthy, "checks": [check._asdict() for check in checks]}))
     else:
         screen = console()
         for check in checks:

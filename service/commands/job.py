@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from ..runs.result import json_text
+from ..text.options import Json
 from ..text.screen import console, give
 
 
 def check(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Check a job file and say what was understood of it."""
     from ...objectives.own.quantity import OwnQuantity
@@ -31,19 +32,14 @@ def check(
         return
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
-    parts: list[tuple[str, Any]] = [
-        ("given", summary["given"]),
-        ("tolerances", summary["tolerances"]),
-        ("costs", summary["costs"]),
-        ("variables", summary["variables"]),
-        ("rules", summary["rules"]),
-        ("objectives", summary["objectives"]),
-        ("freedom", [freedom_in_words(summary)]),
-        ("search", [summary["search"]]),
-        ("warning", summary["warnings"]),
-        ("note", summary["notes"]),
-    ]
-    for title, lines in parts:
+    parts: dict[str, list[str]] = {
+        **{name: summary[name] for name in ("given", "tolerances", "costs", "variables", "rules", "objectives")},
+        "freedom": [freedom_in_words(summary)],
+        "search": [summary["search"]],
+        "warning": summary["warnings"],
+        "note": summary["notes"],
+    }
+    for title, lines in parts.items():
         for index, line in enumerate(lines):
             screen.print(f"  {title if index == 0 else '':<12}{line}", soft_wrap=True)
 

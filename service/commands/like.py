@@ -11,17 +11,15 @@ import typer
 from ...model.errors import InputError
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.conditions import Condition, parse_condition
-from ..designs.picking_options import minimised_values
+from ..designs.picking_options import minimised_values, require_alone
 from ..designs.shown_units import record_in, result_in, row_in
-from ..jobs.find_run import find_run
 from ..runs.result import Result, Row, json_text, rows_of
-from ..runs.run_folder import runs_place
-from ..runs.stored_runs import problem_of, read_run
-from ..text.options import Units
-from ..text.screen import console, give, say, waiting
+from ..runs.stored_runs import problem_of
+from ..text.options import Json, Run, Runs, Units
+from ..text.screen import console, give, waiting
 from ..text.tables import print_table
-from .optimise import NOTHING_FEASIBLE, Json, Runs
-from .runs import Run
+from .ending import end_without_design
+from .run_choice import run_of
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -54,10 +52,8 @@ def like(
     from ...optimise.questions.like import distance
     from ...optimise.questions.like import like as nearest
 
-    folder = find_run(run, runs_place(runs))
-    result = read_run(folder)
-    if not 1 <= number <= len(result.designs):
-        raise InputError(f"the run has designs 1 to {len(result.designs)}; got {number}; see slidercrank front {run}")
+    folder, result = run_of(run, runs)
+    require_alone(number, result, run, others=False)
     problem = replace(problem_of(folder, result), name=result.name)
     row = result.designs[number - 1]
     constraints, ranges = _added(where, row, problem)
@@ -68,8 +64,7 @@ def like(
     if not len(found):
         if json:
             give(json_text({"run": str(folder), "number": number, "status": found.status, "message": found.message}))
-        say(f"slidercrank: {found.message}")
-        raise typer.Exit(NOTHING_FEASIBLE)
+        end_without_design(found.message)
     apart = float(distance(found.values, given, span)[0])
     after = rows_of(found.designs.to_dict("list"))[0]
     if json:
@@ -163,24 +158,17 @@ def _show(
         soft_wrap=True,
     )
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), show_edge=False)
-    for head in ("quantity", "unit", f"design {number}", "now", "change", "% of range"):
-        table.add_column(head, justify="left" if head in ("quantity", "unit") else "right", no_wrap=True)
+    for place, head in enumerate(("quantity", "unit", f"design {number}", "now", "change", "% of range")):
+        table.add_column(head, justify="right" if place > 1 else "left", no_wrap=True)
     columns = {wanted.column for wanted in result.objectives}
     for key in after:
         change = _moved(before, after, key)
         if change is None or key.startswith("slack_"):
             continue
-        column = find_column(key, after)
-        share = f"{100.0 * change / _range(result, key):+.2f}" if key in columns and _range(result, key) else ""
-        table.add_row(
-            column.title,
-            column.unit,
-            f"{before[key]:.6g}",
-            f"{after[key]:.6g}",
-            f"{change:+.3g}",
-            share,
-            style="bold" if key in columns else "",
-        )
+        column, objective = find_column(key, after), key in columns
+        share = f"{100.0 * change / _range(result, key):+.2f}" if objective and _range(result, key) else ""
+        numbers = (f"{before[key]:.6g}", f"{after[key]:.6g}", f"{change:+.3g}", share)
+        table.add_row(column.title, column.unit, *numbers, style="bold" if objective else "")
     screen.print()
     print_table(screen, table)
     screen.print(

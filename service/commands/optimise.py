@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,14 +17,15 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.extras import is_installed, required
 from ...objectives.kinds import System
+from ..designs.shown_units import result_in
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import Result, json_text, result_of
 from ..runs.run_folder import RunFolder, disk, runs_place
-from ..text.options import Units
+from ..text.options import Json, Runs, Units
 from ..text.screen import console, give, progress_bar, say, waiting
 from ..text.tables import show_design, show_front
-from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_of, engine_options
-from .interruption import Interruption
+from ..workers.engines import EngineOptions, engine_of
+from .ending import EXIT_CODES, INTERRUPTED, Interruption
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -32,15 +34,8 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
     from ..store import Claim, Store
 
-NOTHING_FEASIBLE, INTERRUPTED = 3, 130
+_FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
 _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
-EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED}
-
-Runs = Annotated[
-    Path | None,
-    typer.Option(help="Where runs are kept.  [default: SLIDERCRANK_RUNS, else ./runs]"),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")]
 
 
 def optimise(
@@ -52,11 +47,8 @@ def optimise(
     store: Address = None,
     designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything random.")] = None,
-    cores: Cores = None,
-    scheduler: Scheduler = None,
-    tls_ca: TlsAuthority = None,
-    tls_cert: TlsCertificate = None,
-    tls_key: TlsKey = None,
+    *,
+    engine: EngineOptions,
     units: Units = "metric",
     json: Json = False,
     figures: Annotated[
@@ -83,7 +75,7 @@ def optimise(
         raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
     if figures:
         required("matplotlib", "figures need")
-    options = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key)
+    options = engine.checked()
     with contextlib.ExitStack() as opened:
         listed = True
         if job is not None:
@@ -100,17 +92,18 @@ def optimise(
         opened.enter_context(Heartbeat(claim))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
-        engine = opened.enter_context(engine_of(options))
-        front = _solve(problem, run, interruption, claim, engine)
+        front = _solve(problem, run, interruption, claim, opened.enter_context(engine_of(options)))
         result = result_of(front, str(run.path))
-        versions = _versions(front)
+        versions = dict(front.versions)
+        if is_installed("matplotlib"):
+            versions["matplotlib"] = version("matplotlib")
         run.keep_result(result, versions)
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
         if drawn:
             _draw(front, run, interruption, units)
-    shown = shown_front(front, result, units)
+    shown = result_in(result, units, problem)
     if json:
         give(json_text(shown.record()))
         if result.status != "done":
@@ -122,16 +115,6 @@ def optimise(
     if result.status == "cancelled" and again:
         say(f"go on with: {again}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
-
-
-def shown_front(front: ParetoFront, result: Result, units: System) -> Result:
-    """Return the result of a run in the units that are asked for. front: where its trade-offs come from."""
-    if units == "metric":
-        return result
-    from ..designs.shown_units import result_in
-
-    told = front.trade_offs(front.knee(), units) if result.trade_offs else []
-    return replace(result_in(result, units), trade_offs=told)
 
 
 def _again_command(run: str, runs: Path | None, store: str | None) -> str:
@@ -206,19 +189,7 @@ def show_result(result: Result) -> None:
 
 
 def _contents(folder: Path) -> list[str]:
-    names = [
-        name
-        for name in (
-            "front.csv",
-            "front.json",
-            "certificate.csv",
-            "certificate.json",
-            "job.toml",
-            "job.json",
-            "log.txt",
-        )
-        if (folder / name).exists()
-    ]
+    names = [name for name in _FILES if (folder / name).exists()]
     pictures = len(list((folder / "figures").glob("*.png")))
     return [*names, f"figures/ ({pictures} pictures)"] if pictures else names
 
@@ -232,10 +203,7 @@ def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem,
     for note in notes_of(tables):
         say(f"note: {note}")
     settings = problem.settings
-    if designs is not None:
-        settings = replace(settings, designs=designs)
-    if seed is not None:
-        settings = replace(settings, seed=seed)
+    settings = replace(settings, designs=designs or settings.designs, seed=settings.seed if seed is None else seed)
     given = {"designs": settings.designs, "seed": settings.seed}
     return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **given}}
 
@@ -247,20 +215,19 @@ def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: 
 
         def tell(at: Progress) -> None:
             claim.tell(at)
+            show(at)
+
+        def tell_and_log(at: Progress) -> None:
+            tell(at)
             run.log(
                 f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
                 f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
             )
-            show(at)
-
-        def between(at: Progress) -> None:
-            claim.tell(at)
-            show(at)
 
         return solve(
             problem,
-            progress=tell,
-            stages=between,
+            progress=tell_and_log,
+            stages=tell,
             cancelled=lambda: interruption.asked() or claim.cancel_asked,
             resume=tuple(claim.records()),
             keep=claim.keep,
@@ -277,9 +244,3 @@ def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units:
             if interruption.asked():
                 run.log("interrupted; the other figures are left out")
                 return
-
-
-def _versions(front: ParetoFront) -> dict[str, str]:
-    from importlib.metadata import version
-
-    return {**front.versions, **({"matplotlib": version("matplotlib")} if is_installed("matplotlib") else {})}

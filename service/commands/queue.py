@@ -10,8 +10,9 @@ import typer
 from ...model.errors import InputError
 from ...optimise.front.progress import standing
 from ..jobs.stores import Address, Name, find_job, has_store, store_address, store_that_is_there, tell_idle
+from ..runs.result import json_text
+from ..text.options import Json
 from ..text.screen import console, give, say
-from .optimise import Json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,7 +31,6 @@ def jobs(
     json: Json = False,
 ) -> None:
     """List the jobs of a store, the latest first, with what they found."""
-    from ..runs.result import json_text
     from ..store import State
 
     known = get_args(State)
@@ -71,8 +71,6 @@ def resume(job: Name, store: Address = None, json: Json = False) -> None:
 
 def delete(job: Name, store: Address = None, json: Json = False) -> None:
     """Delete a job that has ended and everything of it, for good."""
-    from ..runs.result import json_text
-
     with store_that_is_there(store) as opened:
         found = find_job(opened, job)
         opened.delete(found.id)
@@ -80,29 +78,22 @@ def delete(job: Name, store: Address = None, json: Json = False) -> None:
 
 
 def _tell(job: Job, json: bool, what: str = "") -> None:
-    from ..runs.result import json_text
-
     text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)
     give(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
 
 
 def _show(screen: Console, found: list[Job]) -> None:
     from rich import box
-    from rich.table import Table
+    from rich.table import Column, Table
 
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
-    table.add_column("no.", justify="right", no_wrap=True)
-    for title in ("submitted", "job", "state"):
-        table.add_column(title, no_wrap=True)
-    table.add_column("where it stands")
+    short = (Column(title, no_wrap=True) for title in ("submitted", "job", "state"))
+    number = Column("no.", justify="right", no_wrap=True)
+    table = Table(number, *short, "where it stands", box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
     for job in found:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
-        table.add_row(str(job.id), submitted, _short(job.name, 32), _state(job), _short(_standing(job), 120))
+        state = "stopping" if job.state == "running" and job.cancel_asked else job.state
+        table.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_standing(job), 120))
     screen.print(table)
-
-
-def _state(job: Job) -> str:
-    return "stopping" if job.state == "running" and job.cancel_asked else job.state
 
 
 def _standing(job: Job) -> str:

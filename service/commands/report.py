@@ -10,14 +10,11 @@ import typer
 
 from ...model.errors import InputError, RunError
 from ...objectives.kinds import System
-from ..jobs.find_run import find_run
-from ..runs.run_folder import runs_place, slug, write_file
-from ..runs.stored_runs import problem_of, read_run
-from ..text.options import Units
+from ..runs.run_folder import slug, write_file
+from ..runs.stored_runs import problem_of
+from ..text.options import Run, Runs, Units
 from ..text.screen import say, waiting
-from .design_choice import Design, Knee, Lexicographic, Topsis, Where, chosen_design
-from .optimise import Runs
-from .runs import Run
+from .run_choice import Choice, Where, run_of
 
 if TYPE_CHECKING:
     from ..report.document import Report
@@ -26,10 +23,8 @@ if TYPE_CHECKING:
 
 def report(
     run: Run,
-    design: Design = None,
-    knee: Knee = False,
-    topsis: Topsis = None,
-    lexicographic: Lexicographic = None,
+    *,
+    choice: Choice,
     where: Where = None,
     out: Annotated[
         Path | None,
@@ -49,17 +44,13 @@ def report(
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
-    folder = find_run(run, runs_place(runs))
-    result = read_run(folder)
-    number = chosen_design(
-        result, run, design=design, knee=knee, topsis=topsis, lexicographic=lexicographic, where=where
-    )
+    folder, result = run_of(run, runs)
+    number = choice.number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with waiting("writing the report"):
-        made = _report(folder, result, number, units)
-        content = _content(made, pdf=pdf)
+        content = _content(_report(folder, result, number, units), pdf=pdf)
     write_file(file, content)
     say(f"report: {file}")
 

@@ -2,30 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...model.errors import SlidercrankError
-from ...objectives.kinds import System
-from ..jobs.find_run import find_run
-from ..runs.result import Result, json_text
-from ..runs.run_folder import runs_place
-from ..runs.stored_runs import problem_of, read_run
-from ..text.options import Units
-from ..text.screen import console, give, say
+from ..runs.result import json_text
+from ..text.options import Json, Run, Runs, Units
+from ..text.screen import console, give
 from ..text.tables import ROWS, show_design, show_front
-from .optimise import NOTHING_FEASIBLE, Json, Runs, show_result
-
-Run = Annotated[
-    str,
-    typer.Argument(
-        metavar="RUN",
-        help='The run: its folder, its name in the place of runs, the start of the name, or "latest".',
-    ),
-]
+from .ending import end_without_design
+from .optimise import show_result
+from .run_choice import run_of, shown_result
 
 
 def front(
@@ -84,15 +71,12 @@ def front(
     from ..designs.picking_options import picked_row, require_alone
     from ..designs.selection import chosen_rows, none_meets, part_of
 
-    folder = find_run(run, runs_place(runs))
-    result = read_run(folder)
+    folder, result = run_of(run, runs)
     if not result.designs:
         if json:
             give(json_text(result.record()))
-        say(f"slidercrank: {result.message}")
-        raise typer.Exit(NOTHING_FEASIBLE)
-    keys = list(result.designs[0])
-    wanted = find_columns(columns, keys) if columns else None
+        end_without_design(result.message)
+    wanted = find_columns(columns, list(result.designs[0])) if columns else None
     chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
     if design is None:
         one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
@@ -103,48 +87,25 @@ def front(
         chosen = [one]
     told = not where and (json or not (sort or reverse or columns or one is not None or rows != ROWS))
     result = shown_result(result, units, folder if told else None)
-    shown = None
+    shown = names = None
     if wanted is not None:
         shown = find_columns(",".join(key_in(column.key, units)[0] for column in wanted), list(result.designs[0]))
+        names = [column.key for column in shown]
     if json:
-        picked = part_of(result, chosen)
-        record = picked.record()
-        if shown is not None:
-            names = [column.key for column in shown]
+        record = part_of(result, chosen).record()
+        if names is not None:
             record["designs"] = [{name: row[name] for name in names} for row in record["designs"]]
         give(json_text(record if one is None else {**record, "number": one + 1}))
     elif one is not None:
         screen = console()
         screen.print(f"{result.name}: design {one + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
-        show_design(screen, result.designs[one], only=[column.key for column in shown] if shown else None)
+        show_design(screen, result.designs[one], only=names)
     elif not (where or sort or reverse or columns or rows != ROWS):
         show_result(result)
     elif chosen:
         screen = console()
-        screen.print(f"{result.name}: {_count(chosen, result)}", style="bold", soft_wrap=True)
+        count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
+        screen.print(f"{result.name}: {count}{len(result.designs)} designs", style="bold", soft_wrap=True)
         show_front(screen, result, chosen, columns=shown, most=rows)
     if not chosen:
-        say(f"slidercrank: {none_meets(result, where or [])}")
-        raise typer.Exit(NOTHING_FEASIBLE)
-
-
-def shown_result(result: Result, units: System, folder: Path | None) -> Result:
-    """Return the result of a run in the units that are asked for.
-
-    folder: of the run, where its trade-offs are told; None where they are not.
-    """
-    if units == "metric":
-        return result
-    from ..designs.shown_units import result_in
-
-    problem = None
-    if folder is not None and result.trade_offs:
-        with contextlib.suppress(SlidercrankError):  # its job is of another version
-            problem = problem_of(folder, result)
-    return result_in(result, units, problem)
-
-
-def _count(chosen: list[int], result: Result) -> str:
-    if len(chosen) == len(result.designs):
-        return f"{len(chosen)} designs"
-    return f"{len(chosen)} of {len(result.designs)} designs"
+        end_without_design(none_meets(result, where or []))

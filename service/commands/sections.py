@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..runs.result import json_text
-from ..text.options import Crank, Offset, Rod, lengths_of
+from ..text.options import Dimensions, Json
 from ..text.screen import console, give, waiting
 
 if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
     from ...optimise.sizing.sections import Sections
 
 _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
@@ -19,10 +20,9 @@ _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
 def sections(
     job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with a table [sections].")],
-    crank: Crank = None,
-    rod: Rod = None,
-    offset: Offset = None,
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    *,
+    size: Dimensions,
+    json: Json = False,
 ) -> None:
     """Size crank and rod of one design as rectangular bars of least mass.
 
@@ -30,34 +30,30 @@ def sections(
     puts on them, their own mass included. What JOB says of the links' masses is not used. Dimensions that JOB fixes
     need not be repeated.
     """
-    from ...model.linkage.linkage import Linkage
     from ...optimise.job import load_job, load_sections
     from ...optimise.sizing.sections import size_sections
 
     problem = load_job(job)
     material, limits = load_sections(job)
-    lengths = lengths_of(problem, crank, rod, offset)
-    linkage = Linkage(lengths[0], lengths[1], lengths[2], problem.mechanism.branch)
+    linkage = size.linkage(problem)
     with waiting("sizing the sections"):
         found = size_sections(problem.mechanism, linkage, material, limits)
     if json:
-        give(json_text(_numbers(found, lengths)))
+        give(json_text(_numbers(found, linkage)))
     else:
         _show(found)
 
 
-def _numbers(found: Sections, lengths: list[float]) -> dict[str, Any]:
+def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
     """Return the result ready for JSON."""
     return {
-        "crank_mm": 1e3 * lengths[0],
-        "rod_mm": 1e3 * lengths[1],
-        "offset_mm": 1e3 * lengths[2],
+        **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
         "crank_width_mm": 1e3 * found.crank.width,
         "crank_depth_mm": 1e3 * found.crank.depth,
         "rod_width_mm": 1e3 * found.rod.width,
         "rod_depth_mm": 1e3 * found.rod.depth,
-        "crank_mass_kg": found.crank.mass(lengths[0]),
-        "rod_mass_kg": found.rod.mass(lengths[1]),
+        "crank_mass_kg": found.crank.mass(float(linkage.crank)),
+        "rod_mass_kg": found.rod.mass(float(linkage.rod)),
         "mass_kg": found.mass,
         "settled": found.settled,
         "iterations": found.iterations,
@@ -67,17 +63,15 @@ def _numbers(found: Sections, lengths: list[float]) -> dict[str, Any]:
 
 
 def _show(found: Sections) -> None:
-    from rich.table import Table
+    from rich.table import Column, Table
 
     screen = console()
     for name, bar in (("crank", found.crank), ("rod", found.rod)):
         screen.print(f"{name}: width {1e3 * bar.width:.4g} mm, depth {1e3 * bar.depth:.4g} mm", soft_wrap=True)
     settled = "" if found.settled else "; sections and dynamics have not settled"
     screen.print(f"mass of both: {found.mass:.5g} kg, after {found.iterations} iterations{settled}", soft_wrap=True)
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("limit")
-    table.add_column("used, %", justify="right")
-    table.add_column("1 % more of it saves", justify="right")
+    numbers = (Column(head, justify="right") for head in ("used, %", "1 % more of it saves"))
+    table = Table("limit", *numbers, box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name, used in found.utilisation.items():
         rate = found.sensitivity[name]
         table.add_row(name, f"{100.0 * used:.4g}", f"{rate:.3g} % of mass" if rate > _ACTIVE else "")

@@ -12,20 +12,10 @@ import typer
 
 from ...model.errors import InputError
 from ..jobs.stores import Address, open_store, store_address
-from ..resources.sizes import size_of
 from ..text.screen import give
-from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
-from .worker_options import (
-    AllowQuantity,
-    Grace,
-    Lease,
-    LogFormat,
-    Logs,
-    MostEvaluations,
-    MostMemory,
-    MostRunning,
-    MostSeconds,
-)
+from ..workers.engines import EngineOptions
+from .ending import Interruption
+from .worker import AllowQuantity, Grace, Lease, LogFormat, Logs, Most
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
@@ -57,17 +47,11 @@ def serve(
         int, typer.Option("--submissions-per-minute", min=0, help="Sum over all clients; 0 is no limit.")
     ] = 600,
     most_queued: Annotated[int, typer.Option(min=1, help="Most jobs that may wait.")] = 10_000,
-    most_running: MostRunning = None,
-    most_seconds: MostSeconds = None,
-    most_evaluations: MostEvaluations = None,
-    most_memory: MostMemory = None,
+    *,
+    most: Most,
     lease: Lease = 30.0,
     grace: Grace = 10.0,
-    cores: Cores = None,
-    scheduler: Scheduler = None,
-    tls_ca: TlsAuthority = None,
-    tls_cert: TlsCertificate = None,
-    tls_key: TlsKey = None,
+    engine: EngineOptions,
     log_format: Logs = LogFormat.text,
 ) -> None:
     """Serve the API, and solve its jobs, until stopped.
@@ -78,17 +62,14 @@ def serve(
     from ..api.app import create_app
     from ..api.server import listen, names_of, run_server, url_of
     from ..api.settings import Settings
-    from ..store import Limits
     from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
     from ..workers.worker import Terms
     from ..workers.worker_process import WorkerSettings
-    from .termination import Termination
 
     secret, made = _token(token, no_token, host)
     allowed = tuple(sorted(set(allow_quantity or ())))
-    memory = None if most_memory is None else size_of(most_memory, "--most-memory")
-    limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
+    limits = most.limits()
     settings = Settings(
         token=secret,
         hosts=(*names_of(host), *(allow_host or ())),
@@ -97,15 +78,15 @@ def serve(
         limits=limits,
     )
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers
-    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(max(1, processes))
+    shared = engine.checked().shared_by(max(1, processes))
     work = WorkerSettings(
         address=store_address(store),
         lease=lease,
-        most_running=most_running,
-        terms=Terms(limits=limits, grace=grace, engine=engine, allowed_quantities=allowed),
+        most_running=most.most_running,
+        terms=Terms(limits=limits, grace=grace, engine=shared, allowed_quantities=allowed),
         log_format=log_format.value,
     )
-    with Termination(), listen(host, port) as socket, open_store(store) as opened:
+    with Interruption(service=True), listen(host, port) as socket, open_store(store) as opened:
         opened.most_queued = most_queued
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")

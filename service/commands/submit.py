@@ -14,14 +14,14 @@ from ...model.errors import StoreError
 from ...optimise.front.progress import standing
 from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
 from ..resources.sizes import size_of
+from ..text.options import Json
 from ..text.screen import console, give, progress_bar, say
 from ..text.streams import reader_left
-from .optimise import EXIT_CODES, Json
+from .ending import EXIT_CODES
 
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
 
-FAILED = 2
 _LOOK = 0.25  # s between two looks for new events
 _AWAY = 1.0  # s between two tries while the database is away
 _SELDOM = 5.0  # s between two lines of a long stage
@@ -128,7 +128,7 @@ def _follow(store: Store, job: Job, *, json: bool) -> int:
     except KeyboardInterrupt:
         say(f"job {job.id} is left as it is; stop it with: slidercrank cancel {job.id}")
         raise
-    return EXIT_CODES.get(ended.state, FAILED)
+    return EXIT_CODES[ended.state]
 
 
 def events_until_end(store: Store, number: int) -> Iterator[Event]:

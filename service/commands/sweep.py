@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
+from ...objectives.kinds import ANGULAR_SPEED, LENGTH
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from ..text.options import Crank, Offset, Rod, Units, drawable, length_option, value_option
+from ..text.options import Dimensions, Json, Units, drawable, length_option, value_option
 from ..text.screen import give, say
 from ..topics.sweep.text import show
 
@@ -34,14 +35,13 @@ def sweep(
     of: Annotated[
         list[str], typer.Option(metavar="QUANTITY", help="Quantity to compute, such as peak_torque. Repeatable.")
     ],
-    crank: Crank = None,
-    rod: Rod = None,
-    offset: Offset = None,
+    *,
+    size: Dimensions,
     figures: Annotated[
         Path | None, typer.Option(metavar="DIR", callback=drawable, help="Draw the sweep into sweep.png there.")
     ] = None,
     units: Units = "metric",
-    json: Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")] = False,
+    json: Json = False,
 ) -> None:
     """Sweep quantities over one or two of crank, rod, offset and speed.
 
@@ -57,26 +57,25 @@ def sweep(
     if len(axes) > 2:
         raise InputError(f"a sweep is over one or two parameters; got {len(axes)} --over; leave out some")
     swept = {axis.parameter for axis in axes}
-    given = {"crank": crank, "rod": rod, "offset": offset}
-    for name, text in given.items():
+    for name, text in vars(size).items():
         if name in swept and text is not None:
             raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
-    lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in given.items()]
+    lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in vars(size).items()]
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
+    quantities = [problem.quantity(name) for name in names]
     table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
     if json:
         give(json_text(rows_in(rows_of(table.to_dict("list")), units)))
     else:
-        show(table, axes, [problem.quantity(name) for name in names], units)
+        show(table, axes, quantities, units)
     if figures is not None:
         from ..figures.style import save
         from ..topics.sweep.figure import sweep_figure
 
         with disk(figures):
             figures.mkdir(parents=True, exist_ok=True)
-            of_names = [problem.quantity(name) for name in names]
             file = figures / "sweep.png"
-            save(sweep_figure(table, axes, of_names, title=problem.name, system=units), file)
+            save(sweep_figure(table, axes, quantities, title=problem.name, system=units), file)
         say(f"figure: {file}")
 
 
@@ -84,7 +83,6 @@ def parse_axis(text: str) -> Axis:
     """Return the axis of a sweep from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`."""
     import numpy as np
 
-    from ...objectives.kinds import ANGULAR_SPEED, LENGTH
     from ...objectives.tables.sweep import Axis, Parameter
     from ...optimise.job.units import closest
 

@@ -3,25 +3,68 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
 from ..resources.sizes import size_of
-from ..workers.engines import Cores, Scheduler, TlsAuthority, TlsCertificate, TlsKey, engine_options
-from .worker_options import (
-    AllowQuantity,
-    Grace,
-    Lease,
-    LogFormat,
-    Logs,
-    MostEvaluations,
-    MostMemory,
-    MostRunning,
-    MostSeconds,
-)
+from ..workers.engines import EngineOptions
+from .ending import Interruption
+
+if TYPE_CHECKING:
+    from ..store import Limits
+
+
+class LogFormat(StrEnum):
+    """Format of logs."""
+
+    text = "text"
+    json = "json"
+
+
+Logs = Annotated[
+    LogFormat, typer.Option("--log-format", help="Log format on standard error: for people, or one JSON object a line.")
+]
+Lease = Annotated[
+    float, typer.Option(min=1.0, max=3600.0, help="Seconds until a job whose worker is gone goes to another one.")
+]
+Grace = Annotated[
+    float, typer.Option(min=0.0, max=600.0, help="Seconds that a round has to end once the worker is to stop.")
+]
+AllowQuantity = Annotated[
+    list[str] | None,
+    typer.Option(metavar="MODULE:FUNCTION", help="Function that jobs may name as a quantity of their own. Repeatable."),
+]
+
+
+@dataclass(frozen=True)
+class Most:
+    """Options that limit what jobs take."""
+
+    most_running: Annotated[
+        int | None, typer.Option(min=1, help="Let at most so many jobs of the store be solved at a time.")
+    ] = None
+    most_seconds: Annotated[
+        float | None, typer.Option(help="End the search of every job after so long, with what it found.")
+    ] = None
+    most_evaluations: Annotated[
+        int | None, typer.Option(help="End the search of every job after so many designs, with what it found.")
+    ] = None
+    most_memory: Annotated[
+        str | None,
+        typer.Option(metavar="SIZE", help='Let a job fail if its worker takes more memory, such as "2 GB".'),
+    ] = None
+
+    def limits(self) -> Limits:
+        """Return the limits of each job."""
+        from ..store import Limits
+
+        memory = None if self.most_memory is None else size_of(self.most_memory, "--most-memory")
+        return Limits(seconds=self.most_seconds, evaluations=self.most_evaluations, memory=memory)
 
 
 def worker(
@@ -30,16 +73,10 @@ def worker(
     lease: Lease = 30.0,
     allow_quantity: AllowQuantity = None,
     drain: Annotated[bool, typer.Option("--drain", help="End as soon as no job waits.")] = False,
-    most_running: MostRunning = None,
-    most_seconds: MostSeconds = None,
-    most_evaluations: MostEvaluations = None,
-    most_memory: MostMemory = None,
+    *,
+    most: Most,
     grace: Grace = 10.0,
-    cores: Cores = None,
-    scheduler: Scheduler = None,
-    tls_ca: TlsAuthority = None,
-    tls_cert: TlsCertificate = None,
-    tls_key: TlsKey = None,
+    engine: EngineOptions,
     log_format: Logs = LogFormat.text,
 ) -> None:
     """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
@@ -48,27 +85,26 @@ def worker(
     goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
     required("psutil", "workers need")  # they end what a job leaves behind with it
-    from ..store import Limits
     from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
     from ..workers.worker import Terms
     from ..workers.worker_process import WorkerSettings
-    from .termination import Termination
 
-    memory = None if most_memory is None else size_of(most_memory, "--most-memory")
-    limits = Limits(seconds=most_seconds, evaluations=most_evaluations, memory=memory)
-    engine = engine_options(cores, scheduler, tls_ca, tls_cert, tls_key).shared_by(processes)
+    limits = most.limits()
     settings = WorkerSettings(
         address=store_address(store),
         lease=lease,
         drain=drain,
-        most_running=most_running,
+        most_running=most.most_running,
         terms=Terms(
-            limits=limits, grace=grace, engine=engine, allowed_quantities=tuple(sorted(set(allow_quantity or ())))
+            limits=limits,
+            grace=grace,
+            engine=engine.checked().shared_by(processes),
+            allowed_quantities=tuple(sorted(set(allow_quantity or ()))),
         ),
         log_format=log_format.value,
     )
-    with Termination() as termination:
+    with Interruption(service=True) as termination:
         open_store(store).close()  # what is wrong with it is told at once, and by nobody but this process
         set_up_logs(log_format.value)
         with Supervisor(settings, processes) as supervisor:

@@ -79,11 +79,16 @@ def problem_of(folder: Path, result: Result) -> Problem:
     """
     from ...optimise.job import load_job
 
-    for name in ("job.toml", "job.json"):
-        if (folder / name).is_file():
-            try:
-                problem = load_job(folder / name)
-            except JobError as error:
-                raise RunError(f"the job of the run {folder} cannot be read: {error}; run it again") from error
-            return replace(problem, settings=replace(problem.settings, seed=result.seed))
-    raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")
+    job = job_file(folder)
+    if job is None:
+        raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")
+    try:
+        problem = load_job(job)
+    except JobError as error:
+        raise RunError(f"the job of the run {folder} cannot be read: {error}; run it again") from error
+    return replace(problem, settings=replace(problem.settings, seed=result.seed))
+
+
+def job_file(folder: Path) -> Path | None:
+    """Return the job file of a run, None if it has none."""
+    return next((file for name in ("job.toml", "job.json") if (file := folder / name).is_file()), None)

@@ -15,14 +15,11 @@ Line = tuple[str, float | str | None, str, str]
 
 def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
     """Write a heading and one line for each number."""
-    from rich.table import Table
+    from rich.table import Column, Table
 
     console.print(title, style="bold")
-    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("quantity")
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    table.add_column("remark", style="dim")
+    columns = ("name", Column(justify="right", no_wrap=True), Column(no_wrap=True), Column(style="dim"))
+    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     for name, value, unit, remark in lines:
         text = "undefined" if value is None else value if isinstance(value, str) else f"{value:.6g}"
         table.add_row(f"  {name}", text, "" if value is None else unit, remark)

@@ -1,17 +1,22 @@
-"""Options of the command line that are quantities: a number with its unit."""
+"""Options of the command line that several commands have, and those that are quantities: a number with its unit."""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, fields, is_dataclass
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
 from ...model.errors import InputError
 from ...model.extras import required
-from ...objectives.kinds import System
+from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
 
 if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
     from ...optimise.problem.problem import Problem
 
 
@@ -32,27 +37,71 @@ Units = Annotated[
         "given name their own unit.  [env: SLIDERCRANK_UNITS]",
     ),
 ]
-
-
-Crank = Annotated[
-    str | None, typer.Option("--crank", metavar="LENGTH", help='Crank, such as "40 mm", unless JOB fixes it.')
+Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")]
+Runs = Annotated[Path | None, typer.Option(help="Where runs are kept.  [default: SLIDERCRANK_RUNS, else ./runs]")]
+Run = Annotated[
+    str,
+    typer.Argument(
+        metavar="RUN",
+        help='The run: its folder, its name in the place of runs, the start of the name, or "latest".',
+    ),
 ]
-Rod = Annotated[str | None, typer.Option("--rod", metavar="LENGTH", help="Connecting rod, likewise.")]
-Offset = Annotated[
-    str | None,
-    typer.Option("--offset", metavar="LENGTH", help='Offset of the slider line, such as "-20 mm", likewise.'),
-]
 
 
-def lengths_of(problem: Problem | None, crank: str | None, rod: str | None, offset: str | None) -> list[float]:
-    """Return crank, rod and offset, m, each as `length_option` gives it."""
-    return [length_option(name, text, problem) for name, text in (("crank", crank), ("rod", rod), ("offset", offset))]
+def spread_groups(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command for typer in which the fields of a dataclass of options stand for a parameter of its type."""
+    hints = get_type_hints(command, include_extras=True)
+    groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
+    own = inspect.signature(command).parameters
+    options: list[inspect.Parameter] = []
+    for name, parameter in own.items():
+        given = [(name, parameter.default, hints[name])]
+        if name in groups:
+            types = get_type_hints(groups[name], include_extras=True)
+            given = [(field.name, field.default, types[field.name]) for field in fields(groups[name])]
+        options += [
+            inspect.Parameter(option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+            for option, default, hint in given
+        ]
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        for name, group in groups.items():
+            given[name] = group(**{field.name: given.pop(field.name) for field in fields(group)})
+        command(**given)
+
+    run.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
+    run.__annotations__ = {option.name: option.annotation for option in options}
+    return run
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """Crank, rod and offset as they are given."""
+
+    crank: Annotated[
+        str | None, typer.Option("--crank", metavar="LENGTH", help='Crank, such as "40 mm", unless JOB fixes it.')
+    ] = None
+    rod: Annotated[str | None, typer.Option("--rod", metavar="LENGTH", help="Connecting rod, likewise.")] = None
+    offset: Annotated[
+        str | None,
+        typer.Option("--offset", metavar="LENGTH", help='Offset of the slider line, such as "-20 mm", likewise.'),
+    ] = None
+
+    def lengths(self, problem: Problem | None) -> list[float]:
+        """Return crank, rod and offset, m, each as `length_option` gives it."""
+        return [length_option(name, text, problem) for name, text in vars(self).items()]
+
+    def linkage(self, problem: Problem) -> Linkage:
+        """Return the linkage of a job's branch."""
+        from ...model.linkage.linkage import Linkage
+
+        crank, rod, offset = self.lengths(problem)
+        return Linkage(crank, rod, offset, problem.mechanism.branch)
 
 
 def length_option(name: str, text: str | None, problem: Problem | None) -> float:
     """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
-    from ...objectives.kinds import LENGTH
-
     if text is not None:
         return value_option(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
     bounds = getattr(problem, name, None)
@@ -65,12 +114,10 @@ def length_option(name: str, text: str | None, problem: Problem | None) -> float
 
 def speed_option(text: str) -> float:
     """Return the crank speed, rad/s."""
-    from ...objectives.kinds import ANGULAR_SPEED
-
     return value_option("--speed", text, ANGULAR_SPEED)
 
 
-def value_option(option: str, text: str, kind: Any, *, sign: Any = "any") -> float:
+def value_option(option: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
     """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
     from ...optimise.job.units import shown, to_si
 

@@ -123,11 +123,7 @@ def _friction(friction: Friction) -> list[str]:
 
 def _tolerances(mechanism: Mechanism) -> list[str]:
     tolerances = mechanism.tolerances
-    lines = []
-    for name in UNKNOWNS:
-        text = _tolerance(getattr(tolerances, name))
-        if text:
-            lines.append(f"{name} {text}")
+    lines = [f"{name} {text}" for name in UNKNOWNS if (text := _tolerance(getattr(tolerances, name)))]
     if tolerances.crank_angle.absolute:
         lines.append(f"crank angle {math.degrees(tolerances.crank_angle.absolute):.6g} deg")
     for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
@@ -141,12 +137,8 @@ def _tolerances(mechanism: Mechanism) -> list[str]:
 
 
 def _tolerance(tolerance: Tolerance) -> str:
-    parts = []
-    if tolerance.absolute:
-        parts.append(f"{1e3 * tolerance.absolute:.6g} mm")
-    if tolerance.fraction:
-        parts.append(f"{100.0 * tolerance.fraction:.6g} %")
-    return " + ".join(parts)
+    parts = ((1e3 * tolerance.absolute, "mm"), (100.0 * tolerance.fraction, "%"))
+    return " + ".join(f"{value:.6g} {unit}" for value, unit in parts if value)
 
 
 def _cost(name: str, cost: Cost) -> str:
@@ -199,12 +191,9 @@ def _rule(constraint: Constraint, problem: Problem) -> str:
 
     if constraint.equality:
         return f"{of.title} = {shown(constraint.lower or 0.0)}"
-    parts = [of.title]
-    if constraint.lower is not None:
-        parts = [*parts, f"at least {shown(constraint.lower)}"]
-    if constraint.upper is not None:
-        parts = [*parts, *(["and"] if constraint.lower is not None else []), f"at most {shown(constraint.upper)}"]
-    return " ".join(parts) + ("" if own else " (not in the job: a floor that is always kept)")
+    ends = (("at least", constraint.lower), ("at most", constraint.upper))
+    asked = " and ".join(f"{word} {shown(end)}" for word, end in ends if end is not None)
+    return f"{of.title} {asked}" + ("" if own else " (not in the job: a floor that is always kept)")
 
 
 def _objective(objective: Objective, problem: Problem) -> str:

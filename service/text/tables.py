@@ -53,12 +53,10 @@ def show_front(
 
 def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None) -> None:
     """Write all quantities of one design, one a line; those without a value are left out."""
-    from rich.table import Table
+    from rich.table import Column, Table
 
-    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("quantity")
-    table.add_column("value", justify="right")
-    table.add_column("unit")
+    columns = ("name", Column(justify="right"), "unit")
+    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     for key in only or row:
         value = row[key]
         if value is None or (isinstance(value, float) and math.isnan(value)):
@@ -82,21 +80,21 @@ def print_table(screen: Console, table: Table) -> None:
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
+    from ...objectives.proportions import STROKE
     from ...optimise.front.constant import is_constant
 
     names = list(result.designs[0])
-    from ...objectives.proportions import STROKE
-
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
     keys = [*dimensions, *_chosen(names), find_column(STROKE.name, names).key]
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
+    objectives = {wanted.column for wanted in result.objectives}
     columns, constant = [], []
     for key in keys:
         column = find_column(key, result.designs[0])
         values = [row[key] for row in result.designs]
         numbers = [value for value in values if isinstance(value, float)]
-        if len(numbers) > 1 and is_constant(numbers) and key not in {wanted.column for wanted in result.objectives}:
+        if len(numbers) > 1 and is_constant(numbers) and key not in objectives:
             constant.append(f"{column.title} {numbers[0]:.6g} {column.unit}".rstrip())
         elif not numbers and len(values) > 1 and len(set(values)) == 1:
             constant.append(f"{column.title} {values[0]}")
@@ -130,12 +128,13 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
         if wanted.quantity in result.extremes
     }
     texts = [_aligned([result.designs[row][column.key] for row in rows]) for column in columns]
-    for index, row in enumerate(rows):
+    for row, line in zip(rows, zip(*texts, strict=True), strict=True):
         knee = row == result.knee and len(result.objectives) > 1
-        cells = []
-        for column, text in zip(columns, texts, strict=True):
-            top = (row, column.key) in best
-            cells.append(Text(text[index] + ("*" if top else " "), style="bold" if top else ""))
+        tops = [(row, column.key) in best for column in columns]
+        cells = [
+            Text(text + ("*" if top else " "), style="bold" if top else "")
+            for text, top in zip(line, tops, strict=True)
+        ]
         table.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
     return table
 
@@ -151,15 +150,13 @@ def _aligned(values: Sequence[Cell]) -> list[str]:
     top = max(sizes, default=0.0)
     decimals = max(0, min(9, _DIGITS - 1 - math.floor(math.log10(top)))) if top > 0.0 else 0
     form = f".{decimals}f" if top == 0.0 or top >= 1e-3 else ".1e"
-    texts = []
-    for value in values:
+
+    def text(value: Cell) -> str:
         if isinstance(value, str):
-            texts.append(value)
-        elif value is None or math.isnan(value):
-            texts.append("-")
-        else:
-            texts.append(format(value, form))
-    return texts
+            return value
+        return "-" if value is None or math.isnan(value) else format(value, form)
+
+    return [text(value) for value in values]
 
 
 def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
@@ -176,9 +173,9 @@ def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
 
 def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
     """Print whether a design meets each rule of its job, those that it breaks first."""
-    broken = [rule for rule in rules if not rule.met]
     if not rules:
         return
+    broken = [rule for rule in rules if not rule.met]
     screen.print()
     if not broken:
         screen.print("It meets every range and rule of the job.", soft_wrap=True)

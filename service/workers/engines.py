@@ -43,43 +43,37 @@ TlsKey = Annotated[Path | None, typer.Option("--tls-key", metavar="FILE", help="
 class EngineOptions:
     """Engine for heavy evaluation. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
 
-    cores: int | None = None
-    scheduler: str | None = None
-    tls_ca: Path | None = None
-    tls_cert: Path | None = None
-    tls_key: Path | None = None
+    cores: Cores = None
+    scheduler: Scheduler = None
+    tls_ca: TlsAuthority = None
+    tls_cert: TlsCertificate = None
+    tls_key: TlsKey = None
+
+    def checked(self) -> EngineOptions:
+        """Return the options. Raises `InputError` for those that do not go together."""
+        files = (self.tls_ca, self.tls_cert, self.tls_key)
+        if self.scheduler is None and any(files):
+            raise InputError(
+                "--tls-ca, --tls-cert and --tls-key are for --scheduler tls://...; give that or leave them out"
+            )
+        if self.scheduler is not None and self.cores is not None:
+            raise InputError(
+                "heavy evaluation is done either here or on a cluster; got --cores and --scheduler; keep one"
+            )
+        if any(files) and not all(files):
+            raise InputError("an encrypted connection needs --tls-ca, --tls-cert and --tls-key; give all three")
+        for file in files:
+            if file is not None and not file.is_file():
+                raise InputError(f"the files of an encrypted connection must be there; got {file}; correct the path")
+        if self.scheduler is not None:
+            _made(self)  # refuses an address that cannot be one
+            required("distributed", "a Dask cluster needs")
+        return self
 
     def shared_by(self, workers: int) -> EngineOptions:
         """Return the options of each of several workers on this machine: they share the processors."""
         cores = self.cores or max(1, (os.cpu_count() or 1) // workers)
         return EngineOptions(cores, self.scheduler, self.tls_ca, self.tls_cert, self.tls_key)
-
-
-def engine_options(
-    cores: int | None = None,
-    scheduler: str | None = None,
-    tls_ca: Path | None = None,
-    tls_cert: Path | None = None,
-    tls_key: Path | None = None,
-) -> EngineOptions:
-    """Return the options as they are given. Raises `InputError` for those that do not go together."""
-    files = (tls_ca, tls_cert, tls_key)
-    if scheduler is None and any(files):
-        raise InputError(
-            "--tls-ca, --tls-cert and --tls-key are for --scheduler tls://...; give that or leave them out"
-        )
-    if scheduler is not None and cores is not None:
-        raise InputError("heavy evaluation is done either here or on a cluster; got --cores and --scheduler; keep one")
-    if any(files) and not all(files):
-        raise InputError("an encrypted connection needs --tls-ca, --tls-cert and --tls-key; give all three")
-    for file in files:
-        if file is not None and not file.is_file():
-            raise InputError(f"the files of an encrypted connection must be there; got {file}; correct the path")
-    options = EngineOptions(cores, scheduler, *files)
-    if scheduler is not None:
-        _made(options)  # refuses an address that cannot be one
-        required("distributed", "a Dask cluster needs")
-    return options
 
 
 @contextlib.contextmanager

@@ -8,15 +8,15 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.engine.cluster import Cluster
 from slidercrank.optimise.engine.engine import Serial
 from slidercrank.optimise.engine.processes import Processes
-from slidercrank.service.workers.engines import EngineOptions, engine_of, engine_options
+from slidercrank.service.workers.engines import EngineOptions, engine_of
 
 
 def test_the_options_name_the_engine() -> None:
-    with engine_of(engine_options(cores=1)) as alone, engine_of(engine_options(cores=3)) as three:
+    with engine_of(EngineOptions(cores=1).checked()) as alone, engine_of(EngineOptions(cores=3).checked()) as three:
         assert isinstance(alone, Serial)
         assert isinstance(three, Processes)
         assert three.workers == 3
-    with engine_of(engine_options(scheduler="tcp://127.0.0.1:8786")) as cluster:
+    with engine_of(EngineOptions(scheduler="tcp://127.0.0.1:8786").checked()) as cluster:
         assert isinstance(cluster, Cluster)
 
 
@@ -24,7 +24,7 @@ def test_certificates_reach_the_cluster(tmp_path: Path) -> None:
     files = [tmp_path / name for name in ("ca.pem", "own.pem", "own.key")]
     for file in files:
         file.touch()
-    with engine_of(engine_options(None, "tls://127.0.0.1:8786", *files)) as cluster:
+    with engine_of(EngineOptions(None, "tls://127.0.0.1:8786", *files).checked()) as cluster:
         assert isinstance(cluster, Cluster)
         assert cluster.tls is not None
         assert [cluster.tls.authority, cluster.tls.certificate, cluster.tls.key] == files
@@ -51,4 +51,4 @@ def test_workers_share_the_processors(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_options_that_do_not_go_together_are_refused(options: dict[str, object], words: str) -> None:
     with pytest.raises(InputError, match=words):
-        engine_options(**options)  # type: ignore[arg-type]
+        EngineOptions(**options).checked()  # type: ignore[arg-type]

@@ -1,0 +1,91 @@
+"""A run that the command line names, and one design of it: by its number, or as the one that `front` would choose."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ...model.errors import InputError, SlidercrankError
+from ...objectives.kinds import System
+from ..designs.picking_options import picked_row, require_alone
+from ..designs.selection import chosen_rows, none_meets
+from ..designs.shown_units import result_in
+from ..jobs.find_run import find_run
+from ..runs.result import Result
+from ..runs.run_folder import runs_place
+from ..runs.stored_runs import problem_of, read_run
+from .ending import end_without_design
+
+
+def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
+    """Return the folder and the result of a run. runs: the place of runs as it is given."""
+    folder = find_run(name, runs_place(runs))
+    return folder, read_run(folder)
+
+
+def shown_result(result: Result, units: System, folder: Path | None) -> Result:
+    """Return the result of a run in the units that are asked for.
+
+    folder: of the run, where its trade-offs are told; None where they are not.
+    """
+    problem = None
+    if units != "metric" and folder is not None and result.trade_offs:
+        with contextlib.suppress(SlidercrankError):  # its job is of another version
+            problem = problem_of(folder, result)
+    return result_in(result, units, problem)
+
+
+Where = Annotated[
+    list[str] | None,
+    typer.Option(metavar="CONDITION", help="Choose among the designs that meet it, as in `front`. May be repeated."),
+]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Options that name one design of a run."""
+
+    design: Annotated[
+        int | None, typer.Option(metavar="NO", help="The design: its number in `slidercrank front RUN`.")
+    ] = None
+    knee: Annotated[
+        bool, typer.Option("--knee", help="The design nearest to the ideal, objectives by their range.")
+    ] = False
+    topsis: Annotated[
+        str | None,
+        typer.Option(metavar="WEIGHTS", help="The design that weights of the objectives choose, as in `front`."),
+    ] = None
+    lexicographic: Annotated[
+        str | None, typer.Option(metavar="RANKING", help="The design that ranked objectives choose, as in `front`.")
+    ] = None
+
+    @property
+    def picking(self) -> bool:
+        """Whether a design is chosen by its values."""
+        return self.knee or self.topsis is not None or self.lexicographic is not None
+
+    def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
+        """Return the number of the design that the options name, counted from 1.
+
+        Exits with 3 where there is none: an empty front, or conditions that none meets. Raises `InputError` for a
+        number that the run does not have, and for no choice or two.
+        """
+        if not result.designs:
+            end_without_design(result.message)
+        if self.design is not None:
+            require_alone(self.design, result, run, others=bool(self.picking or where))
+            return self.design
+        if not self.picking:
+            raise InputError(
+                "a design is named by --design NO, --knee, --topsis or --lexicographic; got none; give one"
+            )
+        rows = chosen_rows(result, where or [])
+        row = picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
+        if row is None:
+            end_without_design(none_meets(result, where or []))
+        return row + 1
