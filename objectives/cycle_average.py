@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
-from ..model.machine.parameters import Raw
+from ..model.machine.raw import Raw
 from ..model.signals.averages import average
 from ..model.signals.signals import Signal
-from .quantity import Array, Pieces, Quantity, Values
+from .quantity import Array, Quantity, Values
 
 Which = Literal["mean", "rms"]
 
@@ -47,9 +45,3 @@ class CycleAverage(Quantity):
                 slopes = speeds[:, None] * slopes + rates * values[:, None]
             values = speeds * values
         return Values(values, slopes)
-
-    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as its only piece; see `Quantity`."""
-        found = self.evaluate(mechanism, dimensions, gradients=True)
-        assert found.gradients is not None
-        return Pieces(found.values[:, None], found.gradients[:, None], np.zeros((len(dimensions), 1)))

@@ -162,6 +162,8 @@ class Quantity(ABC):
         Columns: crank, rod, offset, m, then the value of each of the machine's varying numbers, SI.
         """
 
-    @abstractmethod
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces."""
+        """Return the quantity as the greatest of smooth pieces: as its only one, unless its class has several."""
+        found = self.evaluate(mechanism, dimensions, gradients=True)
+        assert found.gradients is not None
+        return Pieces(found.values[:, None], found.gradients[:, None], np.zeros((len(found.values), 1)))

@@ -12,7 +12,7 @@ from ..model.machine.mechanism import Mechanism
 from .domain import Domain
 from .kinds import ANGLE
 from .needs import FRICTION
-from .quantity import Array, Group, Pieces, Quantity, Values
+from .quantity import Array, Group, Quantity, Values
 from .transmission_angle import TRANSMISSION_ANGLE
 
 
@@ -24,12 +24,6 @@ class ClosedFormMargin(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         values, slopes = varied_margin(mechanism, dimensions, gradients=gradients)
         return Values(values, slopes)
-
-    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as its only piece; see `Quantity`."""
-        values, slopes = varied_margin(mechanism, dimensions, gradients=True)
-        assert slopes is not None
-        return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
 
 
 SELF_LOCKING_MARGIN = ClosedFormMargin(

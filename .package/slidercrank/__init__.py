@@ -72,7 +72,8 @@ __all__ = [
 
 if TYPE_CHECKING:
     from slidercrank.model.errors import AssemblyError, InputError, JobError, SlidercrankError
-    from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+    from slidercrank.model.linkage.inverse import crank_from_stroke
+    from slidercrank.model.linkage.linkage import Linkage
     from slidercrank.model.machine.mechanism import Mechanism
     from slidercrank.optimise.adapters.jax import jax_function
     from slidercrank.optimise.adapters.openmdao import openmdao_component
@@ -96,7 +97,8 @@ else:
     # Not shown to type checkers: they would take every misspelt name for a known one.
     _HOMES = {
         "model.errors": ("AssemblyError", "InputError", "JobError", "SlidercrankError"),
-        "model.linkage.linkage": ("Linkage", "crank_from_stroke"),
+        "model.linkage.inverse": ("crank_from_stroke",),
+        "model.linkage.linkage": ("Linkage",),
         "model.machine.mechanism": ("Mechanism",),
         "optimise.adapters.jax": ("jax_function",),
         "optimise.adapters.openmdao": ("openmdao_component",),

@@ -32,7 +32,7 @@ import numpy as np
 from ..dynamics.segments import find_pieces, load_on_slider, with_formulas
 from ..kernel.arithmetic import inlined, kernel
 from ..kinematics.position import Motion
-from ..machine.parameters import design_at
+from ..machine.design import design_at
 
 STATES = 7
 """Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""

@@ -11,8 +11,9 @@ from ..errors import InputError
 from ..kernel.arithmetic import kernel
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, Loads, Raw, derive, design_at, load_structure, raw_vector
+from ..machine.raw import Loads, Raw, load_structure, raw_vector
 from .equations import System
 
 

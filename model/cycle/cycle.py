@@ -16,8 +16,9 @@ from ..errors import InputError
 from ..kernel.arithmetic import kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.design import DESIGN, Design, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of

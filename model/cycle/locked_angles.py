@@ -14,9 +14,10 @@ from ..dynamics.torque import Balance, balance
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.design import DESIGN, Design, derive, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, Design, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from .cycle import cycle
 from .self_locking import locking_margin
 

@@ -31,7 +31,7 @@ from ..kinematics.geometry import least_transmission_angle
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import number_of, require_width
-from ..machine.parameters import Raw
+from ..machine.raw import Raw
 
 Array = NDArray[np.float64]
 

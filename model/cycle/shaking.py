@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from ..signals.signals import design_motion
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from typing import Any
 
 from ..kernel.arithmetic import analytic
 from ..kinematics.position import Motion
-from ..machine.parameters import Design
+from ..machine.design import Design
 
 
 @analytic

@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, inlined, inverse, root
 from ..kinematics.position import Motion
-from ..machine.parameters import Design
+from ..machine.design import Design
 from .torque import Forces, balance, forces, joined
 
 _ITERATIONS = 100

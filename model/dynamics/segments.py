@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from ..kernel.arithmetic import analytic, inlined
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
+from ..machine.design import DESIGN, Design
 from ..machine.loads.load import Enters
 from ..machine.loads.registry import force_of
-from ..machine.parameters import DESIGN, Design, Loads
+from ..machine.raw import Loads
 from .torque import smooth_load
 
 _ANGLE_TABLE, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.FORMULA)

@@ -20,11 +20,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import AssemblyError, InputError
+from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from .linkage import Linkage
+from .values import Array, first, numbers
 
-Array = NDArray[np.float64]
 Solution = Literal["outward", "inward"]
 
 _ROUNDING = 1e-14
@@ -148,3 +149,22 @@ def _refuse(
     if np.any(wrong):
         at, r, l, e = (1e3 * float(value[wrong].flat[0]) for value in (x, *dimensions))
         raise kind(f"{rule}; got position {at:.9g} mm with crank {r:g} mm, rod {l:g} mm, offset {e:g} mm; {remedy}")
+
+
+def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 0.0) -> Array:
+    """Return the crank, m, that gives a stroke with a rod and an offset, m; arrays broadcast.
+
+    r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
+    """
+    s, l, e = np.broadcast_arrays(*(numbers(value) for value in (stroke, rod, offset)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        r: Array = geometry.crank_from_stroke(s, l, e)
+        real, rod_, off, crank = s.real, l.real, e.real, r.real
+        wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
+    if np.any(wrong):
+        raise AssemblyError(
+            "no crank gives this stroke with full rotation; "
+            f"got stroke {1e3 * first(s.real, wrong):g} mm, rod {1e3 * first(l.real, wrong):g} mm, "
+            f"offset {1e3 * first(e.real, wrong):g} mm; lengthen the rod or reduce the offset"
+        )
+    return r

@@ -17,40 +17,13 @@ from ..kinematics.position import Motion, motion
 from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
 from .picture import Pose, figure, svg
+from .values import Array, Kinematics, PointMotion, direction, first, in_a_turn, in_mm, numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 SlowStroke = Literal["outward", "inward"]
 Stroke = Literal["outward", "inward", "equal"]
-
-
-@dataclass(frozen=True)
-class Kinematics:
-    """Motion at given crank angles; arrays of the broadcast shape, SI and radians.
-
-    rod_angle: of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
-    transmission_angle: between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
-    """
-
-    crank_angle: Array
-    slider_position: Array
-    slider_velocity: Array
-    slider_acceleration: Array
-    rod_angle: Array
-    rod_velocity: Array
-    rod_acceleration: Array
-    transmission_angle: Array
-
-
-@dataclass(frozen=True)
-class PointMotion:
-    """Position, velocity and acceleration of a point on a link, each (..., 2): x and y. SI."""
-
-    position: Array
-    velocity: Array
-    acceleration: Array
 
 
 @dataclass(frozen=True, init=False)
@@ -82,7 +55,7 @@ class Linkage:
         values = []
         for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
             try:
-                value = _numbers(given)
+                value = numbers(given)
             except (TypeError, ValueError):
                 raise InputError(f"{name} must be a length in metres; got {given!r}") from None
             if not np.all(np.isfinite(value)):
@@ -95,14 +68,14 @@ class Linkage:
             raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
         for name, size in zip(("crank", "rod"), real, strict=False):
             if np.any(size <= 0.0):
-                raise InputError(f"{name} must be longer than zero; got {_first(size, size <= 0.0):g} m")
+                raise InputError(f"{name} must be longer than zero; got {first(size, size <= 0.0):g} m")
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
         apart = np.abs(real[2]) >= real[0] + real[1]
         if np.any(apart):
             raise AssemblyError(
                 "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
-                f"got {_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
+                f"got {in_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
             )
         rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
         if np.any(rounding):
@@ -131,7 +104,7 @@ class Linkage:
             crank, rod, offset = np.broadcast_arrays(self.crank.real, self.rod.real, self.offset.real)
             raise AssemblyError(
                 "rod must exceed crank + |offset| for full rotation; "
-                f"got {_mm(crank, rod, offset, fails)}; lengthen the rod or reduce the offset"
+                f"got {in_mm(crank, rod, offset, fails)}; lengthen the rod or reduce the offset"
             )
 
     @property
@@ -152,7 +125,7 @@ class Linkage:
         angles = (geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions))
         if self.branch == "crossed":
             angles = (np.pi - angles[0], np.pi - angles[1])
-        return _in_a_turn(angles[0]), _in_a_turn(angles[1])
+        return in_a_turn(angles[0]), in_a_turn(angles[1])
 
     @property
     def stroke(self) -> Array:
@@ -196,7 +169,7 @@ class Linkage:
 
         All arguments broadcast with the dimensions. Raises `AssemblyError` where the linkage cannot be assembled.
         """
-        theta, speed, acceleration = (_numbers(value) for value in (crank_angle, speed, acceleration))
+        theta, speed, acceleration = (numbers(value) for value in (crank_angle, speed, acceleration))
         if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(acceleration))):
             raise InputError("crank speed and acceleration must be finite")
         m = self._motion(theta)
@@ -207,10 +180,10 @@ class Linkage:
             m.x,
             m.x_1 * speed,
             m.x_2 * w2 + m.x_1 * acceleration,
-            _direction(m.across, m.along),
+            direction(m.across, m.along),
             m.rod_1 * speed,
             m.rod_2 * w2 + m.rod_1 * acceleration,
-            _direction(magnitude(m.along), magnitude(m.across)),
+            direction(magnitude(m.along), magnitude(m.across)),
         )
         return Kinematics(*(np.broadcast_to(field, shape) for field in fields))
 
@@ -224,7 +197,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a point on the crank, `along` it from the pivot and `across` to its left, m."""
-        theta = _numbers(crank_angle)
+        theta = numbers(crank_angle)
         sine, cosine = np.sin(theta), np.cos(theta)
         arm = np.stack([along * cosine - across * sine, along * sine + across * cosine], axis=-1)
         normal = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
@@ -240,7 +213,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a rod point, `along` from the crank pin and `across` to the left, m."""
-        theta = _numbers(crank_angle)
+        theta = numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
         unit = np.stack(np.broadcast_arrays(m.along / self.rod, m.across / self.rod), axis=-1)
@@ -257,7 +230,7 @@ class Linkage:
 
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
         """Return the first-order influence of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
-        theta = _numbers(crank_angle)
+        theta = numbers(crank_angle)
         found: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
         return found
 
@@ -305,63 +278,7 @@ class Linkage:
             worst = np.unravel_index(np.argmax(np.broadcast_to(reach, angle.shape)), angle.shape)
             raise AssemblyError(
                 "rod must exceed |offset - crank sin(crank angle)|; "
-                f"got {_mm(crank, rod, offset, np.broadcast_to(reach >= 0.0, angle.shape))} "
+                f"got {in_mm(crank, rod, offset, np.broadcast_to(reach >= 0.0, angle.shape))} "
                 f"at {np.degrees(angle[worst]):.3f} deg; lengthen the rod or stay within the reachable angles"
             )
         return motion(np.sin(theta), np.cos(theta), self.crank, self.rod, self.offset, self.sign)
-
-
-def _numbers(value: ArrayLike) -> Array:
-    """Return real or complex numbers; typed as real, which all but a complex step are."""
-    kind = np.complex128 if np.iscomplexobj(value) else np.float64
-    found: Array = np.asarray(value, dtype=kind)
-    return found
-
-
-def _direction(y: Array, x: Array) -> Array:
-    """Return the angle of (x, y), rad, with its derivative where these are complex."""
-    angle: Array = np.arctan2(y.real, x.real)
-    if np.iscomplexobj(x) or np.iscomplexobj(y):
-        turned = (x.real * y.imag - y.real * x.imag) / (x.real * x.real + y.real * y.real)
-        return np.asarray(angle + 1j * turned)
-    return angle
-
-
-def _in_a_turn(angle: Array) -> Array:
-    """Return an angle in [0, 2 pi), rad."""
-    inside = np.mod(angle.real, 2.0 * np.pi)
-    # Rounding takes a tiny negative angle to 2 pi itself.
-    inside = np.where(inside < 2.0 * np.pi, inside, 0.0)
-    found: Array = (inside + 1j * angle.imag if np.iscomplexobj(angle) else inside)[()]
-    return found
-
-
-def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 0.0) -> Array:
-    """Return the crank, m, that gives a stroke with a rod and an offset, m; arrays broadcast.
-
-    r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
-    """
-    s, l, e = np.broadcast_arrays(*(_numbers(value) for value in (stroke, rod, offset)))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        r: Array = geometry.crank_from_stroke(s, l, e)
-        real, rod_, off, crank = s.real, l.real, e.real, r.real
-        wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
-    if np.any(wrong):
-        raise AssemblyError(
-            "no crank gives this stroke with full rotation; "
-            f"got stroke {1e3 * _first(s.real, wrong):g} mm, rod {1e3 * _first(l.real, wrong):g} mm, "
-            f"offset {1e3 * _first(e.real, wrong):g} mm; lengthen the rod or reduce the offset"
-        )
-    return r
-
-
-def _first(values: Array, where: NDArray[np.bool_]) -> float:
-    return float(np.asarray(values)[where].flat[0])
-
-
-def _mm(crank: Array, rod: Array, offset: Array, where: NDArray[np.bool_]) -> str:
-    crank, rod, offset = (np.broadcast_to(value, where.shape) for value in (crank, rod, offset))
-    return (
-        f"rod {1e3 * _first(rod, where):g} mm, crank {1e3 * _first(crank, where):g} mm, "
-        f"offset {1e3 * _first(offset, where):g} mm"
-    )

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from .linkage import Kinematics, Linkage
+from .linkage import Linkage
+from .values import Kinematics
 
 Array = NDArray[np.float64]
 Dimension = Literal["crank", "rod", "offset"]

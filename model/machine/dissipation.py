@@ -7,13 +7,10 @@ whose force depends on the slider's position alone. The mean drive torque is the
 from __future__ import annotations
 
 import math
+from collections import defaultdict
+from collections.abc import Hashable
 
 from .links import Bar, Link
-from .loads.angle_table import AngleTable
-from .loads.load import Enters
-from .loads.position_table import PositionTable
-from .loads.stroke_force import StrokeForce
-from .loads.viscous import Viscous
 from .mechanism import Mechanism
 
 _ROUNDING = 1e-12
@@ -24,8 +21,8 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may differ from zero for some design.
 
     It does not without friction of what is loaded, acceleration of the crank, loads that change with the speed or have
-    a formula of their own, loads that differ between
-    the strokes and loads over crank angle. Of numbers that vary two values each are tried, neither of them special.
+    a formula of their own, loads that differ between the strokes and loads over crank angle (`Load.turn_work`). Of
+    numbers that vary two values each are tried, neither of them special.
     """
     if not mechanism.varying:
         return _works(mechanism)
@@ -66,31 +63,12 @@ def _rubs(machine: Mechanism) -> bool:
 
 
 def _works(machine: Mechanism) -> bool:
-    loads = machine.loads
-    pushes = [force for load in loads if isinstance(load, StrokeForce) for force in (load.outward, -load.inward)]
-    drags = [load.coefficient for load in loads if isinstance(load, Viscous) and machine.speed != 0.0]
-    tables = [load for load in loads if isinstance(load, PositionTable)]
-    outward, inward = (
-        sorted((table.datum, table.positions, table.forces) for table in tables if table.during == stroke)
-        for stroke in ("outward stroke", "inward stroke")
-    )
-    return (
-        machine.acceleration != 0.0
-        or _rubs(machine)
-        or _adds_up(pushes)
-        or _adds_up(drags)
-        or any(
-            load.enters == Enters.FORMULA and not load.by_position and (machine.speed != 0.0 or not load.speed_power)
-            for load in loads
-        )
-        or outward != inward
-        or any(isinstance(load, AngleTable) and not _constant(load) for load in loads)
-    )
+    sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
+    for load in machine.loads:
+        for key, own in load.turn_work(moving=machine.speed != 0.0).items():
+            sizes[key].extend(own)
+    return machine.acceleration != 0.0 or _rubs(machine) or any(map(_adds_up, sizes.values()))
 
 
 def _adds_up(parts: list[float]) -> bool:
     return abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts))
-
-
-def _constant(load: AngleTable) -> bool:
-    return set(load.forces) == {0.0} or (load.during == "cycle" and len(set(load.forces)) == 1)

@@ -1,7 +1,7 @@
 """Raw numbers that the designs of a machine set, and their derivation from a design.
 
 A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. What a kernel
-overwrites are raw numbers (`parameters.Raw`). Most are a factor times one value; the counterweight's mass centre is
+overwrites are raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is
 given by radius and angle, but raw by its components. Kernels differentiate by the raw numbers; `Numbers.chain` turns
 that into derivatives by the design's own numbers. With k = 0 all of it is the identity, and costs nothing.
 """
@@ -19,7 +19,7 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
-from .parameters import LOAD_SLOTS, Raw
+from .raw import LOAD_SLOTS, Raw
 
 Array = NDArray[np.float64]
 

@@ -27,10 +27,10 @@ from ..dynamics.segments import crowded, cut_cycle, enter, load_on_slider, uncro
 from ..kernel.arithmetic import STEP, inlined, kernel, root
 from ..kernel.batches import in_chunks, turning
 from ..kinematics.position import motion_of
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
-from ..machine.parameters import DESIGN, derive, design_at
 from .signals import Signal, signal
 from .watch import inputs_of, watch_of
 

@@ -12,9 +12,10 @@ from ..dynamics.torque import forces
 from ..kernel.arithmetic import kernel
 from ..kernel.batches import in_chunks, turning
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
-from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from .signals import design_motion
 
 Array = NDArray[np.float64]

@@ -17,8 +17,9 @@ from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.arithmetic import kernel
 from ..kernel.batches import in_chunks
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from .signals import design_motion
 
 Complex = NDArray[np.complex128]

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from ..kernel.arithmetic import inlined
-from ..machine.parameters import design_at
+from ..machine.design import design_at
 from .signals import Signal
 
 LANES = 64

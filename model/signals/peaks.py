@@ -20,9 +20,9 @@ from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
 from ..kernel.arithmetic import STEP, inlined, kernel
 from ..kernel.batches import in_chunks, turning
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
-from ..machine.parameters import DESIGN, derive, design_at
 from .signals import Signal, design_motion, signal
 from .watch import inputs_of, watch_of
 

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import Motion
-from ..machine.parameters import Design
+from ..machine.design import Design
 
 
 class Influences(NamedTuple):

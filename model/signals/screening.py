@@ -21,10 +21,11 @@ from ..dynamics.segments import crowding
 from ..dynamics.torque import smooth_load
 from ..kernel.arithmetic import STEP, analytic, inlined, inverse, kernel, root
 from ..kernel.batches import in_chunks, turning
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
-from ..machine.parameters import DESIGN, derive, design_at, load_structure, raw_vector
+from ..machine.raw import load_structure, raw_vector
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .signals import Signal, design_motion, signal

@@ -9,7 +9,7 @@ from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
 from ..kernel.arithmetic import analytic, chosen_by_type, magnitude, root
 from ..kinematics.position import motion, third_derivative
-from ..machine.parameters import Design
+from ..machine.design import Design
 from .position_error import influences, root_sum_square, worst_case
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..dynamics.segments import Watch
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import LOAD_SLOTS, Loads, load_structure, raw_vector
+from ..machine.raw import LOAD_SLOTS, Loads, load_structure, raw_vector
 from .signals import Signal
 
 Array = NDArray[np.float64]

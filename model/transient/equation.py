@@ -28,9 +28,10 @@ from ..errors import InputError
 from ..kernel.arithmetic import kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.design import DESIGN, derive, design_at
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
-from ..machine.parameters import DESIGN, LOAD_SLOTS, Raw, derive, design_at, load_structure, raw_vector
+from ..machine.raw import LOAD_SLOTS, Raw, load_structure, raw_vector
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia

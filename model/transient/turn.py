@@ -144,11 +144,6 @@ class PeriodicTurn:
         """Return the same turn whose panels end at further crank angles, (n,), rad."""
         return PeriodicTurn(self.equation, self.dimensions, (*self.cuts, *(float(angle) for angle in angles)))
 
-    @property
-    def inertia_at_starts(self) -> Array:
-        """Moving inertia, kg m^2, where the panels start, (panels,)."""
-        return self.equation.inertia(self.low)
-
     def _rough(self, values: Array) -> NDArray[np.bool_]:
         """Return the panels, (panels,), on which values on the nodes are not resolved."""
         tail = np.abs(values @ self._series[-_TAIL:].T).max(axis=1)

@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from ...model.dynamics.torque import Forces, forces, smooth_load
 from ...model.kernel.arithmetic import magnitude, root
 from ...model.kinematics.position import motion
+from ...model.machine.design import DESIGN, Design, derive, design_at
 from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.parameters import DESIGN, Design, Loads, derive, design_at
+from ...model.machine.raw import Loads
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
 from ...model.signals.signals import Signal, design_motion, signal

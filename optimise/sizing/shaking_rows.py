@@ -27,9 +27,9 @@ from numpy.typing import NDArray
 from ...model.cycle.shaking import shaking_curves
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
+from ...model.machine.design import link_properties
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.parameters import link_properties
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+from slidercrank.model.linkage.inverse import crank_from_stroke
+from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import random_designs
 
 

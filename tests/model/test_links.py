@@ -11,9 +11,10 @@ import pytest
 from scipy.integrate import quad
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.design import Design, derive, design_at
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.parameters import Design, derive, design_at, load_structure, raw_vector
+from slidercrank.model.machine.raw import load_structure, raw_vector
 from tests.model.cases import MACHINES, random_designs
 from tests.model.virtual_work import body
 

@@ -12,8 +12,8 @@ from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.kinematics import geometry
 from slidercrank.model.kinematics.position import motion
-from slidercrank.model.linkage.inverse import crank_angle_at
-from slidercrank.model.linkage.linkage import Linkage, crank_from_stroke
+from slidercrank.model.linkage.inverse import crank_angle_at, crank_from_stroke
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from ...errors import InputError
-from .load import DURING, FORCES, During, Enters, Entry, Load, Table, require_table, require_word
+from .load import DURING, FORCES, During, Enters, Entry, Load, Passage, Table, require_table, require_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +44,17 @@ class AngleTable(Load):
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
         """Return angles and forces, closed: the first knot comes again one turn later."""
         return (*self.angles, self.angles[0] + 2.0 * math.pi), (*self.forces, self.forces[0])
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return one, unless the force is the same all over the cycle."""
+        constant = set(self.forces) == {0.0} or (self.during == "cycle" and len(set(self.forces)) == 1)
+        return {} if constant else {AngleTable: (1.0,)}
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return the work in the strokes in which the force acts."""
+        if self.during == ("inward stroke" if passage.outward else "outward stroke"):
+            return 0.0
+        return passage.work(np.interp(passage.angle, self.angles, self.forces, period=2.0 * math.pi))
 
     @property
     def text(self) -> str:

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 
@@ -33,6 +36,22 @@ class Enters(IntEnum):
     POSITION_TABLE = 3
     ANGLE_TABLE = 4
     FORMULA = 5
+
+
+class Passage(NamedTuple):
+    """A stroke of n designs in m steps.
+
+    outward: which one. angle: crank angles in the middle of each step, (n, m), rad. distance: of the slider along its
+    line from the crank pivot at the ends of the steps, (n, m + 1), m.
+    """
+
+    outward: bool
+    angle: NDArray[np.float64]
+    distance: NDArray[np.float64]
+
+    def work(self, force: Any) -> NDArray[np.float64]:
+        """Return the work (n,), J, of a force in the middle of each step, N outward."""
+        return np.asarray(np.sum(force * np.diff(self.distance, axis=1), axis=1))
 
 
 @dataclass(frozen=True)
@@ -103,6 +122,21 @@ class Load:
         """Whether the force has different formulas in the two strokes."""
         first, second = self.numbers()[:2]
         return first != second
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return what takes work over a turn: sizes by key; those of one key may cancel.
+
+        moving: whether the crank turns; at rest, loads with the speed are none.
+        """
+        takes = not self.by_position and (moving or not self.speed_power)
+        return {type(self).__name__: (1.0,)} if takes else {}
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return the work (n,), J, that tells which stroke is loaded.
+
+        None of a load that gives it back in the other stroke, or that always resists.
+        """
+        return 0.0
 
     @property
     def text(self) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Table, require_table, require_word
+import numpy as np
+
+from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Passage, Table, require_table, require_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +42,23 @@ class PositionTable(Load):
     def by_position(self) -> bool:
         """Whether the force acts in both strokes."""
         return self.during == "cycle"
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return one for a table of one stroke, which the same table of the other stroke cancels."""
+        if self.during == "cycle":
+            return {}
+        return {(self.datum, self.positions, self.forces): (1.0 if self.during == "outward stroke" else -1.0,)}
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return the work of a table of one stroke; over the cycle it gives back what it takes."""
+        if self.during != ("outward stroke" if passage.outward else "inward stroke"):
+            return 0.0
+        at, distance = 0.5 * (passage.distance[:, 1:] + passage.distance[:, :-1]), passage.distance
+        if self.datum == "inner dead centre":
+            at = at - distance.min(axis=1, keepdims=True)
+        elif self.datum == "outer dead centre":
+            at = distance.max(axis=1, keepdims=True) - at
+        return passage.work(np.interp(at, self.positions, self.forces))
 
     @property
     def text(self) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from .load import DURING, During, Enters, Entry, Load, Table, require_finite
+from .load import DURING, During, Enters, Entry, Load, Passage, Table, require_finite
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +34,14 @@ class StrokeForce(Load):
     def by_position(self) -> bool:
         """Whether the two strokes have one force."""
         return self.outward == self.inward
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return the two forces, against each other."""
+        return {StrokeForce: (self.outward, -self.inward)}
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return force times stroke."""
+        return passage.work(self.outward if passage.outward else self.inward)
 
     @property
     def text(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -24,6 +25,10 @@ class Viscous(Load):
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the coefficient after factors of one."""
         return (1.0, 1.0, self.coefficient, 0.0)
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return the coefficient."""
+        return {Viscous: (self.coefficient,)} if moving else {}
 
     @property
     def text(self) -> str:

@@ -1,69 +1,24 @@
-"""All numbers of a machine as one vector, and the design properties that follow from them.
+"""A design as the equations of motion use it: masses, moments and forces that follow from raw numbers.
 
-A kernel takes the vector of raw numbers (`Raw` names its entries; loads follow, `LOAD_SLOTS` each) and overwrites the
-entries that vary from design to design. `derive` turns raw numbers into a `Design`: the masses, moments and forces that
-the equations of motion use. Because `derive` is compiled for complex numbers too, anything in the vector can be a
-design variable and has an exact derivative.
+Because `derive` is compiled for complex numbers too, any raw number (`raw`) can be a design variable and has an exact
+derivative.
 """
 
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..errors import InputError
 from ..kernel.arithmetic import analytic, inlined, magnitude, root
 from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
-from .links import Bar, Link
 from .loads.load import Enters
-from .loads.registry import code_of
-from .mechanism import Mechanism
-
-Raw = IntEnum(
-    "Raw",
-    "CRANK ROD OFFSET BRANCH SPEED ACCELERATION SLIDER_MASS GRAVITY_X GRAVITY_Y "
-    "CRANK_WIDTH CRANK_DEPTH CRANK_DENSITY CRANK_MASS CRANK_CENTRE CRANK_CENTRE_SHARE "
-    "CRANK_CENTRE_ACROSS CRANK_INERTIA CRANK_INERTIA_SHARE "
-    "ROD_WIDTH ROD_DEPTH ROD_DENSITY ROD_MASS ROD_CENTRE ROD_CENTRE_SHARE "
-    "ROD_CENTRE_ACROSS ROD_INERTIA ROD_INERTIA_SHARE "
-    "COUNTERWEIGHT_MASS COUNTERWEIGHT_ALONG COUNTERWEIGHT_ACROSS COUNTERWEIGHT_INERTIA "
-    "CRANK_TOLERANCE CRANK_TOLERANCE_SHARE ROD_TOLERANCE ROD_TOLERANCE_SHARE "
-    "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
-    "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE "
-    "GUIDE_FRICTION CRANK_PIVOT_RADIUS CRANK_PIVOT_FRICTION CRANK_PIN_RADIUS CRANK_PIN_FRICTION "
-    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
-    start=0,
-)
-LOAD_SLOTS = 4
-"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and two of its own."""
+from .raw import LOAD_SLOTS, Raw
 
 _CRANK, _ROD, _OFFSET = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _END = int(Raw.END)
-
-
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
 _FORMULA = int(Enters.FORMULA)
-_DATUMS = {"crank pivot": 0, "inner dead centre": 1, "outer dead centre": 2}
-
-
-class Loads(NamedTuple):
-    """The loads' fixed structure.
-
-    kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 2), whether a table acts in the outward and in
-    the inward stroke. start: (k + 1,), where a load's table begins. at, force: its knots.
-    """
-
-    kind: NDArray[np.int64]
-    datum: NDArray[np.int64]
-    factor: NDArray[np.float64]
-    start: NDArray[np.int64]
-    at: NDArray[np.float64]
-    force: NDArray[np.float64]
 
 
 class Design(NamedTuple):
@@ -121,114 +76,9 @@ _OUTWARD = Design._fields.index("outward_force")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
-
-def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
-    """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
-
-    Raises `InputError` for one with varying numbers: it has none before a design says which.
-    """
-    if mechanism.varying:
-        names = ", ".join(item.name for item in mechanism.varying)
-        raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
-    raw = np.zeros(_END + LOAD_SLOTS * len(mechanism.loads))
-    raw[Raw.BRANCH] = 1.0 if mechanism.branch == "open" else -1.0
-    raw[Raw.SPEED] = mechanism.speed
-    raw[Raw.ACCELERATION] = mechanism.acceleration
-    raw[Raw.SLIDER_MASS] = mechanism.slider_mass
-    raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y]] = mechanism.gravity
-    raw[_CRANK_LINK : _CRANK_LINK + 9] = _link_numbers(mechanism.crank)
-    raw[_ROD_LINK : _ROD_LINK + 9] = _link_numbers(mechanism.rod)
-    weight = mechanism.counterweight
-    raw[Raw.COUNTERWEIGHT_MASS] = weight.mass
-    raw[Raw.COUNTERWEIGHT_ALONG] = weight.radius * math.cos(weight.angle)
-    raw[Raw.COUNTERWEIGHT_ACROSS] = weight.radius * math.sin(weight.angle)
-    raw[Raw.COUNTERWEIGHT_INERTIA] = weight.inertia
-    tolerances = mechanism.tolerances
-    for slot, tolerance in (
-        (Raw.CRANK_TOLERANCE, tolerances.crank),
-        (Raw.ROD_TOLERANCE, tolerances.rod),
-        (Raw.OFFSET_TOLERANCE, tolerances.offset),
-    ):
-        raw[slot : slot + 2] = tolerance.absolute, tolerance.fraction
-    raw[Raw.ANGLE_TOLERANCE] = tolerances.crank_angle.absolute
-    gap = tolerances.clearances
-    raw[Raw.CRANK_PIVOT_CLEARANCE : Raw.GUIDE_CLEARANCE + 1] = gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide
-    friction = mechanism.friction
-    raw[Raw.GUIDE_FRICTION] = friction.guide
-    for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
-        raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
-    for index, load in enumerate(mechanism.loads):
-        raw[_END + LOAD_SLOTS * index :][:LOAD_SLOTS] = load.numbers()
-    return raw
-
-
-def _link_numbers(link: Link) -> tuple[float, ...]:
-    if isinstance(link, Bar):
-        return (link.width, link.depth, link.density, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    centre, share = (0.0, 0.5) if link.centre is None else (link.centre, 0.0)
-    inertia, per_mass = (0.0, 1.0 / 12.0) if link.inertia is None else (link.inertia, 0.0)
-    return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
-
-
-def load_structure(mechanism: Mechanism) -> Loads:
-    """Return kinds, datums and tables of a mechanism's loads."""
-    at: list[float] = []
-    force: list[float] = []
-    start = [0]
-    for load in mechanism.loads:
-        places, forces = load.knots()
-        at.extend(places)
-        force.extend(forces)
-        start.append(len(at))
-    return Loads(
-        np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),
-        np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
-        np.array([load.numbers()[:2] for load in mechanism.loads], dtype=np.float64).reshape(-1, 2),
-        np.array(start, dtype=np.int64),
-        np.array(at, dtype=np.float64),
-        np.array(force, dtype=np.float64),
-    )
-
-
-@analytic
-def design_at(block: Any, j: Any) -> Design:
-    """Return column j of a derived block as a `Design`; from Python `j` may be a slice."""
-    return Design(
-        block[0, j],
-        block[1, j],
-        block[2, j],
-        block[3, j],
-        block[4, j],
-        block[5, j],
-        block[6, j],
-        block[7, j],
-        block[8, j],
-        block[9, j],
-        block[10, j],
-        block[11, j],
-        block[12, j],
-        block[13, j],
-        block[14, j],
-        block[15, j],
-        block[16, j],
-        block[17, j],
-        block[18, j],
-        block[19, j],
-        block[20, j],
-        block[21, j],
-        block[22, j],
-        block[23, j],
-        block[24, j],
-        block[25, j],
-        block[26, j],
-        block[27, j],
-        block[28, j],
-        block[29, j],
-        block[30, j],
-        block[31, j],
-        block[32, j],
-        block[33, j],
-    )
+# Written out when the module is loaded: numba takes no column of an array for a tuple.
+design_at: Any = analytic(eval(f"lambda block, j: Design({', '.join(f'block[{row}, j]' for row in range(DESIGN))})"))
+"""Column j of a derived block as a `Design`; from Python `j` may be a slice."""
 
 
 @analytic

@@ -1,0 +1,76 @@
+"""Real or complex values of linkages: motion, angles, and dimensions in messages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Motion at given crank angles; arrays of the broadcast shape, SI and radians.
+
+    rod_angle: of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
+    transmission_angle: between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
+    """
+
+    crank_angle: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    rod_angle: Array
+    rod_velocity: Array
+    rod_acceleration: Array
+    transmission_angle: Array
+
+
+@dataclass(frozen=True)
+class PointMotion:
+    """Position, velocity and acceleration of a point on a link, each (..., 2): x and y. SI."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+def numbers(value: ArrayLike) -> Array:
+    """Return real or complex numbers; typed as real, which all but a complex step are."""
+    kind = np.complex128 if np.iscomplexobj(value) else np.float64
+    found: Array = np.asarray(value, dtype=kind)
+    return found
+
+
+def direction(y: Array, x: Array) -> Array:
+    """Return the angle of (x, y), rad, with its derivative where these are complex."""
+    angle: Array = np.arctan2(y.real, x.real)
+    if np.iscomplexobj(x) or np.iscomplexobj(y):
+        turned = (x.real * y.imag - y.real * x.imag) / (x.real * x.real + y.real * y.real)
+        return np.asarray(angle + 1j * turned)
+    return angle
+
+
+def in_a_turn(angle: Array) -> Array:
+    """Return an angle in [0, 2 pi), rad."""
+    inside = np.mod(angle.real, 2.0 * np.pi)
+    # Rounding takes a tiny negative angle to 2 pi itself.
+    inside = np.where(inside < 2.0 * np.pi, inside, 0.0)
+    found: Array = (inside + 1j * angle.imag if np.iscomplexobj(angle) else inside)[()]
+    return found
+
+
+def first(values: Array, where: NDArray[np.bool_]) -> float:
+    """Return the first of the values that are marked."""
+    return float(np.asarray(values)[where].flat[0])
+
+
+def in_mm(crank: Array, rod: Array, offset: Array, where: NDArray[np.bool_]) -> str:
+    """Return the first of the linkages that are marked, in words, mm."""
+    crank, rod, offset = (np.broadcast_to(value, where.shape) for value in (crank, rod, offset))
+    return (
+        f"rod {1e3 * first(rod, where):g} mm, crank {1e3 * first(crank, where):g} mm, "
+        f"offset {1e3 * first(offset, where):g} mm"
+    )
