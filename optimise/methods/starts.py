@@ -23,14 +23,15 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
     """
     loose = any(evaluator.loose for evaluator in evaluators)
     for attempt, band in enumerate(BANDS[1:] if loose else BANDS):
-        found = Candidates.empty(len(problem.objectives))
+        parts = []
         for index, evaluator in enumerate(evaluators):
             count = -(-SAMPLES * 4 ** min(attempt, 1) // len(evaluators))
             u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
             _, values, violation = evaluator.screen(u, band=band)
             good = (violation <= band + FEASIBLE) & evaluator.valid(u)
             met = violation[good] <= FEASIBLE
-            found = found.join(Candidates(np.full(len(met), index), u[good], values[good], met))
+            parts.append(Candidates(np.full(len(met), index), u[good], values[good], met))
+        found = parts[0].join(*parts[1:])
         if len(found) >= _ENOUGH:
             break
     return found
