@@ -109,7 +109,7 @@ def cycle(
     for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
-    angles = np.ascontiguousarray(np.atleast_1d(crank_angle), dtype=np.float64)
+    angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
         for given, own in ((speed, mechanism.speed), (acceleration, mechanism.acceleration))

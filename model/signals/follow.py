@@ -70,7 +70,8 @@ def follow_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tu
 
     designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
     """
-    designs, angles = np.ascontiguousarray(designs, np.complex128), np.ascontiguousarray(angles, np.complex128)
+    # Arrays of one kind, so that one compiled kernel serves.
+    designs, angles = (np.require(given, np.complex128, ["C", "W"]) for given in (designs, angles))
     out = np.empty((len(angles), _WIDE, angles.shape[1]), np.complex128)
     raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
 

@@ -197,6 +197,7 @@ def _screen(
     load_datum: Any,
     angles: Any,
     crowd: Any,
+    first: Any,
     values: Any,
     where: Any,
     gradients: Any,
@@ -247,9 +248,9 @@ def _screen(
                 scale = 1.0 / math.sqrt(x * x + y * y)
                 found[0, q, j], found[1, q, j] = x * scale, -y * scale
             for j in range(last):
-                values[q, begin + j] = value[0, j]
+                values[q, first + begin + j] = value[0, j]
                 angle = math.atan2(found[0, q, j], found[1, q, j])
-                where[q, begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
+                where[q, first + begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
         if gradients.shape[0]:
             for v in range(columns.shape[0]):
                 for j in range(LANES):
@@ -258,7 +259,7 @@ def _screen(
                 for q in range(signals):
                     _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
                     for j in range(last):
-                        gradients[q, begin + j, v] = slope[j]
+                        gradients[q, first + begin + j, v] = slope[j]
                 for j in range(LANES):
                     stepped[columns[v], j] = lanes[columns[v], j]
 
@@ -289,19 +290,20 @@ def screen(
     codes = np.array([int(kind) for kind in kinds])
 
     def work(begin: int, end: int) -> None:
-        part = slice(begin, end)
+        # Whole tables: parts of them would be arrays of another kind, for which the kernel would be compiled again.
         _screen(
             codes,
             raw,
             columns,
-            designs[part],
+            designs[begin:end],
             loads.kind,
             loads.datum,
             angles,
             crowd,
-            values[:, part],
-            where[:, part],
-            slopes[:, part],
+            begin,
+            values,
+            where,
+            slopes,
         )
 
     in_chunks(n, work, size=16 * LANES)

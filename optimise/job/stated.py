@@ -18,7 +18,7 @@ from .varying import ends_of, variants_of, varying_machine
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
-    """Return the problem that a job states. Raises JobError if it contradicts itjob.
+    """Return the problem that a job states. Raises JobError if it contradicts it.
 
     folder: where the modules of its functions lie. installed: quantities of packages that it names.
     """
