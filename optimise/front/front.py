@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
+from operator import index
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -101,7 +102,17 @@ class ParetoFront:
         return self.problem.objectives
 
     def part(self, row: int) -> Problem:
-        """Return the problem that a design answers, with the choices that it made in place."""
+        """Return the problem that a design answers, with the choices that it made in place.
+
+        Raises `InputError` for a row that is none of the front.
+        """
+        try:
+            known = -len(self) <= index(row) < len(self)
+        except TypeError:
+            known = False
+        if not known:
+            has = f"rows 0 to {len(self) - 1}" if len(self) else "no design"
+            raise InputError(f"a row must be one of the front, which has {has}; got {row!r}")
         return self.problem.part(self.variants[row] if self.variants else 0)
 
     def mechanism(self, row: int) -> Mechanism:
@@ -179,6 +190,7 @@ class ParetoFront:
         of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
         b is NaN where b cannot gain at all, and where no design of the front is better in it.
         """
+        self.part(row)  # refuses what is no row
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])

@@ -92,6 +92,7 @@ def like_design(
     in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
     `like_design(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
     """
+    front.part(row)  # refuses what is no row
     table = {str(key): value for key, value in front.designs.iloc[row].items()}
     return like(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
 

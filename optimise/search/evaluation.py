@@ -271,13 +271,15 @@ def _violation(constraint: Constraint, values: Array) -> Array:
 
 
 def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
+    low, top = _held(pieces, 1.0), _held(pieces, -1.0)
     if objective.sense == "minimise":
-        return [_held(pieces, 1.0)]
-    top = _held(pieces, -1.0)
+        return [low]
     if objective.target is None:
-        # What is infinite is no optimum but out of reach.
-        return [Pieces(np.where(np.isfinite(top.values), -top.values, np.inf), -top.gradients, top.labels)]
-    return [_beyond(pieces, 1.0, objective.target), _beyond(top, -1.0, objective.target)]
+        # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
+        there = np.isfinite(top.values)
+        absent = pieces.least & (top.values == np.inf) & there.any(axis=1, keepdims=True)
+        return [Pieces(np.where(there | absent, -top.values, np.inf), -top.gradients, top.labels)]
+    return [_beyond(low, 1.0, objective.target), _beyond(top, -1.0, objective.target)]
 
 
 def _beyond(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,6 +14,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem, Sense
+from slidercrank.optimise.questions.like import like_design
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem, shipped_front
@@ -218,3 +220,12 @@ def test_every_front_says_how_it_was_made() -> None:
     assert {"python", "numpy", "scipy", "numba", "moocore", "pandas", "slidercrank"} <= set(front.versions)
     assert front.seconds > 0.0
     assert f"{len(front)} designs" in front.message
+
+
+@pytest.mark.parametrize("row", [999, -999, 1.5, "knee"])
+def test_a_row_that_is_none_of_the_front_is_refused_in_a_sentence(row: Any) -> None:
+    front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, designs=4, samples=128))
+    asks = (front.part, front.mechanism, front.rates, front.trade_offs, lambda row: like_design(front, row))
+    for ask in asks:
+        with pytest.raises(InputError, match=f"a row must be one of the front, which has rows 0 to 3; got {row!r}"):
+            ask(row)

@@ -1,0 +1,48 @@
+"""Every quantity as the only objective: what the search finds is no worse than the best of random designs."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from slidercrank.model.machine.friction import Friction
+from slidercrank.objectives.quantity import Quantity
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.problem.problem import Sense
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import MACHINE, problem
+
+RUBBING = dataclasses.replace(MACHINE, friction=Friction(guide=0.1))
+LEAN = np.radians(40.0)
+
+
+def random_values(quantity: Quantity, count: int = 4000) -> np.ndarray:
+    """Return the quantity of random designs that keep the bounds below."""
+    random = np.random.default_rng(6)
+    designs = random.uniform((0.05, 0.1, 0.001), (0.1, 0.4, 0.08), (count, 3))
+    r, l, e = designs.T
+    met = np.arccos(np.minimum((r + e) / l, 1.0)) >= LEAN
+    return quantity.evaluate(RUBBING, designs[met]).values
+
+
+@pytest.mark.parametrize("wish", ["minimise", "maximise", "target"])
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_no_random_design_is_better_than_the_best_of_the_search(name: str, wish: Sense) -> None:
+    found = random_values(QUANTITIES[name])
+    middle = float(np.median(found))
+    given = problem(
+        {name: middle if wish == "target" else wish},
+        {"transmission_angle": (LEAN, None)} if name != "transmission_angle" else {"stroke": (0.05, 0.3)},
+        crank=(0.05, 0.1),
+        rod=(0.1, 0.4),
+        offset=(0.001, 0.08),
+        mechanism=RUBBING,
+        designs=1,
+        samples=256,
+    )
+    front = solve(given)
+    assert front.status == "done", front.message
+    best = {"minimise": found.min(), "maximise": -found.max(), "target": np.abs(found - middle).min()}[wish]
+    value = float(given.quantity(name).evaluate(given.mechanism, front.dimensions[:1]).values[0])
+    worth = {"minimise": value, "maximise": -value, "target": abs(value - middle)}[wish]
+    assert worth <= best + 1e-7 * (abs(middle) + 1e-12)
