@@ -162,9 +162,10 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
         real, rod_, off, crank = s.real, l.real, e.real, r.real
         wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
     if np.any(wrong):
+        remedy = "lengthen the rod or reduce the offset" if first(real, wrong) > 0.0 else "give a stroke above 0"
         raise AssemblyError(
             "no crank gives this stroke with full rotation; "
             f"got stroke {1e3 * first(s.real, wrong):g} mm, rod {1e3 * first(l.real, wrong):g} mm, "
-            f"offset {1e3 * first(e.real, wrong):g} mm; lengthen the rod or reduce the offset"
+            f"offset {1e3 * first(e.real, wrong):g} mm; {remedy}"
         )
     return r

@@ -93,7 +93,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns: the names of `cycle_curves` with the
     unit, such as torque_Nm. Raises `InputError` for too few or too many angles, and for ones that are not finite.
     """
-    theta = even_angles(angles) if isinstance(angles, int) else np.asarray(angles, dtype=np.float64)
+    theta = even_angles(int(angles)) if isinstance(angles, int | np.integer) else np.asarray(angles, dtype=np.float64)
     if theta.ndim != 1:
         raise InputError(f"crank angles are a list of numbers, rad; got an array of shape {theta.shape}")
     import pandas as pd

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
-from operator import index
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -107,7 +107,7 @@ class ParetoFront:
         Raises `InputError` for a row that is none of the front.
         """
         try:
-            known = -len(self) <= index(row) < len(self)
+            known = -len(self) <= operator.index(row) < len(self)
         except TypeError:
             known = False
         if not known:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+Default = TypeVar("Default")
 _PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque")
 
 
@@ -50,6 +51,14 @@ class Analysis(Mapping[str, float]):
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
         return self.found[quantity(name, self.quantities).name]
+
+    @overload
+    def get(self, name: str, /) -> float | None: ...
+    @overload
+    def get(self, name: str, /, default: float | Default) -> float | Default: ...
+    def get(self, name: str, /, default: object = None) -> object:
+        """Return a quantity, SI, or `default` for one that is not defined or not known."""
+        return self.found.get(name, default)
 
     def __contains__(self, name: object) -> bool:
         return name in self.found

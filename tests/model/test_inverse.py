@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage.inverse import Solution, crank_angle_at, crank_motion
+from slidercrank.model.linkage.inverse import Solution, crank_angle_at, crank_from_stroke, crank_motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array, linkage_of, random_designs
@@ -142,3 +142,11 @@ def test_motion_that_is_no_number_is_refused(value: float) -> None:
             crank_motion(linkage, 0.05, **motion, solution="outward")
     with pytest.raises(InputError, match="solution must be 'outward' or 'inward'"):
         crank_angle_at(linkage, 0.05, solution="upper")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("stroke", "remedy"), [(0.0, "give a stroke above 0"), (0.15, "lengthen the rod")])
+def test_the_remedy_for_a_stroke_that_no_crank_gives_is_one(stroke: float, remedy: str) -> None:
+    with pytest.raises(AssemblyError, match=remedy):
+        crank_from_stroke(stroke, rod=0.07, offset=0.02)
+    longer = crank_from_stroke(stroke or 0.1, rod=0.3, offset=0.02)
+    assert Linkage(longer, 0.3, 0.02).stroke == pytest.approx(stroke or 0.1, rel=1e-12)

@@ -146,3 +146,13 @@ def test_problem_with_choices_is_asked_by_its_parts() -> None:
     with pytest.raises(InputError, match=r"take one of problem.parts\(\)"):
         found.evaluate([DESIGN])
     assert found.parts()[0].analyse(DESIGN)["peak_torque"] > 0.0
+
+
+def test_it_is_a_mapping_also_where_a_quantity_is_not_defined() -> None:
+    found = sc.analyse(Mechanism(), [0.04, 0.1, 0.02])
+    assert "position_error" not in found
+    assert found.get("position_error") is None
+    assert found.get("position_error", 7) == 7
+    assert found.get("no such thing", "none") == "none"
+    assert found.get("stroke", 0.0) == found["stroke"]
+    assert found.cycle(np.int64(4)).equals(found.cycle(4))
