@@ -17,7 +17,7 @@ from .quantity import Array, Group, Pieces, Quantity, Values
 
 @dataclass(frozen=True, kw_only=True)
 class ForceTransmission(Quantity):
-    """max |B_x| / max |B| over the cycle, B being the force between rod and slider, x along the slider line.
+    """max |B_x| / max |B| over the cycle, for the force B between rod and slider.
 
     A rod without mass under a constant force: the least |B_x| / |B| of the cycle, which is the sine of the least
     transmission angle. In general that least ratio would be 0 for nearly every machine: inertia turns B_x round within

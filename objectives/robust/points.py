@@ -31,7 +31,7 @@ class Around:
     turns: NDArray[np.bool_]
 
     def highest(self, slopes: Array) -> tuple[Array, Array]:
-        """Return values (n, q) of the highest piece at each point, and its slopes of those of all (n, q, p, d)."""
+        """Return values (n, q) of the highest piece at each point, and its slopes."""
         first = np.argmax(self.values, axis=2)[:, :, None]
         values = np.take_along_axis(self.values, first, axis=2)[:, :, 0]
         return values, np.take_along_axis(slopes, first[:, :, :, None], axis=2)[:, :, 0]

@@ -75,7 +75,7 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
 
 
 def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
-    """Return one size for all objective rows, so that sums weigh alike at any scale, and the length of each active."""
+    """Return one size for all objective rows and the length of each active one: sums weigh alike at any scale."""
     lengths = np.linalg.norm(active, axis=1)
     lengths[lengths == 0.0] = 1.0
     return float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0, lengths

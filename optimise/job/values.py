@@ -33,7 +33,7 @@ Made = TypeVar("Made")
 
 
 class Built(Part, Generic[Made]):
-    """A table that states a part of the model, entry by entry; what is left out is as the model has it by default.
+    """A table that states a part of the model, entry by entry; the model has the defaults.
 
     makes: gives the part from its values. renamed: the model's name for an entry, where that differs.
     """
@@ -42,7 +42,7 @@ class Built(Part, Generic[Made]):
     renamed: ClassVar[Mapping[str, str]] = {}
 
     def build(self) -> Made:
-        """Return what the table states as the model has it. Raises InputError for values that exclude each other."""
+        """Return the part of the model that the table states. Raises InputError for values that exclude each other."""
         given = {self.renamed.get(name, name): getattr(self, name) for name in type(self).model_fields}
         parts = {name: part.build() if isinstance(part, Built) else part for name, part in given.items()}
         return cast(Made, type(self).makes(**{name: part for name, part in parts.items() if part is not None}))

@@ -151,7 +151,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def _descend(problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive) -> None:
-    """Put the optima of the basins of one sheet into the archive, what comes on the way into what was seen."""
+    """Put the optima of the basins of one sheet into the archive, and what comes on the way."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]

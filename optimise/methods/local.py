@@ -42,7 +42,7 @@ def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array
 
 
 def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
-    """Take the optimum near u (k,) of a sheet into an archive, and return its objectives (m,), SI; None without one."""
+    """Take the optimum near u (k,) into an archive; return its objectives (m,), SI, None without one."""
     optimum = found_by(solve, programme, u[: programme.k])
     if optimum is None:
         return None

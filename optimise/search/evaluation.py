@@ -292,7 +292,7 @@ def _excess(values: Array, side: float, bound: float, scale: float) -> Array:
 
 
 def _held(pieces: Pieces, side: float) -> Pieces:
-    """Return the pieces that all must stay low (side 1) or high (-1) for the quantity to be low or high.
+    """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
     To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
     to hold it up. Peaks come highest first, closed forms in any order.

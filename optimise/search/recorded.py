@@ -1,4 +1,4 @@
-"""Polish and projection as steps of a search: on its engine where that pays, and of the results a record is kept."""
+"""Polish and projection as recorded steps of a search, on its engine where that pays."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished
 
 
 def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]) -> Polished:
-    """Return the result of a step; of ragged rows its record has the lengths, and all of them end to end."""
+    """Return the result of a step; a record has ragged rows end to end, with their lengths."""
 
     def arrays() -> tuple[Numbers, ...]:
         found = compute()

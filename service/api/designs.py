@@ -1,4 +1,4 @@
-"""Designs of a front: filtered, sorted, page by page; one; or whole columns of all, for a page that draws every one."""
+"""Designs of a front: filtered, sorted, page by page; one; or whole columns of all."""
 
 from __future__ import annotations
 

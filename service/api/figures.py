@@ -86,7 +86,7 @@ def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked
 
 
 def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, units: System) -> Response:
-    """Return a figure, the sheet of a design with the name of its file; what was drawn is kept with the front."""
+    """Return a figure; the sheet of a design has the name of its file. Drawn ones are kept."""
     from ..figures.front import FrontFigure
 
     single = _DESIGN.fullmatch(name)

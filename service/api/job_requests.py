@@ -1,4 +1,4 @@
-"""Jobs that clients send: JSON with options or a job file, the content they may have, and the problem they state."""
+"""Jobs that clients send: JSON with options or a job file, their content, the problem they state."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class StoredFront:
     def made(
         self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]], turns: Turns | None = None
     ) -> bytes:
-        """Return what was made of the front lately under a name; else make it, in turn, and keep it for who asks next.
+        """Return a thing made of the front lately under a name, or make and keep it.
 
         make: gives all names of what it made, and the content.
         """

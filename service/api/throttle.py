@@ -1,4 +1,4 @@
-"""Limits on what requests do at a time and within a minute, so that the service stays quick for all others."""
+"""Limits on requests at a time and within a minute, so that the service stays quick."""
 
 from __future__ import annotations
 

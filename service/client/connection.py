@@ -1,4 +1,4 @@
-"""Requests to a service, and the events of a job: tried again where that is safe, refused in the service's words."""
+"""Requests to a service, and events of a job: tried again where safe, refused in the service's words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The end of a command: exit codes, and signals as a wish to stop at the next good moment, so that nothing is lost."""
+"""The end of a command: exit codes, and signals as a wish to stop without losing anything."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run that the command line names, and one design of it: by its number, or as the one that `front` would choose."""
+"""A run that the command line names, and one design of it: by number, or as `front` chooses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The curves of one design over a turn of the crank: as CSV, and as the API and the page's files have them."""
+"""The curves of one design over a turn of the crank: as CSV and as JSON."""
 
 from __future__ import annotations
 

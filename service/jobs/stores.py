@@ -1,4 +1,4 @@
-"""Store that the command line uses, and jobs in it by the names that people give them: a number, or "latest"."""
+"""Store that the command line uses, and jobs in it by number or as "latest"."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ Run = Annotated[
 
 
 def spread_groups(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command for typer in which the fields of a dataclass of options stand for a parameter of its type."""
+    """Return a command for typer with the fields of a dataclass of options for each parameter of its type."""
     hints = get_type_hints(command, include_extras=True)
     groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
     own = inspect.signature(command).parameters

@@ -50,7 +50,7 @@ def waiting(text: str) -> contextlib.AbstractContextManager[object]:
 
 
 def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:
-    """Return a context with a live bar on standard error if that is a terminal, and the callback for each round."""
+    """Return a context with a live bar on a terminal, and the callback for each round."""
     from ...optimise.front.progress import progress_bar as bar
 
     return bar() if sys.stderr.isatty() else contextlib.nullcontext(lambda _: None)

@@ -32,7 +32,7 @@ def machines(*, rubbing: bool) -> list[Mechanism]:
 
 
 def greatest(machine: Mechanism, linkage: Linkage, *, along: bool) -> float:
-    """Return the peak of |B_x| or |B| by a sweep and two finer ones around its angle; NaN where friction locks."""
+    """Return the peak of |B_x| or |B| by three ever finer sweeps; NaN where friction locks."""
     angles = np.linspace(0.0, 2.0 * np.pi, 4_001)
     for _ in range(3):
         forces = cycle(machine, linkage, angles)

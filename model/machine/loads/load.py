@@ -124,7 +124,7 @@ class Load:
         return first != second
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return what takes work over a turn: sizes by key; those of one key may cancel.
+        """Return sizes of work over a turn by key; those of one key may cancel.
 
         moving: whether the crank turns; at rest, loads with the speed are none.
         """
