@@ -48,12 +48,12 @@ def measure(address: str, *, runs: int = RUNS, large: int = LARGE, repeats: int 
     with Store(address, most_queued=runs) as store:
         begin = time.perf_counter()
         tables, found = _feeder()
-        with store._database.writing() as connection:
+        with store.writing() as connection:
             _fill(connection, tables, found, runs, large)
-        with store._database.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+        with store.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
             connection.exec_driver_sql("ANALYZE")
         filled = Row(f"filling with {runs} runs of {len(found.designs)} designs, s", [time.perf_counter() - begin])
-        with store._database.reading() as connection:
+        with store.reading() as connection:
             done = list(connection.execute(select(jobs.c.id).where(jobs.c.state == "done", jobs.c.id < runs)).scalars())
         spare_imports()  # as the service does
         with asyncio.Runner() as loop:

@@ -7,11 +7,13 @@ import time
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ..designs.cycle_table import LEAST, MOST, cycle_table
 from ..runs.result import Row, finite
 from ..text.options import Dimensions, speed_option
@@ -24,10 +26,6 @@ from .problems import problem_responses
 from .settings import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
 from .throttle import READING, SIMULATING
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
@@ -75,13 +73,11 @@ class CurvesModel(OfDesign, CycleModel):
     """Curves of a design of a front over a turn of the crank."""
 
 
-class WhatIf(BaseModel):
+class WhatIf(BaseModel, extra="forbid"):
     """A job, and the dimensions of a design. Dimensions that the job fixes need not be repeated.
 
     values: numbers of the job at other values, by their paths. show: topics to add.
     """
-
-    model_config = ConfigDict(extra="forbid")
 
     job: dict[str, Any] = Field(description="the tables of a job file")
     crank: str | None = Field(None, max_length=100, examples=["40 mm"])
@@ -117,8 +113,6 @@ def show_curves(
 @router.post("/analyse")
 def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
-    from ...model.linkage.linkage import Linkage
-
     topics = chosen_topics(asked.show, job=True)
     with READING:
         problem = given_problem(asked.job, settings.allowed_quantities, asked.values)

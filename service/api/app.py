@@ -13,7 +13,6 @@ from ..store import Store
 from . import (
     analysis,
     design_files,
-    designs,
     events,
     exports,
     figures,
@@ -26,7 +25,7 @@ from . import (
     schema,
     what_if,
 )
-from .event_feed import Feed
+from .events import Feed
 from .health import Metrics, Timed
 from .openapi import describe
 from .problems import answer_problems, problem_responses
@@ -43,7 +42,6 @@ _PARTS = (
     preview,
     events,
     fronts,
-    designs,
     analysis,
     what_if,
     design_files,

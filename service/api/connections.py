@@ -61,20 +61,9 @@ class Gate:
     """
 
     def __init__(self, most: int = MOST_CONNECTIONS) -> None:
-        """Begin without connections."""
         self.most = most
         self._told: Counter[str] = Counter()
         self._timer: asyncio.TimerHandle | None = None
-
-    def protocol(
-        self,
-        config: Config,
-        server_state: ServerState,
-        app_state: dict[str, Any],
-        _loop: asyncio.AbstractEventLoop | None = None,
-    ) -> Connection:
-        """Return the protocol that handles a new connection."""
-        return Connection(self, config, server_state, app_state, _loop)
 
     def make_room(self, new: Connection) -> bool:
         """Close the connection that is needed least if there are too many; whether the new one may stay."""
@@ -117,10 +106,9 @@ class Connection(HttpToolsProtocol):
         config: Config,
         server_state: ServerState,
         app_state: dict[str, Any],
-        loop: asyncio.AbstractEventLoop | None,
+        _loop: asyncio.AbstractEventLoop | None = None,
     ) -> None:
-        """Stand behind a gate."""
-        super().__init__(config, server_state, app_state, loop)
+        super().__init__(config, server_state, app_state, _loop)
         self.asked = False
         self.since = self.loop.time()
         self._gate = gate
@@ -233,7 +221,6 @@ class Connection(HttpToolsProtocol):
         self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
-        """Answer that a request is refused, and close."""
         self._gate.tell(f"refused with {status}")
         if self.waits or not self.cycle.response_started:  # another answer would break one that is under way
             response = problem(status, text, {**(headers or {}), "Connection": "close"})

@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
 
+from ...objectives.kinds import System
 from ..drawings.dxf import dxf_file
 from ..drawings.linkage_drawing import linkage_drawing
 from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
+from ..store import Store
 from .exports import of_type
 from .figures import require_figures
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
-from .shown_designs import ShownDep, ShownDesign
+from .stored_fronts import ShownDep, ShownDesign
 from .throttle import DRAWING
 
 if TYPE_CHECKING:
-    from ...objectives.kinds import System
     from ..report.document import Report
-    from ..store import Store
 
 router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
 

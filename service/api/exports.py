@@ -6,6 +6,7 @@ import io
 from typing import Any
 
 from fastapi import APIRouter, Response
+from pydantic_core import to_json
 
 from ...model.extras import is_installed, required
 from ..designs.selection import numbered
@@ -48,10 +49,9 @@ def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
 @router.get("/jobs/{number}/export.json", **of_type("application/json"))
 def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
     """Give the whole front, as `slidercrank export --json` does but in one line."""
-    from pydantic_core import to_json  # a tenth of the time of json's
-
     result = result_in(found.result, units, None if units == "metric" else found.problem)
-    return _file(found, "json", "application/json", to_json(result.record(), inf_nan_mode="null"))
+    content = to_json(result.record(), inf_nan_mode="null")  # a tenth of the time of json's
+    return _file(found, "json", "application/json", content)
 
 
 @router.get("/jobs/{number}/export.parquet", **of_type("application/vnd.apache.parquet", 501))

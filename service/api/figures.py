@@ -16,8 +16,7 @@ from .exports import of_type
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import SettingsDep
-from .shown_designs import Lengths, LengthsDep, ShownDesign, shown_design
-from .stored_fronts import FrontDep, StoredFront
+from .stored_fronts import FrontDep, Lengths, LengthsDep, ShownDesign, StoredFront, shown_design
 from .throttle import DRAWING
 
 if TYPE_CHECKING:

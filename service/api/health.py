@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import Literal, get_args
+from dataclasses import dataclass
+from typing import Annotated, Literal, get_args
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Histogram, generate_latest
 from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
@@ -14,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..store import State, Store
 from .models import Count, Shown
-from .settings import StoreDep
+from .settings import StoreDep, part_of_app
 
 router = APIRouter(tags=["service"])
 _BOUNDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
@@ -49,22 +50,10 @@ def show_ready(store: StoreDep) -> Ready:
     return Ready(takes_jobs=workers > 0, workers=workers, waiting=store.counts().get("queued", 0))
 
 
-@router.get(
-    "/metrics",
-    response_class=Response,
-    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
-)
-def show_metrics(request: Request) -> Response:
-    """Return figures in the text format of Prometheus: jobs by state, age of the queue, workers, times of requests."""
-    metrics: Metrics = request.app.state.metrics
-    return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
-
-
 class Metrics(Collector):
     """The figures of one application, in a registry of its own."""
 
     def __init__(self, store: Store) -> None:
-        """Tell of a store."""
         self._store = store
         self._registry = CollectorRegistry(auto_describe=False)
         self._registry.register(self)
@@ -96,12 +85,21 @@ class Metrics(Collector):
         return generate_latest(self._registry)
 
 
+@router.get(
+    "/metrics",
+    response_class=Response,
+    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
+)
+def show_metrics(metrics: Annotated[Metrics, part_of_app("metrics")]) -> Response:
+    """Return figures in the text format of Prometheus: jobs by state, age of the queue, workers, times of requests."""
+    return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
+
+
+@dataclass
 class Timed:
     """ASGI middleware: takes the time of every request until its answer begins."""
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Stand before an application."""
-        self.app = app
+    app: ASGIApp
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on and take its time."""

@@ -8,7 +8,7 @@ from importlib.resources import files
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from .. import presets
 from .job_requests import EXAMPLE, TOML, Asked, asked_for
@@ -32,10 +32,8 @@ class PresetList(BaseModel):
     presets: list[PresetModel]
 
 
-class Tables(BaseModel):
+class Tables(BaseModel, extra="forbid", strict=True):
     """The tables of a job."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
 

@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import astuple, dataclass
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from fastapi import Header, Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, Field, ValidationError
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
-from ..jobs.allowed_quantities import LONGEST_ANSWER, bounded, parse_allowed
+from ...optimise.problem.problem import Problem
+from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
 from .strict_input import GIVEN, in_turn, read_json, require_moderate
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -51,30 +49,24 @@ IdempotencyKey = Annotated[
 """The header of a submission."""
 
 
-class AskedLimits(BaseModel):
+class AskedLimits(BaseModel, extra="forbid", strict=True):
     """Limits that a client asks for a job; the service's own hold where one is left out."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, title="AskedLimits")
 
     seconds: float | None = Field(None, gt=0, le=LARGEST, description="of its search, s", examples=[600])
     evaluations: int | None = Field(None, gt=0, le=LARGEST, description="designs that its search evaluates")
     memory_bytes: int | None = Field(None, gt=0, le=LARGEST, description="of its worker")
 
 
-class Submission(BaseModel):
+class Submission(BaseModel, extra="forbid", strict=True):
     """A job and how it is to be solved."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
     priority: Priority = 0
     limits: AskedLimits = AskedLimits()
 
 
-class Clone(BaseModel):
+class Clone(BaseModel, extra="forbid", strict=True):
     """The changes in a copy of a job."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     changes: dict[str, Any] = Field(
         default_factory=dict,

@@ -13,8 +13,8 @@ from fastapi import Path as InPath
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
-from ..jobs.submission import submit
-from ..store import Job, State, Store
+from ..jobs.submission import job_json
+from ..store import State, Store
 from .exports import formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
@@ -131,14 +131,9 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
 def _submitted(asked: Asked, store: Store, settings: Settings, response: Response, key: str | None) -> dict[str, Any]:
     with READING:
         problem = given_problem(asked.tables, settings.allowed_quantities)
-    job: Job = submit(
-        store,
-        asked.tables,
-        priority=asked.priority,
-        key=key,
-        limits=asked.limits,
-        source=asked.source,
-        checked=problem.name,
+    files = [asked.source or job_json(asked.tables)]
+    job = store.submit(
+        asked.tables, name=problem.name, priority=asked.priority, key=key, limits=asked.limits, files=files
     )
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job.record()

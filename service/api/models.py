@@ -6,7 +6,7 @@ import re
 from typing import Annotated, Any
 
 from fastapi import Path, Query
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import PydanticKnownError
 
 from ...objectives.kinds import System
@@ -33,10 +33,8 @@ UnitsAsked = Annotated[
 """A query parameter."""
 
 
-class Shown(BaseModel):
+class Shown(BaseModel, frozen=True):
     """Part of an answer."""
-
-    model_config = ConfigDict(frozen=True)
 
 
 class JobLimits(Shown):
@@ -86,10 +84,8 @@ class JobSummary(Shown):
     points: list[list[float | str | None]] = Field(description="at most 64 designs of the front")
 
 
-class JobShown(Shown):
+class JobShown(Shown, title="Job"):
     """State of a job. Times are seconds since 1970, UTC."""
-
-    model_config = ConfigDict(frozen=True, title="Job")
 
     id: int = Field(ge=1, description="its number", examples=[1])
     key: str | None = Field(description="of its submission")
@@ -121,10 +117,8 @@ class JobPage(Shown):
     next: int | None = Field(description="`before` of the next page; null on the last one")
 
 
-class EventShown(Shown):
+class EventShown(Shown, title="Event"):
     """Something that happened to a job."""
-
-    model_config = ConfigDict(frozen=True, title="Event")
 
     number: int = Field(ge=1, description="1, 2, 3, ... without gaps")
     at: float = Field(description="seconds since 1970, UTC")

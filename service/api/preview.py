@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
+from ...model.linkage.linkage import Linkage
 from .job_requests import given_problem
 from .schema import Understood, understood
 from .settings import SettingsDep
 from .throttle import READING
 
 if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
     from ..preview.preview import Look
 
 router = APIRouter(tags=["jobs"])
@@ -23,10 +24,8 @@ _ANGLES = 72
 Ends = tuple[float, float]
 
 
-class Draft(BaseModel):
+class Draft(BaseModel, extra="forbid", strict=True):
     """A job that may be incomplete."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     job: dict[str, Any] = Field(
         description="the tables of a job file",
@@ -133,8 +132,6 @@ def _in(factor: float, ends: Ends | None) -> Ends | None:
 
 
 def _example(look: Look) -> ExampleModel | None:
-    from ...model.linkage.linkage import Linkage
-
     if look.stated is None or look.possible is None or look.possible.example is None:
         return None
     machine = look.stated.mechanism
@@ -154,8 +151,6 @@ def _example(look: Look) -> ExampleModel | None:
 
 
 def _motion(linkage: Linkage) -> MotionModel:
-    import numpy as np
-
     theta = np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES)
     found = linkage.at(theta)
     return MotionModel(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from ...objectives.kinds import KINDS, SHOWN, TIME, shown_in
+
 router = APIRouter(tags=["designs"])
 
 
@@ -73,7 +75,6 @@ class UnitTable(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
-    from ...objectives.kinds import KINDS, SHOWN, TIME, shown_in
     from ...optimise.job.units import per_si
 
     told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
 
+from ...optimise.problem.problem import Problem
 from .job_requests import Asked, asked_for, given_problem
 from .problems import problem_responses
 from .settings import SettingsDep
 from .throttle import READING
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
 
 router = APIRouter(tags=["jobs"])
 

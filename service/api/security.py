@@ -41,7 +41,6 @@ class Guard:
     """
 
     def __init__(self, app: ASGIApp, *, settings: Settings) -> None:
-        """Stand before an application."""
         self.app = app
         self.hosts = frozenset(host.lower() for host in settings.hosts)
         self.token = None if settings.token is None else settings.token.encode()
@@ -63,7 +62,9 @@ class Guard:
             nonlocal started
             if message["type"] == "http.response.start":
                 started = True
-                _protect(MutableHeaders(scope=message))
+                headers = MutableHeaders(scope=message)
+                for name, value in _HEADERS.items():
+                    headers.setdefault(name, value)
             await send(message)
 
         try:
@@ -157,8 +158,3 @@ def _same(origin: str, host: str) -> bool:
     except ValueError:
         return False
     return parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
-
-
-def _protect(headers: MutableHeaders) -> None:
-    for name, value in _HEADERS.items():
-        headers.setdefault(name, value)

@@ -7,6 +7,7 @@ import ipaddress
 import os
 import socket
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 from ...model.errors import InputError
@@ -80,11 +81,11 @@ def config_of(app: FastAPI) -> Config:
     """Return how the web server serves an application."""
     from uvicorn import Config
 
-    from .connections import Gate, room_for_connections
+    from .connections import Connection, Gate, room_for_connections
 
     return Config(
         app,
-        http=cast("Any", Gate(room_for_connections()).protocol),  # anything that makes a protocol will do
+        http=cast("Any", partial(Connection, Gate(room_for_connections()))),  # anything that makes a protocol will do
         log_config=None,
         access_log=False,  # the address that carries the token would be in it
         server_header=False,

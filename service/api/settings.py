@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import Depends, Request
 
@@ -37,18 +37,17 @@ class Settings:
 DEFAULT = Settings()
 
 
-async def _store(request: Request) -> Store:
-    store: Store = request.app.state.store
-    return store
+def part_of_app(name: str) -> Any:
+    """Return the dependency that gives a part of the application's state."""
+
+    async def part(request: Request) -> Any:  # not in a thread of its own, as for plain functions
+        return getattr(request.app.state, name)
+
+    return Depends(part)
 
 
-async def _settings(request: Request) -> Settings:
-    settings: Settings = request.app.state.settings
-    return settings
-
-
-StoreDep = Annotated[Store, Depends(_store)]
+StoreDep = Annotated[Store, part_of_app("store")]
 """The store; its calls block, so endpoints that use it are plain functions, which run in a thread of their own."""
 
-SettingsDep = Annotated[Settings, Depends(_settings)]
+SettingsDep = Annotated[Settings, part_of_app("settings")]
 """Settings of the API, chosen by its operator."""

@@ -8,6 +8,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Any, TypeVar
 
@@ -28,14 +29,16 @@ GIVEN = "slidercrank.json"
 """Key of a request's scope with what its body says, if that is JSON."""
 
 
+@dataclass
 class StrictInput:
-    """ASGI middleware: reads a body up to a size, refuses what is not strict JSON, and passes it on unchanged."""
+    """ASGI middleware: reads a body up to a size, refuses what is not strict JSON, and passes it on unchanged.
 
-    def __init__(self, app: ASGIApp, *, most_body: int, most_depth: int) -> None:
-        """Stand before an application. most_body: in bytes. most_depth: tables or lists within each other."""
-        self.app = app
-        self.most_body = most_body
-        self.most_depth = most_depth
+    most_body: in bytes. most_depth: tables or lists within each other.
+    """
+
+    app: ASGIApp
+    most_body: int
+    most_depth: int
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on."""

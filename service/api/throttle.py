@@ -20,7 +20,6 @@ class Turns:
     """A kind of work, and who waits to do it."""
 
     def __init__(self, name: str) -> None:
-        """Name it."""
         self.name = name
         self._waiting = threading.BoundedSemaphore(_MOST)
         self._working = threading.Lock()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
 from ..designs.columns import find_column
@@ -19,8 +19,7 @@ from .analysis import CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, column_model
 from .models import UnitsAsked
 from .problems import problem_responses
-from .shown_designs import LONGEST, Length
-from .stored_fronts import DesignNumber, FrontDep
+from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length
 from .throttle import SIMULATING
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
@@ -68,14 +67,12 @@ class TradeOffsModel(OfDesign):
     note: str = Field(examples=[""])
 
 
-class OtherLengths(BaseModel):
+class OtherLengths(BaseModel, extra="forbid", strict=True):
     """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none.
 
     hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
     to take the lengths as they are.
     """
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])

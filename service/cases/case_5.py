@@ -37,11 +37,6 @@ def masses() -> tuple[float, float]:
     return rotating_and_reciprocating(MACHINE, linkage(0.020))
 
 
-def lumped_feeder() -> Mechanism:
-    """Return the machine whose inertia torque the paper computes: all mass that moves, on the slider."""
-    return Mechanism(speed=SPEED, slider_mass=masses()[1])
-
-
 def exact_torque(offset: float, crank_angle: Array) -> Array:
     """Return the drive torque against the inertia of the reciprocating mass, N m: virtual work, m3 x_t x_tt / w."""
     at = linkage(offset).at(crank_angle, speed=SPEED)
@@ -156,7 +151,7 @@ def formulas(t: float, e: float) -> dict[str, float]:
 def _torques() -> dict[str, float]:
     """Return greatest torques, N m: exact ones and those of the paper's formula."""
     found: dict[str, float] = {}
-    machine = lumped_feeder()
+    machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as the paper: all mass that moves, on the slider
     for offset in OFFSETS:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])

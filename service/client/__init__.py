@@ -16,7 +16,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...model.errors import InputError, ServiceError
+from ...model.errors import InputError, JobError, ServiceError
 from ..runs.result import Result, Row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
@@ -262,7 +262,6 @@ class Client:
 
 
 def _given(**options: Any) -> Record:
-    """Return the options that are given."""
     return {name: value for name, value in options.items() if value is not None}
 
 
@@ -270,7 +269,6 @@ def tables_of(job: JobSource) -> Record:
     """Return the tables of a job file, with the points of a target motion in them. Raises `JobError`."""
     import tomllib
 
-    from ...model.errors import JobError
     from ...optimise.job.file import read
     from ...optimise.job.target_motion import with_points
 

@@ -100,7 +100,6 @@ class Tries:
     """The tries of one request: pauses that grow, until the patience is used up."""
 
     def __init__(self, connection: Connection) -> None:
-        """Begin."""
         self.made = 0
         self._connection = connection
         self._end = time.monotonic() + connection.patience

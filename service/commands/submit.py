@@ -51,7 +51,7 @@ def submit(
     It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
     """
     from ...optimise.job import load_job, read_job
-    from ..jobs.allowed_quantities import functions_of
+    from ..jobs.submission import functions_of
     from ..jobs.submission import submit as put_in
     from ..runs.result import json_text
     from ..store import Limits

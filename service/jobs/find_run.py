@@ -65,7 +65,7 @@ def find_folder(text: str, place: Path) -> Path:
 
     Raises `InputError` when nothing, or more than one run, answers to it.
     """
-    names = sorted((run.name for run in _runs(place)), key=lambda name: (name[:15], _age(place, name)))
+    names = sorted((run.name for run in _runs(place)), key=lambda name: (name[:15], (place / name).stat().st_mtime_ns))
     if text == "latest":
         if not names:
             raise InputError(f"there is no run in {place} yet; run `slidercrank optimise JOB` first")
@@ -95,7 +95,3 @@ def _runs(place: Path) -> list[Path]:
         for folder in place.iterdir()
         if not folder.name.startswith(".") and ((folder / MARK).is_file() or (folder / "front.json").is_file())
     ]
-
-
-def _age(place: Path, name: str) -> int:
-    return (place / name).stat().st_mtime_ns

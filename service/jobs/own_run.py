@@ -7,15 +7,12 @@ import os
 import socket
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.errors import InputError, LeaseLost, RunError, StoreError
 from ..runs.run_folder import RunFolder
-from ..store import Artefact, Claim, Store
+from ..store import Artefact, Claim, Job, Store
 from .find_run import find_folder
-
-if TYPE_CHECKING:
-    from ..store import Job
 
 LEASE = 3600.0
 """s. A run that is stopped by Ctrl-Z for less goes on where it was; one that was killed is free again after this, or

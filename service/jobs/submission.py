@@ -1,13 +1,101 @@
-"""A job on its way into the store: read and checked before it is queued."""
+"""A job on its way into the store and out of it: read and checked, with the functions that it names as quantities.
+
+These functions run where a job is solved, so whoever starts the workers allows them, by `serve` and `worker
+--allow-quantity`. The API refuses others at once; `submit` cannot know which workers there are, and leaves it to them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import Any
+import contextlib
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
+from ...model.errors import JobError
 from ..runs.result import json_text
 from ..store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
-from .allowed_quantities import parse_allowed
+
+if TYPE_CHECKING:
+    from ...optimise.engine.engine import Engine
+    from ...optimise.problem.problem import Problem
+
+LONGEST_CALL = 300.0
+"""s, that a call takes at most in a job of the service, whatever limit the job gives it."""
+LONGEST_ANSWER = 10.0
+"""s, that a call takes at most while a request waits for it."""
+
+
+def parse_allowed(
+    tables: Mapping[str, Any], allowed: Collection[str], values: Mapping[str, Any] | None = None
+) -> Problem:
+    """Return the problem that a job states whose functions, "module:function", are all of `allowed`; none is called.
+
+    values: numbers to put in place of those that it gives, by their paths. Raises `JobError`.
+    """
+    from ...optimise.job import parse_job
+    from ...optimise.job.file import require_plain
+
+    require_plain(tables)
+    for name, function in functions_of(tables).items():
+        if function not in allowed:
+            raise _refused(name, function, allowed)
+    return parse_job(tables, values)
+
+
+def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
+    """Return the functions that a job names, by the names of their quantities. Raises `JobError` for what is none."""
+    from ...objectives.own.quantity import FUNCTION
+    from ...optimise.job.units import shown
+
+    parts, found = tables.get("quantity", {}), {}
+    write = 'write it like { function = "mymodule:myfunction" }'
+    if not isinstance(parts, Mapping):
+        raise JobError(f"quantity: must be a table of tables, each with a function; got {shown(parts)}; leave it out")
+    for name, part in parts.items():
+        if not isinstance(part, Mapping):
+            raise JobError(f"quantity.{name[:60]}: must be a table of keys; got {shown(part)}; {write}")
+        function = part.get("function")
+        if not (isinstance(function, str) and FUNCTION.fullmatch(function)):
+            got = f"got {shown(function)}" if "function" in part else "it is missing"
+            raise JobError(f"quantity.{name[:60]}.function: must name a module and a function in it; {got}; {write}")
+        found[name] = function
+    return found
+
+
+def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
+    from ...optimise.job.units import shown
+
+    here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
+    return JobError(
+        f"quantity.{name[:60]}: only functions that the operator allows are run here; got {shown(function)}; {here} "
+        f"(serve or worker with --allow-quantity {function[:200]}), or solve the job with optimise"
+    )
+
+
+def bounded(problem: Problem, seconds: float) -> Problem:
+    """Return a problem whose functions of its own are not called for longer than so many s at a time."""
+    from ...objectives.own.quantity import bounded
+
+    return (
+        replace(problem, own=tuple(bounded(quantity, seconds) for quantity in problem.own)) if problem.own else problem
+    )
+
+
+@contextlib.contextmanager
+def ending_own(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
+    """End the processes of a problem's own functions on leaving: they idle, or worse, until the problem is forgotten.
+
+    engine: where they may have been called, too; it ends its processes, and starts others when it is next needed.
+    """
+    from ...objectives.own.quantity import close_own, runs_own
+
+    try:
+        yield
+    finally:
+        for quantity in problem.own:
+            close_own(quantity)
+        if engine is not None and any(map(runs_own, problem.own)):
+            engine.close()
 
 
 def submit(
@@ -20,19 +108,17 @@ def submit(
     limits: Limits = NO_LIMITS,
     source: Artefact | None = None,
     allowed_quantities: Collection[str] = (),
-    checked: str | None = None,
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
     source: the job file as it was given, "job.toml" or "job.json"; without one it is made from the tables.
-    allowed_quantities: functions, "module:function", that the job may name as quantities. checked: the name of a job
-    that was checked already.
+    allowed_quantities: functions, "module:function", that the job may name as quantities.
 
     Raises `JobError` for a job that is not valid, or that names other functions.
     """
     return store.submit(
         tables,
-        name=checked or parse_allowed(tables, allowed_quantities).name,
+        name=parse_allowed(tables, allowed_quantities).name,
         priority=priority,
         key=key,
         most_attempts=most_attempts,

@@ -56,12 +56,9 @@ def _style() -> str:
 @cache
 def _policy() -> str:
     """Return the content security policy: only this very style and script, and a form sent to the service itself."""
-    style, script = (_digest(text) for text in (_style(), _SCRIPT))
+    digests = (hashlib.sha256(text.encode()).digest() for text in (_style(), _SCRIPT))
+    style, script = (f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
     return (
         f"default-src 'none'; style-src {style}; script-src {script}; img-src data:; form-action 'self'; "
         "base-uri 'none'; frame-ancestors 'none'"
     )
-
-
-def _digest(text: str) -> str:
-    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -1,23 +1,25 @@
-"""A look at a job while it is being written."""
+"""A look at a job while it is being written: its mistakes, and sentences on requirements beyond its ranges."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...model.errors import InputError
+from ...optimise.feasibility.relaxation import missed, sides
+from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
 from ...optimise.job.box import beyond_both
 from ...optimise.job.file import require_few
-from ...optimise.problem.problem import Problem
-from .feasibility import Possible, possible
+from ...optimise.problem.problem import Constraint, Problem
+from .feasibility import Ends, Possible, possible
 from .partial_job import geometry, left_out
-from .sentences import said
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
+_REST = "all other requirements on the dimensions"
 
 
 @dataclass(frozen=True)
@@ -93,3 +95,40 @@ def _places(error: InputError) -> list[Wrong]:
         known = match is not None and re.split(r"[. ]", match[1])[0] in Job.model_fields
         found.append(Wrong(match[1], match[2]) if match and known else Wrong("", line))
     return found
+
+
+def said(problem: Problem, found: Possible) -> list[str]:
+    """Return a sentence for each requirement that is out of reach, and one if no sample meets everything."""
+    sentences = []
+    asked = {constraint.quantity: constraint for constraint in problem.constraints}
+    for name in ("stroke", "time_ratio", "transmission_angle"):
+        ends: Ends | None = getattr(found, name)
+        if name in asked and ends is not None:
+            sentences += _unreached(problem, asked[name], ends)
+    if found.turning == 0.0:
+        sentences.append("no crank of these ranges turns fully: the rod must be longer than crank and offset together")
+    elif found.sampled and found.feasible == 0.0 and not sentences:
+        hardest = ""
+        if found.hardest is not None and found.hardest[1] < 1.0:
+            title = problem.quantity(found.hardest[0]).title
+            hardest = f"; on its own, {title} is met by {_percent(found.hardest[1])} of those that turn"
+        sentences.append(
+            f"none of {found.sampled} designs tried meets every requirement{hardest}; the search looks more closely"
+        )
+    return sentences
+
+
+def _unreached(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
+    """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
+    found = []
+    for relation, _, bound in sides(constraint):
+        nearest = min(max(bound, ends[0]), ends[1])
+        beyond = {"at least": bound > nearest, "at most": bound < nearest, "exactly": True}[relation]
+        item = missed(problem, constraint, relation, bound, nearest) if beyond else None
+        if item is not None:
+            found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
+    return found
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"

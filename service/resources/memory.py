@@ -16,7 +16,6 @@ class Memory:
     """
 
     def __init__(self) -> None:
-        """Begin before the first job."""
         self._fresh = self._least = 0
 
     def begin(self) -> None:

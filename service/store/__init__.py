@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from .claim import Claim
-from .records import NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, State, Worker
+from .records import NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, State, Worker
 from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
-from .watching import News
 
 __all__ = [
     "LEASE",

@@ -15,14 +15,13 @@ from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, se
 
 from ...model.errors import LeaseLost
 from ..runs.result import Result, finite
-from .claiming import MOST_DELAY
 from .clock import JUMP, later, now
 from .database import Database, Full, Unavailable
+from .queue import MOST_DELAY, put_files
 from .records import NOT_DONE, Artefact, Job
 from .rows import Told, add_events, state_event
 from .schema import designs, exact, jobs, records, workers
 from .serialisation import cells_of, packed, packed_exact, plain, summary_of, text_of, unpacked
-from .submitting import put_files
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress

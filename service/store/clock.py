@@ -27,7 +27,6 @@ class Jumps:
     """Jumps of the database's clock, seen by comparing it with a monotonic one at every look."""
 
     def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:
-        """Begin without having looked."""
         self._monotonic = monotonic
         self._ahead: float | None = None
         self._until = -float("inf")

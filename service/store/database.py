@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 from urllib.parse import quote
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
@@ -104,6 +104,12 @@ class Database:
         """Close all connections."""
         self.engine.dispose()
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
     @contextlib.contextmanager
     def reading(self) -> Iterator[Connection]:
         """Enter a transaction that sees one state of the database and keeps no writer waiting."""
@@ -183,11 +189,9 @@ class _File:
         self._open = may_use(self.path)
 
     def shut(self) -> bool:
-        """Whether it may not be read and written any more."""
         return self._open and not may_use(self.path)
 
     def there(self) -> bool:
-        """Whether it is the same file still."""
         return self._number() == self._known
 
     def _number(self) -> tuple[int, int] | None:

@@ -34,11 +34,7 @@ class Limits:
     memory: int | None = None
 
     def __post_init__(self) -> None:
-        for name, value, unit in (
-            ("seconds", self.seconds, "s"),
-            ("evaluations", self.evaluations, "designs"),
-            ("memory", self.memory, "bytes"),
-        ):
+        for (name, value), unit in zip(vars(self).items(), ("s", "designs", "bytes"), strict=True):
             if value is not None and not 0.0 < value < 2.0**53:
                 raise InputError(
                     f"a limit on {name} must be a positive number of {unit}; got {value}; leave it out for no limit"
@@ -89,6 +85,19 @@ class Job:
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None
 
+    @classmethod
+    def of(cls, row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:
+        """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
+        from pydantic_core import from_json  # in a quarter of the time of json's
+
+        found = dict(row._mapping)
+        for name in ("writes", *more):
+            del found[name]
+        for name in ("progress", "summary"):
+            found[name] = None if found[name] is None else from_json(found[name])
+        seconds, evaluations, memory = (found.pop(name) for name in LIMITS)
+        return cls(**found, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))
+
     def record(self) -> dict[str, Any]:
         """Return the job as JSON, the same everywhere: times in seconds since 1970, memory in bytes."""
         # Not `asdict`: it copies what is within, which takes most of the time of a list.
@@ -109,6 +118,25 @@ class Event:
     at: float
     kind: str
     data: dict[str, Any]
+
+    @classmethod
+    def of(cls, row: Found[*tuple[Any, ...]]) -> Event:
+        """Return an event from its row."""
+        return cls(**{**row._mapping, "data": json.loads(row.data)})
+
+
+@dataclass(frozen=True, kw_only=True)
+class News:
+    """News of a job. last: the number of its last event, which may come after `events`, as some of them may."""
+
+    state: State
+    last: int
+    events: list[Event]
+
+    @property
+    def over(self) -> bool:
+        """Whether the job has ended and these events are all of the rest."""
+        return self.state in ENDED and (not self.events or self.events[-1].number == self.last)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,21 +168,3 @@ class Worker:
     def at_work(self) -> bool:
         """Whether it was heard of lately."""
         return self.silent <= SILENT
-
-
-def event_of(row: Found[*tuple[Any, ...]]) -> Event:
-    """Return an event from its row."""
-    return Event(job=row.job, number=row.number, at=row.at, kind=row.kind, data=json.loads(row.data))
-
-
-def job_of(row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:
-    """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
-    from pydantic_core import from_json  # in a quarter of the time of json's
-
-    found = dict(row._mapping)
-    for name in ("writes", *more):
-        del found[name]
-    for name in ("progress", "summary"):
-        found[name] = None if found[name] is None else from_json(found[name])
-    seconds, evaluations, memory = (found.pop(name) for name in LIMITS)
-    return Job(**found, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))

@@ -1,4 +1,4 @@
-"""One job in a transaction: reading its row, changing its state, adding to its events."""
+"""Jobs in a transaction: reading their rows and news, changing their state, adding to their events."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, and_, insert, or_, select, update
 
 from ...model.errors import InputError, NotFound, RunError
 from .clock import now
-from .records import RESUMABLE, SHOWN, Job, State, job_of
+from .records import RESUMABLE, SHOWN, Event, Job, News, State
 from .schema import events, jobs
 from .serialisation import text_of
 
 Told = tuple[str, Mapping[str, Any]]
 """Kind and data of an event."""
+_TOGETHER = 100  # jobs of one query: databases refuse very long ones
 
 
 def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
@@ -24,7 +25,7 @@ def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
     row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
     if row is None:
         raise NotFound(f"there is no job {number}; list the jobs")
-    return job_of(row)
+    return Job.of(row)
 
 
 def become(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
@@ -70,3 +71,23 @@ def add_events(connection: Connection, job: int, last: int, told: Sequence[Told]
 def state_event(state: str, reason: str = "") -> Told:
     """Return the event of a job that comes into a state."""
     return "state", {"state": state, "reason": reason}
+
+
+def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dict[int, News]:
+    """Return the news of jobs since an event of each; jobs that are gone are left out. See `Store.news`."""
+    numbers = list(after)
+    news: dict[int, News] = {}
+    for start in range(0, len(numbers), _TOGETHER):
+        asked = numbers[start : start + _TOGETHER]
+        for row in connection.execute(select(jobs.c.id, jobs.c.state, jobs.c.events).where(jobs.c.id.in_(asked))):
+            news[row.id] = News(state=row.state, last=row.events, events=[])
+        fresh = [
+            and_(events.c.job == job, events.c.number > after[job], events.c.number <= after[job] + limit)
+            for job in asked
+            if job in news and news[job].last > after[job]
+        ]
+        if fresh:
+            query = select(events).where(or_(*fresh)).order_by(events.c.job, events.c.number)
+            for row in connection.execute(query):
+                news[row.job].events.append(Event.of(row))
+    return news

@@ -14,22 +14,7 @@ first. So the writers of one job take turns, and its events become visible in th
 
 from __future__ import annotations
 
-from sqlalchemy import (
-    BigInteger,
-    Boolean,
-    Column,
-    Double,
-    ForeignKey,
-    Index,
-    Integer,
-    LargeBinary,
-    MetaData,
-    String,
-    Table,
-    Text,
-    UniqueConstraint,
-    false,
-)
+import sqlalchemy as sa
 
 NAMES = {
     "ix": "ix_%(table_name)s_%(column_0_N_name)s",
@@ -39,47 +24,47 @@ NAMES = {
 }
 """Names of constraints, so that migrations can name them on every database."""
 
-metadata = MetaData(naming_convention=NAMES)
-_number = BigInteger().with_variant(Integer, "sqlite")  # SQLite counts up keys of this type only
+metadata = sa.MetaData(naming_convention=NAMES)
+_number = sa.BigInteger().with_variant(sa.Integer, "sqlite")  # SQLite counts up keys of this type only
 
 
-def _of_a_job() -> Column[int]:
-    return Column("job", _number, ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True)
+def _of_a_job() -> sa.Column[int]:
+    return sa.Column("job", _number, sa.ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True)
 
 
-jobs = Table(
+jobs = sa.Table(
     "jobs",
     metadata,
-    Column("id", _number, primary_key=True, autoincrement=True),
-    Column("key", String(255)),
-    Column("name", Text, nullable=False),
-    Column("run", String(255), nullable=False),
-    Column("tables", Text, nullable=False),
-    Column("state", String(16), nullable=False),
-    Column("reason", Text, nullable=False, server_default=""),
-    Column("priority", Integer, nullable=False, server_default="0"),
-    Column("attempts", Integer, nullable=False, server_default="0"),
-    Column("most_attempts", Integer, nullable=False),
-    Column("most_seconds", Double),
-    Column("most_evaluations", BigInteger),
-    Column("most_memory", BigInteger),
-    Column("cancel_asked", Boolean, nullable=False, server_default=false()),
-    Column("submitted", Double, nullable=False),
-    Column("due", Double, nullable=False),
-    Column("started", Double),
-    Column("finished", Double),
-    Column("worker", String(255)),
-    Column("lease_until", Double),
-    Column("fence", Integer, nullable=False, server_default="0"),
-    Column("writes", Integer, nullable=False, server_default="0"),
-    Column("records", Integer, nullable=False, server_default="0"),
-    Column("events", Integer, nullable=False, server_default="0"),
-    Column("progress", Text),
-    Column("summary", Text),
-    Column("result", Text),
-    UniqueConstraint("key"),
-    UniqueConstraint("run"),
-    Index(None, "state", "priority", "id"),
+    sa.Column("id", _number, primary_key=True, autoincrement=True),
+    sa.Column("key", sa.String(255)),
+    sa.Column("name", sa.Text, nullable=False),
+    sa.Column("run", sa.String(255), nullable=False),
+    sa.Column("tables", sa.Text, nullable=False),
+    sa.Column("state", sa.String(16), nullable=False),
+    sa.Column("reason", sa.Text, nullable=False, server_default=""),
+    sa.Column("priority", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("attempts", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("most_attempts", sa.Integer, nullable=False),
+    sa.Column("most_seconds", sa.Double),
+    sa.Column("most_evaluations", sa.BigInteger),
+    sa.Column("most_memory", sa.BigInteger),
+    sa.Column("cancel_asked", sa.Boolean, nullable=False, server_default=sa.false()),
+    sa.Column("submitted", sa.Double, nullable=False),
+    sa.Column("due", sa.Double, nullable=False),
+    sa.Column("started", sa.Double),
+    sa.Column("finished", sa.Double),
+    sa.Column("worker", sa.String(255)),
+    sa.Column("lease_until", sa.Double),
+    sa.Column("fence", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("writes", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("records", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("events", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("progress", sa.Text),
+    sa.Column("summary", sa.Text),
+    sa.Column("result", sa.Text),
+    sa.UniqueConstraint("key"),
+    sa.UniqueConstraint("run"),
+    sa.Index(None, "state", "priority", "id"),
     sqlite_autoincrement=True,  # the number of a deleted job never comes back
 )
 """key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not
@@ -87,48 +72,48 @@ to be claimed before. fence: how often it was claimed. writes: how often the hol
 records, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
 designs, with the names of their columns."""
 
-events = Table(
+events = sa.Table(
     "events",
     metadata,
     _of_a_job(),
-    Column("number", Integer, primary_key=True, autoincrement=False),
-    Column("at", Double, nullable=False),
-    Column("kind", String(16), nullable=False),
-    Column("data", Text, nullable=False),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("at", sa.Double, nullable=False),
+    sa.Column("kind", sa.String(16), nullable=False),
+    sa.Column("data", sa.Text, nullable=False),
 )
 
-records = Table(
+records = sa.Table(
     "records",
     metadata,
     _of_a_job(),
-    Column("number", Integer, primary_key=True, autoincrement=False),
-    Column("content", LargeBinary, nullable=False),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("content", sa.LargeBinary, nullable=False),
 )
 
-designs = Table(
+designs = sa.Table(
     "designs",
     metadata,
     _of_a_job(),
-    Column("number", Integer, primary_key=True, autoincrement=False),
-    Column("cells", Text, nullable=False),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("cells", sa.Text, nullable=False),
 )
 
-exact = Table("exact", metadata, _of_a_job(), Column("content", LargeBinary, nullable=False))
+exact = sa.Table("exact", metadata, _of_a_job(), sa.Column("content", sa.LargeBinary, nullable=False))
 
-artefacts = Table(
+artefacts = sa.Table(
     "artefacts",
     metadata,
     _of_a_job(),
-    Column("name", String(255), primary_key=True),
-    Column("media_type", String(255), nullable=False),
-    Column("at", Double, nullable=False),
-    Column("content", LargeBinary, nullable=False),
+    sa.Column("name", sa.String(255), primary_key=True),
+    sa.Column("media_type", sa.String(255), nullable=False),
+    sa.Column("at", sa.Double, nullable=False),
+    sa.Column("content", sa.LargeBinary, nullable=False),
 )
 
-workers = Table(
+workers = sa.Table(
     "workers",
     metadata,
-    Column("id", String(255), primary_key=True),
-    Column("started", Double, nullable=False),
-    Column("seen", Double, nullable=False),
+    sa.Column("id", sa.String(255), primary_key=True),
+    sa.Column("started", sa.Double, nullable=False),
+    sa.Column("seen", sa.Double, nullable=False),
 )

@@ -14,17 +14,15 @@ from ...model.errors import InputError, NotFound, StoreError
 from ..runs.result import Result
 from ..runs.run_folder import run_name
 from ..runs.stored_runs import result_from
+from . import queue
 from .claim import Claim
-from .claiming import ENDED_LEASE, any_claimable, claim_next, running
 from .clock import Jumps, now
 from .database import Database
-from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, State, Worker, event_of, job_of
-from .rows import add_events, become, damaged, require_resumable, the_job, the_record
+from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State, Worker
+from .rows import add_events, become, damaged, news_of, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs, workers
 from .schema_version import upgrade
 from .serialisation import plain, rows_of, unpacked_exact
-from .submitting import add_job, in_hand, require_bounds, require_room, submitted_before, take_turns
-from .watching import News, longest_wait, news_of
 
 MOST_QUEUED = 10_000
 MOST_ATTEMPTS = 3
@@ -32,7 +30,7 @@ LEASE = 30.0
 _FORGOTTEN = 7 * 86_400.0
 
 
-class Store:
+class Store(Database):
     """An open store. Threads may share it; processes open their own. Also a context manager, which closes it.
 
     Every method raises `StoreError` when the database refuses or cannot be reached, and `NotFound` for a job that is
@@ -44,30 +42,19 @@ class Store:
 
         The tables are created, or brought up to date. most_queued: how many jobs may wait.
         """
-        self._database = Database(address)
-        self.name = self._database.name
+        super().__init__(address)
         self.most_queued = most_queued
         self._jumps = Jumps()
         try:
-            upgrade(self._database)
+            upgrade(self)
         except BaseException:
             self.close()
             raise
 
-    def close(self) -> None:
-        """Close all connections."""
-        self._database.close()
-
     def require_writable(self) -> None:
         """Raise `StoreError` where jobs cannot be put in."""
-        with self._database.writing() as connection:
-            take_turns(connection)
-
-    def __enter__(self) -> Store:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+        with self.writing() as connection:
+            queue.take_turns(connection)
 
     def submit(
         self,
@@ -88,24 +75,24 @@ class Store:
 
         Raises `QueueFull`, and `InputError` if the key was used for another job.
         """
-        require_bounds(priority, key, most_attempts)
+        queue.require_bounds(priority, key, most_attempts)
         more = {"key": key, "priority": priority, "most_attempts": most_attempts}
-        with self._database.writing() as connection:
-            take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
-            known = submitted_before(connection, key, tables) if key else None
+        with self.writing() as connection:
+            queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
+            known = queue.submitted_before(connection, key, tables) if key else None
             if known is not None:
                 return known
-            require_room(connection, self.most_queued)
-            number = add_job(connection, tables, files, limits, name=name, run=run_name(name), **more)
+            queue.require_room(connection, self.most_queued)
+            number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **more)
             return the_job(connection, number)
 
     def begin(
         self, tables: Mapping[str, Any], *, name: str, run: str, worker: str, lease: float, files: Sequence[Artefact]
     ) -> Claim:
         """Put in a job that its submitter solves itself, in `run`, and return its claim. It is never tried again."""
-        with self._database.writing() as connection:
-            take_turns(connection)
-            number = add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
+        with self.writing() as connection:
+            queue.take_turns(connection)
+            number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
             return self._taken(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
 
     def go_on(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
@@ -113,7 +100,7 @@ class Store:
 
         Raises `InputError` for a job in another state.
         """
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             job = the_job(connection, number, lock=True)
             if not (alone and job.state == "running"):
                 require_resumable(job)
@@ -121,22 +108,14 @@ class Store:
 
     def _taken(self, connection: Connection, job: Job, worker: str, lease: float, reason: str) -> Claim:
         again = {"attempts": 1, "cancel_asked": False, "finished": None}
-        held = become(connection, job, "running", reason, **{**in_hand(worker, lease), **again})
-        return Claim(self._database, held, lease)
+        held = become(connection, job, "running", reason, **{**queue.in_hand(worker, lease), **again})
+        return Claim(self, held, lease)
 
     def job(self, number: int) -> Job:
         """Return where a job stands. While the disk of the store is full, that is the reason of jobs not ended."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             found = the_job(connection, number)
         return self._waiting([found])[0]
-
-    def require_room(self) -> None:
-        """Raise `StoreError`, which names the disk, where the disk of the store has no room."""
-        self._database.require_room()
-
-    def require_ready(self) -> None:
-        """Raise `StoreError` where nothing can be written: its disk has no room, or its server takes no changes."""
-        self._database.require_ready()
 
     def _waiting(self, found: list[Job]) -> list[Job]:
         try:
@@ -148,9 +127,9 @@ class Store:
 
     def find(self, run: str) -> Job | None:
         """Return the job of a run folder's name, None if there is none."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             row = connection.execute(select(*SHOWN).where(jobs.c.run == run)).first()
-        return None if row is None else job_of(row)
+        return None if row is None else Job.of(row)
 
     def jobs(
         self, *, states: Collection[State] = (), name: str = "", before: int | None = None, limit: int = 100
@@ -166,24 +145,25 @@ class Store:
             query = query.where(jobs.c.name.icontains(plain(name), autoescape=True))
         if before is not None:
             query = query.where(jobs.c.id < before)
-        with self._database.reading() as connection:
-            found = [job_of(row) for row in connection.execute(query)]
+        with self.reading() as connection:
+            found = [Job.of(row) for row in connection.execute(query)]
         return self._waiting(found)
 
     def counts(self) -> dict[str, int]:
         """Return how many jobs are in each state that any is in."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             found = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
         return {row.state: int(row[1]) for row in found}
 
     def longest_wait(self) -> float:
         """Return the waiting time, s, of the oldest job that a worker may claim; 0 if none waits."""
-        with self._database.reading() as connection:
-            return longest_wait(connection)
+        waiting = and_(jobs.c.state == "queued", jobs.c.due <= now())
+        with self.reading() as connection:
+            return connection.scalar(select(now() - func.min(jobs.c.due)).where(waiting)) or 0.0
 
     def tables(self, number: int) -> dict[str, Any]:
         """Return the tables of a job's file."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             the_job(connection, number)
             found = connection.execute(select(jobs.c.tables).where(jobs.c.id == number)).scalar_one()
         tables: dict[str, Any] = json.loads(found)
@@ -192,13 +172,13 @@ class Store:
     def events(self, number: int, *, after: int = 0, limit: int = 1000) -> list[Event]:
         """Return the events of a job after the one of a number, in order, at most `limit` of them."""
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             the_job(connection, number)
-            return [event_of(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
+            return [Event.of(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
         """Return the news of jobs after a given event of each, at most `limit` events a job."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             return news_of(connection, after, limit)
 
     def record(self, number: int) -> dict[str, Any]:
@@ -206,7 +186,7 @@ class Store:
 
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             job = the_job(connection, number)
             record = the_record(connection, job)
             if job.summary is not None:
@@ -217,7 +197,7 @@ class Store:
 
     def result(self, number: int) -> Result:
         """Return the result of a job. Raises `RunError` if it has no result (yet), or a damaged one."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             stored = the_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
             found = connection.execute(cells).scalars().all()
@@ -231,14 +211,14 @@ class Store:
 
     def artefacts(self, number: int) -> list[str]:
         """Return the names of a job's files, in alphabetical order."""
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             the_job(connection, number)
             return sorted(connection.execute(select(artefacts.c.name).where(artefacts.c.job == number)).scalars())
 
     def artefact(self, number: int, name: str) -> Artefact:
         """Return a file of a job. Raises `NotFound` if it has none of that name."""
         own = and_(artefacts.c.job == number, artefacts.c.name == name)
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             row = connection.execute(select(artefacts.c.media_type, artefacts.c.content).where(own)).first()
         if row is None:
             raise NotFound(f"job {number} has no file {name!r}; choose one of its files")
@@ -249,9 +229,9 @@ class Store:
 
         A cancelled job keeps what it found, and can go on. One that has ended stays as it is.
         """
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             job = the_job(connection, number, lock=True)
-            ended = select(ENDED_LEASE).where(jobs.c.id == number)
+            ended = select(queue.ENDED_LEASE).where(jobs.c.id == number)
             if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
                 left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
                 return become(connection, job, "cancelled", NOT_DONE, **left)
@@ -266,7 +246,7 @@ class Store:
 
         Raises `InputError` for a job in another state.
         """
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             job = the_job(connection, number, lock=True)
             require_resumable(job)
             again = {"attempts": 0, "cancel_asked": False, "due": now(), "finished": None}
@@ -274,7 +254,7 @@ class Store:
 
     def delete(self, number: int) -> None:
         """Delete a job that has ended and everything of it. Raises `InputError` for a job that has not."""
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             job = the_job(connection, number, lock=True)
             if job.state not in ENDED:
                 raise InputError(
@@ -283,26 +263,26 @@ class Store:
             connection.execute(delete(jobs).where(jobs.c.id == number))
 
     def claim(self, worker: str, *, lease: float = LEASE, most_running: int | None = None) -> Claim | None:
-        """Give the foremost waiting job to a worker for `lease` s; None if no job waits. See `claiming.claim_next`.
+        """Give the foremost waiting job to a worker for `lease` s; None if no job waits. See `queue.claim_next`.
 
         most_running: how many jobs may be in the hands of workers at a time; None is as many as there are workers.
         """
         if not 0.0 < lease <= 3600.0:
             raise InputError(f"a lease lasts more than 0 s and at most an hour; got {lease} s")
-        with self._database.reading() as connection:
-            if not any_claimable(connection, self._jumps):
+        with self.reading() as connection:
+            if not queue.any_claimable(connection, self._jumps):
                 return None
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             if most_running is not None:
-                take_turns(connection)
-                if running(connection) >= most_running:
+                queue.take_turns(connection)
+                if queue.running(connection) >= most_running:
                     return None
-            job = claim_next(connection, worker, lease)
-        return None if job is None else Claim(self._database, job, lease)
+            job = queue.claim_next(connection, worker, lease)
+        return None if job is None else Claim(self, job, lease)
 
     def greet(self, worker: str) -> None:
         """Note that a worker is there; forget those that have been silent for days."""
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             seen = update(workers).where(workers.c.id == worker).values(seen=now())
             if not connection.execute(seen).rowcount:
                 connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
@@ -310,7 +290,7 @@ class Store:
 
     def part(self, worker: str) -> None:
         """Note that a worker has left."""
-        with self._database.writing() as connection:
+        with self.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
 
     def workers_at_work(self) -> int:
@@ -324,5 +304,5 @@ class Store:
         """
         silent = func.abs(now() - workers.c.seen).label("silent")
         query = select(*workers.c, silent).order_by(silent)
-        with self._database.reading() as connection:
+        with self.reading() as connection:
             return [Worker(**row._mapping) for row in connection.execute(query)]

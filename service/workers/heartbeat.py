@@ -10,6 +10,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, field
 
 from ...model.errors import LeaseLost, StoreError
 from ..resources.memory import Memory
@@ -27,49 +28,39 @@ _HEARS = 60.0  # s that a search has to end once it is told to: a kernel that is
 Stop = Callable[[], bool]
 
 
+@dataclass(eq=False)
 class Heartbeat:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
+    memory: what the job may take, in bytes, as `taken` measures it. Beyond it the job is set aside as failed and
+    the process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
+    over: says why the search is to end with what it has, nothing as long as it is not. Where it does not within a
+    minute, also after a cancellation, the job ends without it and the process with the exit code `DEAF`; only where
+    there is a grace, too.
+    grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
+    ends with 0. For as long as it takes, if None.
+    patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
+    does one whose worker is to stop: nothing is lost. While a search loads or compiles what it computes with, it
+    hears of nothing. For as long as it takes, if None.
     lost: why the job is not this worker's any more, in words; empty as long as it is.
     """
 
-    def __init__(
-        self,
-        claim: Claim,
-        *,
-        memory: int | None = None,
-        taken: Memory | None = None,
-        over: Callable[[], str] | None = None,
-        stop: Stop | None = None,
-        grace: float | None = None,
-        patience: float | None = None,
-    ) -> None:
-        """Care for a claim.
+    claim: Claim
+    _: KW_ONLY
+    memory: int | None = None
+    taken: Memory = field(default_factory=Memory)
+    over: Callable[[], str] = lambda: ""
+    stop: Stop = lambda: False
+    grace: float | None = None
+    patience: float | None = None
+    lost: str = field(default="", init=False)
 
-        memory: what the job may take, in bytes, as `taken` measures it. Beyond it the job is set aside as failed and
-        the process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
-        over: says why the search is to end with what it has, nothing as long as it is not. Where it does not within a
-        minute, also after a cancellation, the job ends without it and the process with the exit code `DEAF`; only where
-        there is a grace, too.
-        grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
-        ends with 0. For as long as it takes, if None.
-        patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
-        does one whose worker is to stop: nothing is lost. While a search loads or compiles what it computes with, it
-        hears of nothing. For as long as it takes, if None.
-        """
-        self.claim = claim
-        self.lost = ""
-        self._memory = memory
-        self._taken = taken or Memory()
-        self._over = over or (lambda: "")
-        self._stop = stop or (lambda: False)
-        self._grace = grace
-        self._patience = patience
+    def __post_init__(self) -> None:
         self._since: dict[str, float] = {}
         self._end = threading.Event()
         beat = contextvars.copy_context().run  # so that its logs are about the same job
         self._thread = threading.Thread(
-            target=beat, args=(self._beat,), name=f"heartbeat of job {claim.job.id}", daemon=True
+            target=beat, args=(self._beat,), name=f"heartbeat of job {self.claim.job.id}", daemon=True
         )
 
     def __enter__(self) -> Heartbeat:
@@ -104,18 +95,18 @@ class Heartbeat:
         return now - self._since.setdefault(what, now)
 
     def _look_at_cancel(self) -> None:
-        if self._patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
+        if self.patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
             return
-        if self._waited("cancelled") >= self._patience:
+        if self._waited("cancelled") >= self.patience:
             self.claim.give_up()
             self.lost = "it was cancelled before its search began"
 
     def _look_at_memory(self) -> None:
-        taken = self._taken.of_the_job() if self._memory is not None else 0
-        if self._memory is None or taken <= self._memory or self._end.is_set():
+        taken = self.taken.of_the_job() if self.memory is not None else 0
+        if self.memory is None or taken <= self.memory or self._end.is_set():
             return
         reason = (
-            f"it may take {size_text(self._memory)} of memory; its worker took {size_text(taken)}; "
+            f"it may take {size_text(self.memory)} of memory; its worker took {size_text(taken)}; "
             "give it a higher limit, or ask for less"
         )
         _log.error("set aside: %s", reason)
@@ -124,8 +115,8 @@ class Heartbeat:
         leave(EXHAUSTED)
 
     def _look_at_deaf(self) -> None:
-        reason = NOT_DONE if self.claim.cancel_asked else self._over()
-        if self._grace is None or not reason:
+        reason = NOT_DONE if self.claim.cancel_asked else self.over()
+        if self.grace is None or not reason:
             return
         if self._waited("told to end") < _HEARS or self._end.is_set():
             return
@@ -137,11 +128,11 @@ class Heartbeat:
         leave(DEAF)
 
     def _look_at_stop(self) -> None:
-        if self._grace is None or not self._stop():
+        if self.grace is None or not self.stop():
             return
         waited = self._waited("worker stops")
-        begun = self.claim.begun or self._patience is None
-        grace = self._grace if begun else min(self._grace, self._patience or 0.0)
+        begun = self.claim.begun or self.patience is None
+        grace = self.grace if begun else min(self.grace, self.patience or 0.0)
         if waited < grace or self._end.is_set():
             return
         where = "in the middle of a round" if begun else "before its search began"

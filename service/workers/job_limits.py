@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from ..runs.result import Result
 from ..store import Limits
 
 
+@dataclass
 class Budget:
-    """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either."""
+    """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either.
 
-    def __init__(self, limits: Limits) -> None:
-        """Begin with limits; the one of memory is not looked at here."""
-        self.limits = limits
-        self._began = time.monotonic()
-        self._evaluations = 0
+    limits: the one of memory is not looked at here.
+    """
+
+    limits: Limits
+    _began: float = field(default_factory=time.monotonic, init=False)
+    _evaluations: int = field(default=0, init=False)
 
     def count(self, evaluations: int) -> None:
         """Take note of how many designs have been evaluated so far."""

@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
-from ..jobs.allowed_quantities import LONGEST_CALL, bounded, ending_own, parse_allowed
+from ..jobs.submission import LONGEST_CALL, bounded, ending_own, parse_allowed
 from ..resources.disk import full_places, is_full
 from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of
@@ -161,7 +161,7 @@ def solve_claimed(
         heartbeat = Heartbeat(
             claim,
             memory=limits.memory,
-            taken=memory,
+            taken=memory or Memory(),
             over=budget.reason,
             stop=stop,
             grace=terms.grace,
@@ -284,8 +284,6 @@ def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
     """Whether the search is to end with what it has; raises what ends it without."""
     if heartbeat.lost:
         raise LeaseLost(f"job {claim.job.id}: {heartbeat.lost}")
-    if claim.cancel_asked:
-        return True
-    if stop():
+    if not claim.cancel_asked and stop():
         raise Stopped
-    return False
+    return claim.cancel_asked

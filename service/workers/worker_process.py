@@ -71,7 +71,10 @@ def main() -> int:
         os.nice(NICENESS)
     threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
     try:
-        with _opened(settings, stop) as store:
+        store = _opened(settings, stop)
+        if store is None:
+            return 0
+        with store:
             work(
                 store,
                 lease=settings.lease,
@@ -80,8 +83,6 @@ def main() -> int:
                 most_running=settings.most_running,
                 terms=settings.terms,
             )
-    except _Ended:
-        return 0
     except Stale:
         return STALE
     except SlidercrankError as error:
@@ -90,12 +91,8 @@ def main() -> int:
     return 0
 
 
-class _Ended(Exception):
-    """Told to stop before the store could be reached."""
-
-
-def _opened(settings: WorkerSettings, stop: threading.Event) -> Store:
-    """Return the store, as soon as it can be reached."""
+def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
+    """Return the store, as soon as it can be reached; None if told to stop before."""
     away = False
     while not stop.is_set():
         try:
@@ -107,7 +104,7 @@ def _opened(settings: WorkerSettings, stop: threading.Event) -> Store:
                 _log.warning("%s; trying again until it is there", error)
             away = True
             stop.wait(1.0)
-    raise _Ended
+    return None
 
 
 def _line() -> bytes:

@@ -37,7 +37,7 @@ class _Failing:
         self.lifted = False
         self._left = number
         self._failure = failure
-        event.listen(store._database.engine, "commit", self._commit)
+        event.listen(store.engine, "commit", self._commit)
 
     def _commit(self, connection: Connection) -> None:
         if self.lifted or connection.get_execution_options().get("reading", False):

@@ -14,7 +14,7 @@ import httpx
 import pytest
 
 from slidercrank.model.errors import StoreError
-from slidercrank.service.api import event_feed, events
+from slidercrank.service.api import events
 from slidercrank.service.store import Claim, Store
 from tests.service.api.conftest import Serve
 from tests.service.api.serving import refused
@@ -125,8 +125,8 @@ def test_a_stream_of_a_resumed_job_goes_on_past_its_earlier_ends(client: httpx.C
 def test_more_events_than_are_kept_are_told_too(
     client: httpx.Client, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(event_feed, "_PAGE", 7)
-    monkeypatch.setattr(event_feed, "_RECENT", 16)
+    monkeypatch.setattr(events, "_PAGE", 7)
+    monkeypatch.setattr(events, "_RECENT", 16)
     job = add(store)
     claim = taken(store)
     with contextlib.ExitStack() as stack:
@@ -172,7 +172,7 @@ def test_a_stream_ends_when_its_job_is_deleted(client: httpx.Client, store: Stor
 def test_streams_go_on_after_the_database_was_away(
     client: httpx.Client, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(event_feed, "_PATIENCE", 0.05)
+    monkeypatch.setattr(events, "_PATIENCE", 0.05)
     job = add(store)
     news, away = store.news, True
 
@@ -236,7 +236,7 @@ def test_a_hundred_streams_ask_the_store_no_more_often_than_one(serve: Serve, st
     for worker in workers:
         worker.join()
     assert told == [list(range(1, 14))] * 100
-    assert len(asked) <= (time.monotonic() - start) / event_feed.POLL + 2
+    assert len(asked) <= (time.monotonic() - start) / events.POLL + 2
     assert max(asked) <= 10
 
 
@@ -244,7 +244,7 @@ def test_a_follower_that_is_slow_at_the_end_does_not_end_the_streams_of_the_resu
     job = add(store)
 
     async def follow() -> list[int]:
-        feed = event_feed.Feed(store)
+        feed = events.Feed(store)
         slow = feed.follow(job.id, 0, last=1, heartbeat=30.0)
         await anext(slow)
         store.cancel(job.id)
@@ -267,7 +267,7 @@ def test_the_feed_ends_all_streams_when_the_service_stops(store: Store) -> None:
     job = add(store)
 
     async def follow() -> list[int]:
-        feed = event_feed.Feed(store)
+        feed = events.Feed(store)
         found = []
         async for event in feed.follow(job.id, 0, last=1, heartbeat=30.0):
             assert event is not None

@@ -201,7 +201,7 @@ def test_a_run_that_is_deleted_elsewhere_while_it_is_watched_says_so(open_page: 
     add(store)
     page = open_page(store, "#/jobs/1", expected=("404",))
     expect(page.get_by_role("heading", name="Progress")).to_be_visible()
-    with store._database.writing() as connection:  # cancelled and deleted before the page heard of either
+    with store.writing() as connection:  # cancelled and deleted before the page heard of either
         connection.execute(delete(jobs))
     expect(page.get_by_role("heading", name="Run 1 is not there any more")).to_be_visible()
 

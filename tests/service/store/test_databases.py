@@ -18,8 +18,8 @@ from sqlalchemy import Connection, create_engine, text
 from slidercrank.model.errors import InputError, LeaseLost, MissingExtra, StoreError
 from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.backup import back_up
-from slidercrank.service.store.claiming import claim_next
 from slidercrank.service.store.database import Database, Unavailable, without_secrets
+from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
 from tests.service.conftest import Command
 from tests.service.store.contents import add, end_lease, everything, progress, result, search_record
@@ -147,8 +147,8 @@ class Failing:
     def __init__(self, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
         self.left = 0
         self.after_commit = False
-        self._writing = store._database.writing
-        monkeypatch.setattr(store._database, "writing", self.writing)
+        self._writing = store.writing
+        monkeypatch.setattr(store, "writing", self.writing)
         monkeypatch.setattr("slidercrank.service.store.claim._PAUSE", 0.0)
 
     @contextlib.contextmanager
@@ -216,7 +216,7 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
         with pytest.raises(StoreError, match=r"database or disk is full; .* free; make room"):
             claim.put(large)
         assert everything(str(tmp_path / "store.db")) == before
-        with store._database.reading() as connection:
+        with store.reading() as connection:
             assert connection.scalar(text("PRAGMA integrity_check")) == "ok"
         room(store, 100_000)
         claim.lease = 60.0
@@ -226,14 +226,14 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
 
 def room(store: Store, pages: int) -> None:
     """Let SQLite's file have at most so many pages, as on a disk that is full."""
-    with store._database.writing() as connection:  # one thread has one connection, so that this one is used again
+    with store.writing() as connection:  # one thread has one connection, so that this one is used again
         connection.execute(text(f"PRAGMA max_page_count={pages}"))
 
 
 def test_workers_on_postgresql_do_not_wait_for_each_other(server: Cluster) -> None:
     with Store(server.new_address()) as store:
         first, second = add(store), add(store)
-        with store._database.writing() as connection:
+        with store.writing() as connection:
             held = claim_next(connection, "first", 60.0)
             other = store.claim("second")  # while the first one has not committed yet
             assert store.claim("third") is None

@@ -1,4 +1,4 @@
-"""Putting a job into the store: queued for a worker, or in the hands of its submitter from the start."""
+"""The queue of a store: putting jobs in, and the choice of the job that a worker gets next."""
 
 from __future__ import annotations
 
@@ -7,15 +7,37 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from typing import Any
 
-from sqlalchemy import Connection, delete, func, insert, select, text
+from sqlalchemy import Connection, and_, delete, exists, func, insert, not_, or_, select, text, update
 
 from ...model.errors import InputError, QueueFull
-from .clock import later, now
-from .records import LIMITS, SHOWN, Artefact, Job, Limits, job_of
-from .rows import add_events, state_event
-from .schema import artefacts, jobs
+from .clock import JUMP, Jumps, later, now
+from .records import LIMITS, SHOWN, Artefact, Job, Limits
+from .rows import add_events, become, state_event
+from .schema import artefacts, jobs, workers
 from .schema_version import LOCK
 from .serialisation import plain, text_of
+
+MOST_DELAY = 60.0
+"""s after which a job is due again at the latest: one that is due later was queued under a clock set back since."""
+# Every write of a job is a sign of life of its worker. One in the future was given under a clock set back since, and a
+# worker that lives gives another one at once: so the lease, which lies as far in the future, is of one that does not.
+_FROM_LATER = exists(select(workers.c.id).where(workers.c.id == jobs.c.worker, workers.c.seen > now() + JUMP))
+ENDED_LEASE = or_(jobs.c.lease_until < now(), _FROM_LATER)
+"""Whether the lease of a running job has ended."""
+_DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
+
+# Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
+_CLAIMABLE = (
+    select(*SHOWN)
+    .where(
+        or_(
+            and_(jobs.c.state == "queued", _DUE),
+            and_(jobs.c.state == "running", ENDED_LEASE),
+        )
+    )
+    .order_by(jobs.c.priority.desc(), jobs.c.id)
+    .limit(1)
+)
 
 
 def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
@@ -42,7 +64,7 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
         return None
     if json.loads(row.tables) != json.loads(text_of(tables)):
         raise InputError(f"a key stands for one job; {key!r} is that of job {row.id}, which differs; use another key")
-    return job_of(row, more=("tables",))
+    return Job.of(row, more=("tables",))
 
 
 def require_room(connection: Connection, most_queued: int) -> None:
@@ -90,6 +112,54 @@ def in_hand(worker: str, lease: float) -> dict[str, Any]:
         "fence": jobs.c.fence + 1,
         "writes": 0,
     }
+
+
+def any_claimable(connection: Connection, jumps: Jumps) -> bool:
+    """Whether some job waits for a worker; asked before claiming, so that idle workers do not write.
+
+    jumps: of the database's clock; none is to be claimed soon after one.
+    """
+    settled = jumps.settled(connection.execute(select(now())).scalar_one())
+    return settled and connection.execute(_CLAIMABLE).first() is not None
+
+
+def running(connection: Connection) -> int:
+    """Return how many jobs are in the hands of workers whose lease has not ended."""
+    held = and_(jobs.c.state == "running", not_(ENDED_LEASE))
+    return connection.scalar(select(func.count()).where(held)) or 0
+
+
+def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
+    """Give the foremost job to a worker, highest priority first, then oldest first; None if there is none.
+
+    It is queued and due, or its lease has ended without a word. Of the latter those without an attempt left are set
+    aside: whatever stopped their workers would stop the next one too.
+    """
+    while True:
+        found = connection.execute(_CLAIMABLE.with_for_update(skip_locked=True)).first()
+        if found is None:
+            return None
+        if found.state == "running" and found.attempts >= found.most_attempts:
+            _set_aside(connection, Job.of(found))
+            continue
+        told = [state_event("running", f"claimed by {worker}")]
+        if found.state == "running":
+            told.insert(0, ("message", {"text": f"the lease of {found.worker} ended without a word"}))
+        row = connection.execute(
+            update(jobs)
+            .where(jobs.c.id == found.id)
+            .values({"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(told)})
+            .returning(*SHOWN)
+        ).one()
+        add_events(connection, row.id, row.events, told)
+        return Job.of(row)
+
+
+def _set_aside(connection: Connection, job: Job) -> None:
+    times = "once" if job.attempts == 1 else f"{job.attempts} times in a row"
+    end = f"its worker stopped without a word {times}, the last one was {job.worker}"
+    left = {"worker": None, "lease_until": None, "finished": now()}
+    become(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)
 
 
 def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
