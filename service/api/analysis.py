@@ -1,4 +1,4 @@
-"""Single designs: all their numbers, their curves over the cycle, and what-if."""
+"""Single designs: their numbers, curves, requirements and trade-offs; other lengths, and designs of no front."""
 
 from __future__ import annotations
 
@@ -7,29 +7,36 @@ import time
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
+from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ..designs.columns import find_column
 from ..designs.cycle_table import LEAST, MOST, cycle_table
+from ..designs.holding import held
+from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
+from ..designs.trade_offs import trade_offs_of
+from ..designs.variation import variation_of, with_lengths
 from ..runs.result import Row, finite
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
-from .fronts import ColumnModel, OfDesign
+from .fronts import Cells, ColumnModel, OfDesign, column_model
 from .job_requests import given_problem
-from .models import Whole
+from .models import UnitsAsked, Whole
 from .problems import problem_responses
 from .settings import SettingsDep
-from .stored_fronts import DesignNumber, FrontDep
+from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length
 from .throttle import READING, SIMULATING
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
 _LONGEST = 30.0  # s, for the topics of one design
+_MOST_NUMBERS = 20
 
 Show = Annotated[
     list[Annotated[str, Field(max_length=500)]],
@@ -88,6 +95,80 @@ class WhatIf(BaseModel, extra="forbid"):
     show: list[str] = Field([], max_length=20, examples=[["balance"]])
 
 
+class RequirementModel(BaseModel):
+    """A quantity that must lie between two values, in its unit; null leaves a side open.
+
+    column: its key in the designs. slack: the key of the distance to the nearer bound, less than 0 where it is broken.
+    """
+
+    quantity: str = Field(examples=["transmission_angle"])
+    column: str = Field(examples=["least_transmission_angle_deg"])
+    title: str = Field(examples=["least transmission angle"])
+    unit: str = Field(examples=["deg"])
+    lower: float | None = Field(examples=[40.0])
+    upper: float | None = Field(examples=[None])
+    slack: str = Field(examples=["slack_least_transmission_angle_deg"])
+
+
+class RequirementsModel(OfDesign):
+    """The requirements of a job on a design, with the choices that the design made.
+
+    ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
+    names: of quantities, as in job files, by column. tolerances: whether the machine has any.
+    """
+
+    ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
+    requirements: list[RequirementModel]
+    slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
+    speed_rpm: float = Field(examples=[300.0])
+    tolerances: bool
+    names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
+
+
+class TradeOffsModel(OfDesign):
+    """Trade-offs of a design: the cost of one objective in the others, in words.
+
+    note: why there is nothing, or empty.
+    """
+
+    trade_offs: list[str] = Field(examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]])
+    note: str = Field(examples=[""])
+
+
+class OtherLengths(BaseModel, extra="forbid", strict=True):
+    """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none.
+
+    hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
+    to take the lengths as they are.
+    """
+
+    crank_mm: Length = Field(examples=[40.0])
+    rod_mm: Length = Field(examples=[64.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
+    angles: int = Field(180, ge=0, le=MOST)
+    hold: Literal["crank", "rod", "offset"] | None = None
+
+
+class WhatIfModel(OfDesign):
+    """A design with other lengths, beside its front.
+
+    design: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: columns
+    of lengths that leave their range. dominated_by: numbers of designs of the front that are as good in every objective
+    and better in one; dominates: of those that it beats so; the greatest difference first, at most 20. cycle: null if
+    no curves were asked for.
+    """
+
+    columns: list[ColumnModel]
+    design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
+    broken: list[str] = Field(examples=[["stroke_mm"]])
+    outside: list[str] = Field(examples=[[]])
+    dominated_by: list[int] = Field(examples=[[12, 4]])
+    dominated_by_count: int = Field(examples=[2])
+    dominates: list[int] = Field(examples=[[]])
+    dominates_count: int = Field(examples=[0])
+    cycle: CycleModel | None
+
+
 @router.get("/jobs/{number}/designs/{design}/analysis")
 def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
@@ -124,6 +205,63 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     record, notes = _with_topics(row, mechanism, linkage, topics, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
+
+
+@router.get("/jobs/{number}/designs/{design}/requirements")
+def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsModel:
+    """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
+    stored = found.design(design)
+    asked = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
+    return RequirementsModel(
+        job=found.job.id,
+        number=design,
+        ranges=ranges_of(stored.part),
+        requirements=asked,
+        slow_stroke=stored.part.slow_stroke,
+        speed_rpm=speed_rpm(stored.mechanism),
+        names=names_of(stored.part),
+        tolerances=stored.mechanism.tolerances.given,
+    )
+
+
+@router.get("/jobs/{number}/designs/{design}/trade-offs")
+def show_trade_offs(found: FrontDep, design: DesignNumber, units: UnitsAsked = "metric") -> TradeOffsModel:
+    """Give what one objective costs in the others at a design, to first order, its active constraints held."""
+    stored = found.design(design)
+    try:
+        with SIMULATING.turn():
+            sentences, note = trade_offs_of(found.front, design - 1, stored, units), ""
+    except InputError as error:
+        sentences, note = [], str(error)
+    return TradeOffsModel(job=found.job.id, number=design, trade_offs=sentences, note=note)
+
+
+@router.post("/jobs/{number}/designs/{design}/what-if")
+def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -> WhatIfModel:
+    """Analyse a design with other lengths, its choices and varying numbers kept; what if?"""
+    if 0 < asked.angles < LEAST:
+        raise InputError(
+            f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
+        )
+    lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
+    stored = found.design(design)
+    stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
+    changed = variation_of(stored, found.result, found.minimised)
+    cycle = cycle_model(stored.mechanism, stored.linkage, asked.angles) if asked.angles else None
+    keys = list(changed.row)
+    return WhatIfModel(
+        job=found.job.id,
+        number=design,
+        columns=[column_model(find_column(key, keys)) for key in keys],
+        design=finite(changed.row),
+        broken=changed.broken,
+        outside=changed.outside,
+        dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
+        dominated_by_count=len(changed.dominated_by),
+        dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],
+        dominates_count=len(changed.dominates),
+        cycle=cycle,
+    )
 
 
 def cycle_model(mechanism: Mechanism, linkage: Linkage, angles: int) -> CycleModel:

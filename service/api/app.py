@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from fastapi import FastAPI
 from starlette.middleware import Middleware
@@ -23,12 +24,11 @@ from . import (
     preview,
     quantities,
     schema,
-    what_if,
 )
 from .events import Feed
 from .health import Metrics, Timed
-from .openapi import describe
-from .problems import answer_problems, problem_responses
+from .job_requests import EXAMPLE, JSON, TOML, Submission
+from .problems import Problem, answer_problems, problem_responses
 from .security import Guard
 from .settings import DEFAULT, Settings
 from .stored_fronts import StoredFronts
@@ -43,7 +43,6 @@ _PARTS = (
     events,
     fronts,
     analysis,
-    what_if,
     design_files,
     figures,
     exports,
@@ -52,6 +51,24 @@ _PARTS = (
     health,
 )
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
+_SCHEMAS = "#/components/schemas/"
+_EXAMPLE_TOML = """\
+name = "Feeder"
+[mechanism]
+speed = "60 rpm"
+slider = { mass = "2 kg" }
+[variables]
+crank = ["20 mm", "200 mm"]
+rod = ["60 mm", "600 mm"]
+offset = ["0 mm", "100 mm"]
+[constraints]
+stroke = { equals = "280 mm" }
+[objectives]
+time_ratio = "maximise"
+transmission_angle = "maximise"
+"""
+_NUMBER = "/api/v1/jobs/{number}"
+_FIRST = {"design": 1}
 
 
 def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
@@ -81,7 +98,14 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     for part in _PARTS:
         app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
-    describe(app)
+    found = app.openapi
+
+    def described() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _completed(found(), secured=settings.token is not None)
+        return app.openapi_schema
+
+    app.openapi = described  # type: ignore[method-assign]
     return app
 
 
@@ -90,3 +114,49 @@ def _version() -> str:
         return version("slidercrank")
     except PackageNotFoundError:
         return "0"
+
+
+def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
+    """Return the description of the API (OpenAPI 3.1) with what FastAPI cannot find out."""
+    if "parquet" not in exports.formats():
+        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it says what to install
+    parts = schema.setdefault("components", {})
+    shapes = parts.setdefault("schemas", {})
+    shapes["Problem"] = Problem.model_json_schema()
+    submission = Submission.model_json_schema(ref_template=f"{_SCHEMAS}{{model}}")
+    shapes |= submission.pop("$defs", {})
+    shapes["Submission"] = submission
+    content = {
+        JSON: {
+            "schema": {"$ref": f"{_SCHEMAS}Submission"},
+            "examples": {"feeder": {"summary": "A feeder", "value": {"job": EXAMPLE, "priority": 1}}},
+        },
+        TOML: {
+            "schema": {"type": "string", "description": "a job file"},
+            "examples": {"feeder": {"summary": "A feeder", "value": _EXAMPLE_TOML}},
+        },
+    }
+    for path in ("/api/v1/jobs", "/api/v1/check"):
+        schema["paths"][path]["post"]["requestBody"] = {"required": True, "content": content}
+    for path in ("/api/v1/jobs", "/api/v1/jobs/{number}/clone"):
+        created = schema["paths"][path]["post"]["responses"]["201"]
+        created["links"] = _links(schema["paths"])
+        created["headers"] = {"Location": {"schema": {"type": "string"}, "description": "the address of the job"}}
+    if secured:
+        parts["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
+        schema["security"] = [{"token": []}]
+    return schema
+
+
+def _links(paths: dict[str, Any]) -> dict[str, Any]:
+    """Return the OpenAPI links from a submitted job to the requests that may follow."""
+    links = {}
+    for path, methods in paths.items():
+        rest = path.removeprefix(_NUMBER)
+        if rest == path or "{name}" in rest:
+            continue
+        parameters = {"number": "$response.body#/id"} | {key: _FIRST[key] for key in _FIRST if f"{{{key}}}" in rest}
+        for operation in methods.values():
+            name = operation["operationId"]
+            links[name] = {"operationId": name, "parameters": parameters}
+    return links

@@ -1,4 +1,4 @@
-"""The published cases as tables for people."""
+"""The published cases with the values of the model, and as tables for people."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ..text.tables import print_table
-from .published import Case, Row
+from . import case_1, case_2, case_3, case_4, case_5
+from .published import CASES, Case, Row, read_case
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+_OF = dict(zip(CASES, (case_1, case_2, case_3, case_4, case_5), strict=True))
+
+
+def collect(numbers: Sequence[int] = CASES) -> list[Case]:
+    """Return the cases of these numbers."""
+    return [read_case(number, _OF[number].numbers()) for number in numbers]
 
 
 def show_case(screen: Console, case: Case, *, full: bool) -> None:

@@ -30,9 +30,8 @@ def cases(
     """
     from dataclasses import asdict
 
-    from ..cases.collect import collect
     from ..cases.published import CASES
-    from ..cases.table import counted, show_case
+    from ..cases.table import collect, counted, show_case
 
     chosen = CASES if case is None else (case,)
     found = collect(chosen)

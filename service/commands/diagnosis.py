@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ...model.errors import SlidercrankError
-from ..resources.sizes import size_text
+from ..resources.memory import size_text
 
 if TYPE_CHECKING:
     from ..store.database import Database

@@ -13,7 +13,7 @@ import typer
 from ...model.errors import StoreError
 from ...optimise.front.progress import standing
 from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
-from ..resources.sizes import size_of
+from ..resources.memory import size_of
 from ..text.options import Json
 from ..text.screen import console, give, progress_bar, say
 from ..text.streams import reader_left

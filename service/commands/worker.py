@@ -11,7 +11,7 @@ import typer
 
 from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
-from ..resources.sizes import size_of
+from ..resources.memory import size_of
 from ..workers.engines import EngineOptions
 from .ending import Interruption
 

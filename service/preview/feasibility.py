@@ -7,9 +7,11 @@ samples lie where the search looks. Extremes are looked for around the best samp
 from __future__ import annotations
 
 import math
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +24,9 @@ from ...optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
 from .partial_job import is_closed
-from .time_limit import within
 
 Array = NDArray[np.float64]
-
+T = TypeVar("T")
 Ends = tuple[float, float]
 
 _SAMPLES = 512
@@ -41,6 +42,8 @@ _FLATTEST = math.radians(0.1)
 """Least transmission angle that is looked for: nearer to locking there is nothing to know."""
 _CLOSE = 1e-6
 """Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
+_ONE = threading.Lock()
+"""Of the work aside: kernels that a machine sees for the first time compile for up to a minute, once."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -252,3 +255,26 @@ def _middle(designs: Array) -> tuple[float, float, float]:
     row = int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))
     crank, rod, offset = designs[row].tolist()
     return crank, rod, offset
+
+
+def within(seconds: float, work: Callable[[], T]) -> T | None:
+    """Return the result of the work, or None if it takes longer, or while earlier work still goes on, aside."""
+    done: list[T] = []
+    failed: list[Exception] = []
+
+    def run() -> None:
+        try:
+            done.append(work())
+        except Exception as error:  # noqa: BLE001 - raised again where it is waited for
+            failed.append(error)
+        finally:
+            _ONE.release()
+
+    if not _ONE.acquire(timeout=seconds):
+        return None
+    thread = threading.Thread(target=run, daemon=True, name="preview")
+    thread.start()
+    thread.join(seconds)
+    if failed:
+        raise failed[0]
+    return done[0] if done else None

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from .sizes import size_text
+from .memory import size_text
 
 LEAST = 256_000
 """Bytes below which a disk counts as full: less than a database takes to write where a search stands."""

@@ -1,11 +1,17 @@
-"""Memory of a worker: how much of it the job under way takes, and how much earlier jobs have left."""
+"""Memory: amounts as people write them, and how much of it jobs of a worker take and have left."""
 
 from __future__ import annotations
 
 import contextlib
+import re
+
+from ...model.errors import InputError
 
 TOLERATED = 0.25
 """Share of a job's limit that earlier jobs may have left; beyond it the job goes to a fresh process, which has none."""
+_UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
+_UNITS |= {"KIB": 2**10, "MIB": 2**20, "GIB": 2**30, "TIB": 2**40}
+_FORM = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*", re.ASCII)
 
 
 class Memory:
@@ -45,3 +51,24 @@ def memory_taken() -> int:
         with contextlib.suppress(psutil.Error):  # it has just ended
             taken += int(child.memory_info().rss)
     return taken
+
+
+def size_of(text: str, option: str) -> int:
+    """Return an amount in bytes. Raises `InputError` that names the option for anything else."""
+    match = _FORM.fullmatch(text)
+    factor = _UNITS.get(match[2].upper()) if match else None
+    size = int(float(match[1]) * factor) if match and factor else 0
+    if not 0 < size < 2**63:
+        raise InputError(
+            f'{option} must be an amount of memory with its unit; got {text[:40]!r}; write it like "500 MB" or "2 GB"'
+        )
+    return size
+
+
+def size_text(size: float) -> str:
+    """Return an amount with three significant digits and its unit."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if size < 999.5:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"

@@ -17,37 +17,33 @@ from ...model.extras import required
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
 
-Cores = Annotated[
-    int | None,
-    typer.Option(
-        min=1,
-        max=1024,
-        metavar="N",
-        help="Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
-    ),
-]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(metavar="ADDRESS", help="Evaluate what is heavy on a Dask cluster, such as tcp://host:8786."),
-]
-TlsAuthority = Annotated[
-    Path | None, typer.Option("--tls-ca", metavar="FILE", help="Certificate of the authority, for tls://.")
-]
-TlsCertificate = Annotated[
-    Path | None, typer.Option("--tls-cert", metavar="FILE", help="Certificate of this side, for tls://.")
-]
-TlsKey = Annotated[Path | None, typer.Option("--tls-key", metavar="FILE", help="Key of that certificate, for tls://.")]
-
 
 @dataclass(frozen=True)
 class EngineOptions:
     """Engine for heavy evaluation. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
 
-    cores: Cores = None
-    scheduler: Scheduler = None
-    tls_ca: TlsAuthority = None
-    tls_cert: TlsCertificate = None
-    tls_key: TlsKey = None
+    cores: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=1024,
+            metavar="N",
+            help="Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
+        ),
+    ] = None
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Evaluate what is heavy on a Dask cluster, such as tcp://host:8786."),
+    ] = None
+    tls_ca: Annotated[
+        Path | None, typer.Option("--tls-ca", metavar="FILE", help="Certificate of the authority, for tls://.")
+    ] = None
+    tls_cert: Annotated[
+        Path | None, typer.Option("--tls-cert", metavar="FILE", help="Certificate of this side, for tls://.")
+    ] = None
+    tls_key: Annotated[
+        Path | None, typer.Option("--tls-key", metavar="FILE", help="Key of that certificate, for tls://.")
+    ] = None
 
     def checked(self) -> EngineOptions:
         """Return the options. Raises `InputError` for those that do not go together."""

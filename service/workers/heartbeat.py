@@ -1,4 +1,4 @@
-"""Heartbeat of a claimed job: a thread that keeps the lease and notices what the search cannot."""
+"""Heartbeat of a claimed job: a thread that keeps the lease and notices what the search cannot; and its budget."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 
 from ...model.errors import LeaseLost, StoreError
-from ..resources.memory import Memory
-from ..resources.sizes import size_text
-from ..store import NOT_DONE, Claim
+from ..resources.memory import Memory, size_text
+from ..runs.result import Result
+from ..store import NO_LIMITS, NOT_DONE, Claim, Limits
 
 _log = logging.getLogger(__name__)
 PULSE = 0.25
@@ -28,15 +28,48 @@ _HEARS = 60.0  # s that a search has to end once it is told to: a kernel that is
 Stop = Callable[[], bool]
 
 
+@dataclass
+class Budget:
+    """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either.
+
+    limits: the one of memory is not looked at here.
+    """
+
+    limits: Limits
+    _began: float = field(default_factory=time.monotonic, init=False)
+    _evaluations: int = field(default=0, init=False)
+
+    def count(self, evaluations: int) -> None:
+        """Take note of how many designs have been evaluated so far."""
+        self._evaluations = evaluations
+
+    def spent(self) -> bool:
+        """Whether the search is to end with what it has."""
+        return bool(self.reason())
+
+    def explained(self, result: Result) -> Result:
+        """Return a result with the limit that ended its search in its message, if one did."""
+        reason = self.reason() if result.status == "cancelled" else ""
+        return replace(result, message=f"{result.message}; {reason}") if reason else result
+
+    def reason(self) -> str:
+        """Return which limit is reached, in words; nothing if none is."""
+        seconds, evaluations = self.limits.seconds, self.limits.evaluations
+        if seconds is not None and time.monotonic() - self._began >= seconds:
+            return f"its search took longer than its limit of {seconds:g} s"
+        if evaluations is not None and self._evaluations >= evaluations:
+            return f"its search reached its limit of {evaluations} evaluations"
+        return ""
+
+
 @dataclass(eq=False)
 class Heartbeat:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
-    memory: what the job may take, in bytes, as `taken` measures it. Beyond it the job is set aside as failed and
-    the process ends with the exit code `EXHAUSTED`: nothing else gives the memory back for sure.
-    over: says why the search is to end with what it has, nothing as long as it is not. Where it does not within a
-    minute, also after a cancellation, the job ends without it and the process with the exit code `DEAF`; only where
-    there is a grace, too.
+    budget: of the job. Beyond its memory, as `taken` measures it, the job is set aside as failed and the process ends
+    with the exit code `EXHAUSTED`: nothing else gives the memory back for sure. Where the search does not end within a
+    minute of being over the rest, or of a cancellation, the job ends without it and the process with the exit code
+    `DEAF`; only where there is a grace, too.
     grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
     ends with 0. For as long as it takes, if None.
     patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
@@ -47,9 +80,8 @@ class Heartbeat:
 
     claim: Claim
     _: KW_ONLY
-    memory: int | None = None
+    budget: Budget = field(default_factory=lambda: Budget(NO_LIMITS))
     taken: Memory = field(default_factory=Memory)
-    over: Callable[[], str] = lambda: ""
     stop: Stop = lambda: False
     grace: float | None = None
     patience: float | None = None
@@ -102,11 +134,11 @@ class Heartbeat:
             self.lost = "it was cancelled before its search began"
 
     def _look_at_memory(self) -> None:
-        taken = self.taken.of_the_job() if self.memory is not None else 0
-        if self.memory is None or taken <= self.memory or self._end.is_set():
+        most = self.budget.limits.memory
+        if most is None or (taken := self.taken.of_the_job()) <= most or self._end.is_set():
             return
         reason = (
-            f"it may take {size_text(self.memory)} of memory; its worker took {size_text(taken)}; "
+            f"it may take {size_text(most)} of memory; its worker took {size_text(taken)}; "
             "give it a higher limit, or ask for less"
         )
         _log.error("set aside: %s", reason)
@@ -115,7 +147,7 @@ class Heartbeat:
         leave(EXHAUSTED)
 
     def _look_at_deaf(self) -> None:
-        reason = NOT_DONE if self.claim.cancel_asked else self.over()
+        reason = NOT_DONE if self.claim.cancel_asked else self.budget.reason()
         if self.grace is None or not reason:
             return
         if self._waited("told to end") < _HEARS or self._end.is_set():

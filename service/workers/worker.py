@@ -21,8 +21,7 @@ from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
-from .heartbeat import PULSE, Heartbeat, Stop
-from .job_limits import Budget
+from .heartbeat import PULSE, Budget, Heartbeat, Stop
 from .logs import about
 
 if TYPE_CHECKING:
@@ -154,19 +153,11 @@ def solve_claimed(
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
     """
-    limits = claim.job.limits.within(terms.limits)
-    budget = Budget(limits)
+    budget = Budget(claim.job.limits.within(terms.limits))
     with about(job=claim.job.id):
         _log.info("claimed")
-        heartbeat = Heartbeat(
-            claim,
-            memory=limits.memory,
-            taken=memory or Memory(),
-            over=budget.reason,
-            stop=stop,
-            grace=terms.grace,
-            patience=_PATIENCE,
-        )
+        taken = memory or Memory()
+        heartbeat = Heartbeat(claim, budget=budget, taken=taken, stop=stop, grace=terms.grace, patience=_PATIENCE)
         try:
             with heartbeat:
                 _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))

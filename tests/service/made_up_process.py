@@ -24,8 +24,7 @@ from slidercrank.service.runs.result import Result, Wanted
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.workers import heartbeat as pulses
 from slidercrank.service.workers import worker
-from slidercrank.service.workers.heartbeat import Heartbeat, Stop
-from slidercrank.service.workers.job_limits import Budget
+from slidercrank.service.workers.heartbeat import Budget, Heartbeat, Stop
 from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20

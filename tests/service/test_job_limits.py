@@ -7,9 +7,9 @@ import time
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.resources.sizes import size_of, size_text
+from slidercrank.service.resources.memory import size_of, size_text
 from slidercrank.service.store import NO_LIMITS, Limits
-from slidercrank.service.workers.job_limits import Budget
+from slidercrank.service.workers.heartbeat import Budget
 from tests.service.store.contents import result
 
 

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from slidercrank.service.preview.time_limit import within
+from slidercrank.service.preview.feasibility import within
 
 
 def test_what_is_done_in_time_is_returned() -> None:
