@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Response
@@ -86,33 +86,28 @@ def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked
 
 def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, units: System) -> Response:
     """Return a figure; the sheet of a design has the name of its file. Drawn ones are kept."""
-    from ..figures.front import FrontFigure
+    from ..figures.style import image
 
     single = _DESIGN.fullmatch(name)
-    if single is None:
-        if lengths is not None:
-            rule = "other lengths are those of a single design"
-            raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-        drawn, headers = _made(found, name, kind, units, lambda: _of_front(found, name, units)), {}
-    else:
-        shown = shown_design(found, int(single[1]), lengths)
-        sheet = FrontFigure((shown.key,), "", lambda: _sheet(shown, units))
-        drawn = _made(found, shown.key, kind, units, lambda: sheet)
+    if single is None and lengths is not None:
+        rule = "other lengths are those of a single design"
+        raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
+    shown = None if single is None else shown_design(found, int(single[1]), lengths)
+    key, headers = shown.key if shown else name, dict[str, str]()
+
+    def draw() -> tuple[Sequence[str], bytes]:
+        if shown:
+            return (key,), image(_sheet(shown, units), kind)
+        figure = _of_front(found, name, units)
+        return figure.names, image(figure.draw(), kind)
+
+    drawn = found.made(key, f"{kind} {units}", draw, DRAWING)
+    if shown:
         file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
         headers = {"Content-Disposition": f'inline; filename="{file}"'}
     if kind == "svg":  # Opened by itself it is a document: it runs nothing and fetches nothing.
         headers["Content-Security-Policy"] = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
-
-
-def _made(found: StoredFront, key: str, kind: Kind, units: System, figure: Callable[[], FrontFigure]) -> bytes:
-    from ..figures.style import image
-
-    def draw() -> tuple[Sequence[str], bytes]:
-        named = figure()
-        return named.names, image(named.draw(), kind)
-
-    return found.made(key, f"{kind} {units}", draw, DRAWING)
 
 
 def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:

@@ -63,7 +63,12 @@ class Database:
         self.name = _shown(url)
         self._secrets = _secrets(url)
         self.sqlite = url.get_backend_name() == "sqlite"
-        self._file = _File(url.database) if self.sqlite and url.database else None
+        self._file = Path(url.database) if self.sqlite and url.database else None
+        if self._file is not None:
+            with contextlib.suppress(OSError):  # where it cannot be made, opening it says why
+                # The files beside it, of the write-ahead log, get its permissions.
+                os.close(os.open(self._file, os.O_CREAT | os.O_RDWR, 0o600))
+            self._known, self._open = _identity(self._file), may_use(self._file)
         self._folder = Path(url.database or ".").parent if self.sqlite else None
         self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
@@ -126,15 +131,17 @@ class Database:
 
     def _require_file(self) -> None:
         """Raise `StoreError` if the file was deleted or replaced: what is written into it now would be lost."""
-        if self._file is not None and not self._file.there():
+        if self._file is not None and _identity(self._file) != self._known:
             raise StoreError(
                 f"the file of a store stays where it is while it is used; {self.name} was deleted, moved or replaced; "
                 "put it back, or stop what uses it and start again"
             )
-        if self._file is not None and self._file.shut():  # what is open goes on, nothing else could begin
+        if (
+            self._file is not None and self._open and not may_use(self._file)
+        ):  # what is open goes on, nothing else could begin
             raise StoreError(
                 f"the file of a store stays readable and writable while it is used; {self.name} is not any more; "
-                f"give these rights back: {remedy_of_rights(self._file.path)}"
+                f"give these rights back: {remedy_of_rights(self._file)}"
             )
 
     @contextlib.contextmanager
@@ -176,30 +183,13 @@ class Database:
             )
 
 
-class _File:
-    """The file of a store, readable by its owner alone if new, and recognised later by its inode."""
-
-    def __init__(self, path: str) -> None:
-        """Make it where it is not there; where that cannot be, opening it says why."""
-        self.path = Path(path)
-        with contextlib.suppress(OSError):
-            # The files beside it, of the write-ahead log, get its permissions.
-            os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
-        self._known = self._number()
-        self._open = may_use(self.path)
-
-    def shut(self) -> bool:
-        return self._open and not may_use(self.path)
-
-    def there(self) -> bool:
-        return self._number() == self._known
-
-    def _number(self) -> tuple[int, int] | None:
-        try:
-            found = self.path.stat()
-        except OSError:
-            return None
-        return found.st_dev, found.st_ino
+def _identity(file: Path) -> tuple[int, int] | None:
+    """Return what a file keeps when it is written, and another one in its place has not; None if it is not there."""
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def may_use(path: Path) -> bool:

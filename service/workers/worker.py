@@ -9,7 +9,7 @@ import secrets
 import socket
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -26,11 +26,9 @@ from .logs import about
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
-    from ...optimise.front.front import ParetoFront
     from ...optimise.front.progress import Progress
     from ...optimise.front.stationarity import Array
     from ...optimise.problem.problem import Problem
-    from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two tries while the database cannot be reached
@@ -221,16 +219,14 @@ def _solve(
     def over() -> bool:
         return _ends(claim, heartbeat, stop) or budget.spent()
 
-    def search(past: Sequence[Record]) -> ParetoFront:
-        heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
-        return heard(cancelled=over, resume=past, keep=claim.keep, engine=engine)
-
+    heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
+    search = partial(heard, cancelled=over, keep=claim.keep, engine=engine)
     with ending_own(problem, engine):
         try:
-            front = search(claim.records())
+            front = search(resume=claim.records())
         except ForeignRecords as error:  # of an earlier release, or another kind of machine
             claim.start_over(f"begins anew: {error}")
-            front = search([])
+            front = search(resume=[])
         result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
         result = budget.explained(result)
