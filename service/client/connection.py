@@ -41,9 +41,8 @@ class Connection:
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise InputError(f"a service is at http://host:port or https://host; got {url[:200]!r}; give its address")
         token = token or next(iter(parse_qs(parts.query).get("token", [])), None)
-        self.url = (
-            f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"  # without the token: it is shown in errors
-        )
+        # Without the token: it is shown in errors.
+        self.url = f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"
         self.patience = patience
         self._http = httpx.Client(
             base_url=f"{self.url}{PREFIX}/",

@@ -34,7 +34,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     if ranges is None:
         return None
     machine = _turning(tables.get("mechanism")) if whole is None else whole.part(0).mechanism.nominal
-    with_machine = whole is not None and _points(machine) <= _MOST_POINTS
+    with_machine = whole is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
     problem = Problem(
         name="preview",
         mechanism=machine,
@@ -83,10 +83,6 @@ def _turning(part: object) -> Mechanism:
     except InputError:
         speed = 1.0
     return Mechanism(speed=speed, branch="crossed" if given.get("branch") == "crossed" else "open")
-
-
-def _points(machine: Mechanism) -> int:
-    return sum(len(load.knots()[0]) for load in machine.loads)
 
 
 def _ranges(part: object) -> dict[str, Range] | None:

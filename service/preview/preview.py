@@ -48,8 +48,6 @@ class Look:
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
     """Return the findings about a job. read: gives its problem, or raises what is wrong with it."""
-    wrong: list[Wrong] = []
-    whole = None
     try:
         require_few(tables)
     except InputError as error:
@@ -58,31 +56,26 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
         stated = geometry(tables, None)
     except InputError:
         stated = None
-    beyond = None if stated is None else _beyond(stated)
+    whole, wrong, rest = None, list[Wrong](), tables
+    beyond = None if stated is None else beyond_both(stated)
+    if beyond is not None:  # it is said once; the rest of the job is checked without it
+        wrong.append(Wrong("constraints.time_ratio", beyond))
+        rest = {
+            **tables,
+            "constraints": {name: at for name, at in tables["constraints"].items() if name != "time_ratio"},
+        }
     try:
-        # It is said once; the rest of the job is checked without it.
-        whole = read(tables if beyond is None else _without_time_ratio(tables))
+        whole = read(rest)
         if beyond is None and stated is not None:
             stated = geometry(tables, whole)
     except InputError as error:
-        wrong = _places(error)
+        wrong += _places(error)
     if beyond is not None:
-        wrong, whole = [beyond, *wrong], None
+        whole = None
     if stated is None:
         return Look(wrong, whole, None, None, [], [])
     found = possible(stated)
     return Look(wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found))
-
-
-def _beyond(stated: Problem) -> Wrong | None:
-    """Return the mistake if no linkage at all has both the time ratio and the transmission angle asked for."""
-    sentence = beyond_both(stated)
-    return None if sentence is None else Wrong("constraints.time_ratio", sentence)
-
-
-def _without_time_ratio(tables: Mapping[str, Any]) -> dict[str, Any]:
-    constraints = {name: item for name, item in tables["constraints"].items() if name != "time_ratio"}
-    return {**tables, "constraints": constraints}
 
 
 def _places(error: InputError) -> list[Wrong]:
@@ -104,7 +97,7 @@ def said(problem: Problem, found: Possible) -> list[str]:
     for name in ("stroke", "time_ratio", "transmission_angle"):
         ends: Ends | None = getattr(found, name)
         if name in asked and ends is not None:
-            sentences += _unreached(problem, asked[name], ends)
+            sentences += _beyond(problem, asked[name], ends)
     if found.turning == 0.0:
         sentences.append("no crank of these ranges turns fully: the rod must be longer than crank and offset together")
     elif found.sampled and found.feasible == 0.0 and not sentences:
@@ -118,7 +111,7 @@ def said(problem: Problem, found: Possible) -> list[str]:
     return sentences
 
 
-def _unreached(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
+def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
     """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
     found = []
     for relation, _, bound in sides(constraint):

@@ -66,8 +66,7 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
     marked = [*result.extremes.values(), *([] if result.knee is None else [result.knee])]
     if any(not 0 <= row < len(rows) for row in marked):
         raise ValueError("a marked design is not among the designs")
-    missing = {item.column for item in wanted} - set(rows[0] if rows else {}) if rows else set()
-    if missing:
+    if rows and (missing := {item.column for item in wanted} - set(rows[0])):
         raise ValueError(f"the designs have no column {missing.pop()}")
     return result
 
