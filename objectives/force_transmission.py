@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.machine.dissipation import linkage_loaded
+from ..model.machine.dissipation import linkage_loaded, pushed
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
@@ -56,8 +56,7 @@ def _ratios(along: Peaks, whole: Peaks) -> tuple[Array, Array]:
 def _pulled(machine: Mechanism) -> bool:
     m = machine.fullest
     inert = m.slider_mass > 0.0 and (m.speed != 0.0 or m.acceleration != 0.0 or m.gravity[0] != 0.0)
-    worked = any(m.speed != 0.0 or not load.speed_power for load in m.loads)
-    return inert or worked or (m.friction.acts and linkage_loaded(m))
+    return inert or pushed(m) or (m.friction.acts and linkage_loaded(m))
 
 
 FORCE_TRANSMISSION = ForceTransmission(

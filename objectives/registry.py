@@ -35,7 +35,7 @@ def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:
     """
     known = QUANTITIES | {of.name: of for of in own}
     if name not in known:
-        near = difflib.get_close_matches(name, known, n=1)
+        near = difflib.get_close_matches(str(name), known, n=1)
         hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(known)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
     return known[name]

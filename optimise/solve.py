@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 
+from ..model.errors import InputError
 from ..objectives.own.interruption import interrupted_by
 from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
@@ -54,41 +56,33 @@ def solve(
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
     """
-    if progress is True:
-        with progress_bar() as tell:
-            return solve(
-                problem,
-                progress=tell,
-                stages=stages or tell,
-                fronts=fronts,
-                cancelled=cancelled,
-                resume=resume,
-                keep=keep,
-                engine=engine,
-            )
-    told = progress or None
+    if not isinstance(problem, Problem):
+        raise InputError(f"solve takes a problem; got {type(problem).__name__}; make one by problem or load_job")
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
-    run = Run(problem, 1, told, checkpoints, stages=stages)
-    if fronts is not None:
+    with contextlib.ExitStack() as shown:
+        told = shown.enter_context(progress_bar()) if progress is True else progress or None
+        between = stages or (told if progress is True else None)
+        run = Run(problem, 1, told, checkpoints, stages=between)
+        if fronts is not None:
 
-        def with_front(entry: Progress) -> None:
-            fronts(run.latest)
-            if told is not None:
-                told(entry)
+            def with_front(entry: Progress) -> None:
+                fronts(run.latest)
+                if told is not None:
+                    told(entry)
 
-        run.progress = with_front
-    if resume:
-        run.stand(REPEATING, 0, 1, now=True)
-    try:
-        with interrupted_by(checkpoints.interrupt) as interruption:
-            return _searched(problem, evaluators, run)
-    except Cancelled:
-        return so_far(problem, evaluators, run, silent=interruption.killed)
+            run.progress = with_front
+        if resume:
+            run.stand(REPEATING, 0, 1, now=True)
+        try:
+            with interrupted_by(checkpoints.interrupt) as interruption:
+                return _searched(problem, evaluators, run)
+        except Cancelled:
+            return so_far(problem, evaluators, run, silent=interruption.killed)
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:

@@ -31,8 +31,17 @@ STEP = 1e-30
 # Without `nnan` and `ninf`: a NaN must stay a NaN. Contraction and reassociation are what vectorisation needs.
 _OPTIONS: Any = {"fastmath": {"reassoc", "contract", "arcp", "nsz"}, "error_model": "numpy", "forceinline": True}
 
+_CALLED: Any = _OPTIONS | {"forceinline": False, "no_cfunc_wrapper": True}
+
 analytic: Callable[[Function], Function] = register_jitable(**_OPTIONS)
 """Marks a formula that runs on floats, complex numbers and arrays from Python, and inline in compiled kernels."""
+
+inlined: Callable[[Function], Function] = analytic
+"""Marks a step of a kernel, compiled into it.
+
+Always inlined: a step compiled on its own as well would be optimised differently there, and which of the two a process
+runs would depend on whether the kernel came from the cache.
+"""
 
 
 def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Function]:
@@ -48,18 +57,9 @@ def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Functio
     return marked
 
 
-def inlined(function: Function) -> Function:
-    """Compile a step of a kernel into it.
-
-    Always inlined: a step compiled on its own as well would be optimised differently there, and which of the two a
-    process runs would depend on whether the kernel came from the cache.
-    """
-    return cast(Function, njit(nogil=True, **_OPTIONS)(function))
-
-
 def kernel(function: Function) -> Function:
     """Compile a function that Python calls; the machine code is kept on disk, where there is a place for it."""
-    compiled = njit(nogil=True, **(_OPTIONS | {"forceinline": False}))(function)
+    compiled = njit(nogil=True, **_CALLED)(function)
     folder = kernel_folder()
     if folder is not None:
         compiled._cache = KernelCache(function, folder)

@@ -156,7 +156,8 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
 
     r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
     """
-    s, l, e = np.broadcast_arrays(*(numbers(value) for value in (stroke, rod, offset)))
+    given = (("stroke", stroke), ("rod", rod), ("offset", offset))
+    s, l, e = np.broadcast_arrays(*(numbers(value, name) for name, value in given))
     with np.errstate(invalid="ignore", divide="ignore"):
         r: Array = geometry.crank_from_stroke(s, l, e)
         real, rod_, off, crank = s.real, l.real, e.real, r.real

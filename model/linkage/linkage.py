@@ -54,10 +54,7 @@ class Linkage:
         """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible."""
         values = []
         for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
-            try:
-                value = numbers(given)
-            except (TypeError, ValueError):
-                raise InputError(f"{name} must be a length in metres; got {given!r}") from None
+            value = numbers(given, name)
             if not np.all(np.isfinite(value)):
                 raise InputError(f"{name} must be finite; got {given!r}")
             values.append(value)

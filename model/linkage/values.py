@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import InputError
+
 Array = NDArray[np.float64]
 
 
@@ -37,10 +39,13 @@ class PointMotion:
     acceleration: Array
 
 
-def numbers(value: ArrayLike) -> Array:
-    """Return real or complex numbers; typed as real, which all but a complex step are."""
+def numbers(value: ArrayLike, what: str = "a crank angle, speed or acceleration") -> Array:
+    """Return real or complex numbers; typed as real, which all but a complex step are. Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
-    found: Array = np.asarray(value, dtype=kind)
+    try:
+        found: Array = np.asarray(value, dtype=kind)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} must be a number or an array of numbers, SI; got {value!r}") from None
     return found
 
 

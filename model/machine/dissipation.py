@@ -33,7 +33,12 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
 def linkage_loaded(machine: Mechanism) -> bool:
     """Return whether forces act on rod or slider: loads, or weight and inertia of what moves."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
-    return (moves(machine) and driven) or any(machine.speed != 0.0 or not load.speed_power for load in machine.loads)
+    return (moves(machine) and driven) or pushed(machine)
+
+
+def pushed(machine: Mechanism) -> bool:
+    """Return whether loads act on the slider: some that need no speed, or any while it moves."""
+    return any(machine.speed != 0.0 or not load.speed_power for load in machine.loads)
 
 
 def pivot_loaded(machine: Mechanism) -> bool:

@@ -15,16 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
-
-
-def _finite(owner: object, *names: str, least: float = -math.inf, above: float = -math.inf) -> None:
-    """Refuse a field that is not finite, below `least`, or not above `above`."""
-    for name in names:
-        value = getattr(owner, name)
-        if not math.isfinite(value) or value < least or value <= above:
-            sign = "positive and " if above == 0.0 else "zero or more and " if least == 0.0 else ""
-            raise InputError(f"{name} of a {type(owner).__name__} must be {sign}finite; got {value:g}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +26,7 @@ class ConstantTorque:
     torque: float
 
     def __post_init__(self) -> None:
-        _finite(self, "torque")
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "torque")
 
     def at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s."""
@@ -59,7 +51,7 @@ class LinearMotor:
     no_load_speed: float
 
     def __post_init__(self) -> None:
-        _finite(self, "stall_torque", "no_load_speed", above=0.0)
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "stall_torque", "no_load_speed", above=0.0)
 
     @classmethod
     def through(cls, *, torque: float, speed: float, no_load_speed: float) -> LinearMotor:
@@ -98,8 +90,7 @@ class TorqueTable:
                 "a torque table needs as many torques as speeds, two at least; "
                 f"got {len(self.speeds)} speeds and {len(self.torques)} torques"
             )
-        if not all(math.isfinite(value) for value in (*self.speeds, *self.torques)):
-            raise InputError("a torque table must be finite throughout")
+        require_all_finite("a torque table", (*self.speeds, *self.torques), "throughout")
         for before, after in pairwise(self.speeds):
             if after <= before:
                 raise InputError(
@@ -146,8 +137,8 @@ class Drive:
     def __post_init__(self) -> None:
         if not isinstance(self.motor, Motor):
             raise InputError(f"motor must be a ConstantTorque, LinearMotor or TorqueTable; got {self.motor!r}")
-        _finite(self, "flywheel", "motor_inertia", least=0.0)
-        _finite(self, "gear_ratio", above=0.0)
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "flywheel", "motor_inertia", least=0.0)
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "gear_ratio", above=0.0)
 
     @property
     def inertia(self) -> float:

@@ -7,9 +7,9 @@ part on the other: the pin's force passes its centre at that distance, the radiu
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from ..checks import require_numbers
 from ..errors import InputError
 
 
@@ -21,10 +21,7 @@ class Pin:
     coefficient: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("radius", "coefficient"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or value < 0.0:
-                raise InputError(f"the {name} of a pin must be zero or more and finite; got {value:g}")
+        require_numbers(self, "the {name} of a pin", "radius", "coefficient", least=0.0)
 
     @property
     def circle(self) -> float:
@@ -51,8 +48,7 @@ class Friction:
     slider_pin: Pin = Pin()
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.guide) or self.guide < 0.0:
-            raise InputError(f"the guide's coefficient of friction must be zero or more and finite; got {self.guide:g}")
+        require_numbers(self, "the {name}'s coefficient of friction", "guide", least=0.0)
 
     @property
     def acts(self) -> bool:

@@ -9,17 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..errors import InputError
-
-
-def _require(rule: str, name: str, value: float | None, *, positive: bool = False) -> None:
-    """Refuse a value that is not finite, is negative, or (if `positive`) is zero."""
-    if value is None:
-        return
-    if not math.isfinite(value) or value < 0.0 or (positive and value == 0.0):
-        raise InputError(
-            f"{rule} must be {'positive' if positive else 'zero or more'} and finite; got {name} = {value:g}"
-        )
+from ..checks import require_numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +26,7 @@ class Bar:
     density: float
 
     def __post_init__(self) -> None:
-        for name in ("width", "depth", "density"):
-            _require(f"the {name} of a bar", name, getattr(self, name), positive=True)
+        require_numbers(self, "the {name} of a bar", "width", "depth", "density", above=0.0)
 
     def mass(self, length: float) -> float:
         """Return the mass, kg, for a centre distance, m."""
@@ -77,12 +66,8 @@ class RigidLink:
     inertia: float | None = None
 
     def __post_init__(self) -> None:
-        _require("the mass of a link", "mass", self.mass)
-        _require("the inertia of a link", "inertia", self.inertia)
-        for name in ("centre", "centre_across"):
-            value = getattr(self, name)
-            if value is not None and not math.isfinite(value):
-                raise InputError(f"the {name} of a link must be finite; got {value:g}")
+        require_numbers(self, "the {name} of a link", "mass", "inertia", least=0.0)
+        require_numbers(self, "the {name} of a link", "centre", "centre_across")
 
 
 Link = Bar | RigidLink
@@ -102,7 +87,5 @@ class Counterweight:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("mass", "radius", "inertia"):
-            _require(f"the {name} of the counterweight", name, getattr(self, name))
-        if not math.isfinite(self.angle):
-            raise InputError(f"the angle of the counterweight must be finite; got {self.angle:g}")
+        require_numbers(self, "the {name} of the counterweight", "mass", "radius", "inertia", least=0.0)
+        require_numbers(self, "the {name} of the counterweight", "angle")

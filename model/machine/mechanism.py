@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
 from .clearance import Clearance
 from .drive import Drive
@@ -26,10 +26,7 @@ class Tolerance:
     fraction: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("absolute", "fraction"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or value < 0.0:
-                raise InputError(f"a tolerance must be zero or more and finite; got {name} = {value:g}")
+        require_numbers(self, "the {name} part of a tolerance", "absolute", "fraction", least=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,10 +63,8 @@ class Clearances:
     guide: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or value < 0.0:
-                raise InputError(f"a clearance must be zero or more and finite; got {name} = {value:g} m")
+        names = ("crank_pivot", "crank_pin", "slider_pin", "guide")
+        require_numbers(self, "the {name} clearance", *names, least=0.0, unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,15 +117,13 @@ class Mechanism:
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("speed", "acceleration"):
-            if not math.isfinite(getattr(self, name)):
-                raise InputError(f"{name} must be finite; got {getattr(self, name)}")
-        if not math.isfinite(self.slider_mass) or self.slider_mass < 0.0:
-            raise InputError(f"the slider mass must be zero or more and finite; got {self.slider_mass:g} kg")
-        if not all(math.isfinite(component) for component in self.gravity):
-            raise InputError(f"gravity must be finite; got {self.gravity}")
-        if self.branch not in ("open", "crossed"):
-            raise InputError(f"branch must be 'open' or 'crossed'; got {self.branch!r}")
+        require_numbers(self, "{name}", "speed", "acceleration")
+        require_numbers(self, "the slider mass", "slider_mass", least=0.0, unit="kg")
+        require_all_finite("gravity", self.gravity)
+        require_word("branch", self.branch, Branch)
+        loads: object = self.loads
+        if not isinstance(loads, Sequence) or not all(isinstance(load, Load) for load in loads):
+            raise InputError(f"loads must be a tuple of loads; got {loads!r}; a job has them in its [[load]] tables")
         if self.varying:
             require_possible(self)
 

@@ -12,6 +12,7 @@ from ...model.cycle.cycle import cycle
 from ...model.errors import InputError
 from ...model.kinematics.position import motion, third_derivative
 from ...model.linkage.linkage import Linkage
+from ...model.linkage.values import numbers
 from ...model.machine.mechanism import Mechanism
 from ..kinds import Face
 from ..quantity import Array
@@ -93,7 +94,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns: the names of `cycle_curves` with the
     unit, such as torque_Nm. Raises `InputError` for too few or too many angles, and for ones that are not finite.
     """
-    theta = even_angles(int(angles)) if isinstance(angles, int | np.integer) else np.asarray(angles, dtype=np.float64)
+    theta = even_angles(int(angles)) if isinstance(angles, int | np.integer) else numbers(angles, "a crank angle")
     if theta.ndim != 1:
         raise InputError(f"crank angles are a list of numbers, rad; got an array of shape {theta.shape}")
     import pandas as pd

@@ -32,7 +32,7 @@ from .enclosure import UNIT, Array, Enclosure, beside, between, chosen
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
 _AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
-_derive = cast(Any, derive).py_func
+_derive = cast(Any, derive)
 
 
 def best_angles(peak: CyclePeak, mechanism: Mechanism, designs: Array) -> Array:

@@ -43,6 +43,8 @@ def load_job(
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
     schema, or contradicts itself.
     """
+    if not isinstance(path, str | PathLike):
+        raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
     data = read_job(path)
     with _named(path):
         return parse_job(data, values, folder=Path(path).parent, allow_user_code=allow_user_code)

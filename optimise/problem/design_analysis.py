@@ -136,7 +136,10 @@ def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] 
     1.05063
     """
     width = 3 + len(mechanism.varying)
-    sizes = np.asarray(design, dtype=np.float64)
+    try:
+        sizes = np.asarray(design, dtype=np.float64)
+    except (TypeError, ValueError):
+        sizes = np.empty(0)
     if sizes.shape != (width,) or not np.isfinite(sizes).all():
         names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
         raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")

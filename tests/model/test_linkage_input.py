@@ -53,7 +53,7 @@ def test_linkage_is_immutable() -> None:
         ((math.nan, 0.3, 0.0), "crank must be finite; got nan"),
         ((0.1, math.inf, 0.0), "rod must be finite; got inf"),
         ((0.1, 0.3, [0.0, math.nan]), "offset must be finite"),
-        (("long", 0.3, 0.0), "crank must be a length in metres; got 'long'"),
+        (("long", 0.3, 0.0), "crank must be a number or an array of numbers, SI; got 'long'"),
         ((0.1, None, 0.0), "rod must be finite; got None"),
         (([0.1, 0.1], [0.3, 0.3, 0.3], 0.0), r"must broadcast to one shape; got \(2,\), \(3,\), \(\)"),
     ],
@@ -112,6 +112,10 @@ def test_rocking_linkage_moves_where_it_can() -> None:
 def test_crank_angles_must_be_finite() -> None:
     with pytest.raises(InputError, match="crank angles must be finite"):
         Linkage(0.1, 0.3).at([0.0, math.nan])
+    with pytest.raises(InputError, match="must be a number or an array of numbers, SI; got 'top'"):
+        Linkage(0.1, 0.3).at("top")
+    with pytest.raises(InputError, match="stroke must be a number or an array of numbers, SI; got '80 mm'"):
+        crank_from_stroke("80 mm", rod=0.3)
 
 
 @pytest.mark.parametrize("direction", [0.0, math.nan])

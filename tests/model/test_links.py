@@ -108,14 +108,14 @@ def test_mass_properties_have_complex_step_derivatives() -> None:
 @pytest.mark.parametrize("name", ["width", "depth", "density"])
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
 def test_bar_needs_positive_sizes(name: str, value: float) -> None:
-    with pytest.raises(InputError, match=f"the {name} of a bar must be positive and finite; got {name} = {value:g}"):
+    with pytest.raises(InputError, match=f"the {name} of a bar must be positive and finite; got {value:g}"):
         dataclasses.replace(STEEL, **{name: value})
 
 
 @pytest.mark.parametrize("name", ["mass", "inertia"])
 @pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
 def test_link_needs_mass_and_inertia_of_zero_or_more(name: str, value: float) -> None:
-    with pytest.raises(InputError, match=f"the {name} of a link must be zero or more and finite; got {name}"):
+    with pytest.raises(InputError, match=f"the {name} of a link must be zero or more and finite; got"):
         RigidLink(**{"mass": 1.0, name: value})
 
 

@@ -20,6 +20,13 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
         ({"slider_mass": -1.0}, "the slider mass must be zero or more and finite; got -1 kg"),
         ({"slider_mass": math.nan}, "the slider mass must be zero or more and finite; got nan kg"),
         ({"gravity": (0.0, math.nan)}, "gravity must be finite"),
+        ({"gravity": ("down", 0.0)}, "gravity must be of numbers, SI; got 'down'; text with a unit belongs"),
+        ({"speed": "300 rpm"}, "speed must be a number, SI; got '300 rpm'; text with a unit belongs"),
+        (
+            {"loads": ("600 N",)},
+            r"loads must be a tuple of loads; got \('600 N',\); a job has them in its \[\[load\]\]",
+        ),
+        ({"loads": 3}, "loads must be a tuple of loads; got 3"),
         ({"branch": "half-open"}, "branch must be 'open' or 'crossed'; got 'half-open'"),
     ],
 )
@@ -31,7 +38,7 @@ def test_wrong_mechanism_is_refused(values: dict[str, Any], message: str) -> Non
 @pytest.mark.parametrize("name", ["absolute", "fraction"])
 @pytest.mark.parametrize("value", [-1e-6, math.nan, math.inf])
 def test_tolerance_is_zero_or_more(name: str, value: float) -> None:
-    with pytest.raises(InputError, match=f"a tolerance must be zero or more and finite; got {name} = "):
+    with pytest.raises(InputError, match=f"the {name} part of a tolerance must be zero or more and finite; got "):
         Tolerance(**{name: value})
 
 

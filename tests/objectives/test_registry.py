@@ -34,5 +34,7 @@ def test_misspelt_quantity_is_answered_with_the_nearest() -> None:
 
 
 def test_unknown_quantity_is_answered_with_all() -> None:
+    with pytest.raises(InputError, match="no quantity is called 3; choose"):
+        quantity(3)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="no quantity is called 'xyz'; choose from time_ratio, peak_torque, "):
         quantity("xyz")

@@ -1,5 +1,7 @@
 """Everything about one design: the numbers of the table of designs, reasons for what is not defined, the cycle."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -115,7 +117,12 @@ def test_columns_of_the_cycle_are_the_names_and_units_of_the_curves(problem: sc.
 def test_crank_angles_may_be_any(problem: sc.Problem) -> None:
     table = problem.analyse(DESIGN).cycle([0.5, -7.0])
     assert table["crank_angle_rad"].tolist() == [0.5, -7.0]
-    for angles, words in ((3, "4 to 100000"), ([[0.1]], "a list of numbers"), ([np.nan], "finite")):
+    for angles, words in (
+        (3, "4 to 100000"),
+        ([[0.1]], "a list of numbers"),
+        ([np.nan], "finite"),
+        ("all", "got 'all'"),
+    ):
         with pytest.raises(InputError, match=words):
             problem.analyse(DESIGN).cycle(angles)
 
@@ -123,7 +130,8 @@ def test_crank_angles_may_be_any(problem: sc.Problem) -> None:
 def test_designs_that_are_none_are_refused(problem: sc.Problem) -> None:
     with pytest.raises(AssemblyError, match="rod must exceed"):
         problem.analyse([0.08, 0.1, 0.03])
-    for design in ([0.04, 0.1], [0.04, np.nan, 0.02], [DESIGN]):
+    wrong: list[Any] = [[0.04, 0.1], [0.04, np.nan, 0.02], [DESIGN], "first", ["40 mm", 0.1, 0.02]]
+    for design in wrong:
         with pytest.raises(InputError, match="3 finite numbers"):
             problem.analyse(design)
 

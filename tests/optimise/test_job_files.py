@@ -108,6 +108,8 @@ def test_a_path_that_no_file_can_have_is_refused() -> None:
         load_job("a\0b.toml")
     with pytest.raises(JobError, match=r"cannot be read"):
         load_job("x" * 5000 + ".toml")
+    with pytest.raises(JobError, match="named by its path; got dict; tables are read by problem"):
+        load_job({})  # type: ignore[arg-type]
 
 
 @contextlib.contextmanager

@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -140,6 +141,11 @@ def test_a_front_reports_extremes_knee_picks_and_trade_offs() -> None:
         front.pick("stroke")
     with pytest.raises(ValueError, match="no design of the front"):
         front.pick("peak_torque", time_ratio=(9.0, None))
+
+
+def test_tables_of_a_job_are_no_problem_yet() -> None:
+    with pytest.raises(InputError, match="solve takes a problem; got dict; make one by problem or load_job"):
+        solve({})  # type: ignore[arg-type]
 
 
 def test_rates_are_the_slope_of_the_front() -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from ...checks import require_numbers
 from ...kernel.arithmetic import analytic
-from .load import Enters, Entry, Load, Table, require_finite
+from .load import Enters, Entry, Load, Table
 
 
 @analytic
@@ -29,7 +30,7 @@ class Drag(Load):
     slots: ClassVar = {"drag": (2, "N s^2/m^2")}
 
     def __post_init__(self) -> None:
-        require_finite(self, "drag")
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "drag")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the coefficient after factors of one."""

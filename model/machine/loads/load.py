@@ -7,7 +7,6 @@ the kernels: as one of the shapes that these add up before a sweep (`Enters`), o
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -16,6 +15,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from ...checks import require_all_finite
 from ...errors import InputError
 
 Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
@@ -144,14 +144,6 @@ class Load:
         raise NotImplementedError
 
 
-def require_finite(load: Load, *names: str) -> None:
-    """Refuse fields that are infinite or not a number."""
-    for name in names:
-        value = getattr(load, name)
-        if not math.isfinite(value):
-            raise InputError(f"{name} of a {type(load).__name__} must be finite; got {value}")
-
-
 def require_word(name: str, value: object, words: object) -> None:
     """Refuse a value that is none of the words of a `Literal`."""
     if value not in get_args(words):
@@ -164,8 +156,7 @@ def require_table(what: str, at: Sequence[float], forces: Sequence[float]) -> No
         raise InputError(
             f"a table needs as many forces as {what}, two at least; got {len(at)} {what} and {len(forces)} forces"
         )
-    if not all(math.isfinite(value) for value in (*at, *forces)):
-        raise InputError(f"a table of {what} and forces must be finite throughout")
+    require_all_finite(f"a table of {what} and forces", (*at, *forces), "throughout")
     for before, after in itertools.pairwise(at):
         if after <= before:
             raise InputError(f"{what} of a table must increase; got {after:g} after {before:g}; sort the table")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .load import DATUM, Datum, Enters, Entry, Load, Table, require_finite, require_word
+from ...checks import require_numbers
+from .load import DATUM, Datum, Enters, Entry, Load, Table, require_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +25,7 @@ class Spring(Load):
     slots: ClassVar = {"stiffness": (2, "N/m"), "free_position": (3, "m")}
 
     def __post_init__(self) -> None:
-        require_finite(self, "stiffness", "free_position")
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "stiffness", "free_position")
         require_word("datum", self.datum, Datum)
 
     def numbers(self) -> tuple[float, float, float, float]:

@@ -6,7 +6,8 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from .load import DURING, During, Enters, Entry, Load, Passage, Table, require_finite
+from ...checks import require_numbers
+from .load import DURING, During, Enters, Entry, Load, Passage, Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +25,7 @@ class StrokeForce(Load):
     slots: ClassVar = {"outward": (0, "N"), "inward": (1, "N")}
 
     def __post_init__(self) -> None:
-        require_finite(self, "outward", "inward")
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "outward", "inward")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the forces in the two strokes."""

@@ -6,7 +6,8 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .load import Enters, Entry, Load, Table, require_finite
+from ...checks import require_numbers
+from .load import Enters, Entry, Load, Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +21,7 @@ class Viscous(Load):
     slots: ClassVar = {"coefficient": (2, "N s/m")}
 
     def __post_init__(self) -> None:
-        require_finite(self, "coefficient")
+        require_numbers(self, f"{{name}} of a {type(self).__name__}", "coefficient")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the coefficient after factors of one."""

@@ -138,5 +138,5 @@ def test_remainder_holds_for_every_deviation_within_the_limits() -> None:
 
 @pytest.mark.parametrize("value", [-1e-6, math.nan, math.inf])
 def test_clearances_must_be_zero_or_more(value: float) -> None:
-    with pytest.raises(InputError, match="a clearance must be zero or more and finite; got guide = "):
+    with pytest.raises(InputError, match="the guide clearance must be zero or more and finite; got "):
         Clearances(guide=value)

@@ -1,0 +1,40 @@
+"""Checks of single numbers: fields of a machine, and whatever else is given one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from .errors import InputError
+
+_REMEDY = "text with a unit belongs into the tables of a job"
+
+
+def require_numbers(
+    owner: object, rule: str, *names: str, least: float = -math.inf, above: float = -math.inf, unit: str = ""
+) -> None:
+    """Refuse fields of an object that are no finite numbers, below `least` or not above `above`; None passes.
+
+    rule: what the number is, with {name} where the name of the field belongs. unit: written behind the number.
+    """
+    for name in names:
+        value = getattr(owner, name)
+        what = rule.format(name=name)
+        try:
+            right = value is None or (math.isfinite(value) and value >= least and value > above)
+        except TypeError:
+            raise InputError(f"{what} must be a number, SI; got {value!r}; {_REMEDY}") from None
+        if not right:
+            sign = "positive and " if above == 0.0 else "zero or more and " if least == 0.0 else ""
+            raise InputError(f"{what} must be {sign}finite; got {value:g}{unit and f' {unit}'}")
+
+
+def require_all_finite(what: str, values: Iterable[float], where: str = "") -> None:
+    """Refuse numbers of which one is not finite, or is no number."""
+    for value in values:
+        try:
+            finite = math.isfinite(value)
+        except TypeError:
+            raise InputError(f"{what} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
+        if not finite:
+            raise InputError(f"{what} must be finite{where and f' {where}'}; got {value}")
