@@ -226,18 +226,6 @@ class Evaluator:
             parts += [(index, _beyond(own, *side)) for side in _range_sides(self.sheet.bounds[name])]
         return goals, _stack(parts, len(u), self.dimension)
 
-    def owner_name(self, owner: int) -> str:
-        """Return the name of the constraint or computed dimension that owns constraint rows."""
-        if owner < len(self.constraints):
-            return self.constraints[owner].quantity
-        return self.computed[owner - len(self.constraints)]
-
-    def sides(self, owner: int) -> list[Side]:
-        """Return the sides that the constraint rows of an owner stand for, in their order."""
-        if owner < len(self.constraints):
-            return _sides(self.constraints[owner])
-        return _range_sides(self.sheet.bounds[self.owner_name(owner)])
-
 
 def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     return quickly(evaluator.problem, names, dimensions)

@@ -37,7 +37,6 @@ class Point:
     limits: Rows
     step: Step | None = None
     residual: float = np.inf
-    iterations: int = 0
 
     @property
     def top(self) -> float:
@@ -65,13 +64,9 @@ class Descent:
     def run(self, start: Array) -> Point:
         """Return where the descent from a point (k,) of the unit box, valid, ends."""
         point = self._at(np.clip(start, 0.0, 1.0))
-        if not len(start):
-            point.residual = point.violation
-            return point
         radius, weight = _RADIUS, _WEIGHT
         root = np.zeros((len(start), len(start)))
         for iteration in range(_ITERATIONS):
-            point.iterations = iteration + 1
             step, weight = self._programme(point, root, radius, weight)
             if step is None:
                 break
@@ -91,7 +86,7 @@ class Descent:
                     gain, trial = again
             size = float(np.abs(step.move).max())
             if gain >= _POOR and trial is not None:
-                trial.iterations, point = point.iterations, trial
+                point = trial
                 if gain > _GOOD and size > 0.9 * radius:
                     radius = min(_LARGEST, 2.0 * radius)
             else:
