@@ -20,33 +20,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...model.errors import InputError
-from ..front.front import ParetoFront
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .enclosure import Array
 from .search import Search
 
 EPSILON, SECONDS = 0.01, 60.0
-
-
-def certify(
-    front: ParetoFront,
-    *,
-    epsilon: float = EPSILON,
-    seconds: float = SECONDS,
-    progress: Callable[[Step], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
-) -> Certificate:
-    """Return a proof of how far a front can be from the true one.
-
-    epsilon: to be proven, of the objectives' ranges over the front. seconds: budget; what is proven by then is
-    returned. progress: called between rounds. cancelled: asked between rounds. Raises `InputError` for an empty front,
-    for jobs in which more than the three dimensions varies, and for objectives that cannot be bounded over a range of
-    designs: averages over the cycle, forces under friction, peaks that are not minimised.
-    """
-    return certify_designs(
-        front.problem, front.dimensions, epsilon=epsilon, seconds=seconds, progress=progress, cancelled=cancelled
-    )
 
 
 def certify_designs(
@@ -58,7 +37,14 @@ def certify_designs(
     progress: Callable[[Step], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Certificate:
-    """Return the same for designs (n, 3) of any origin: crank, rod, offset, m, that meet the job's requirements."""
+    """Return a proof of how far a set of designs can be from the true front.
+
+    dimensions: (n, 3), crank, rod, offset, m, that meet the job's requirements. epsilon: to be proven, of the
+    objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
+    rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
+    dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
+    forces under friction, peaks that are not minimised.
+    """
     more = [*(item.name for item in problem.mechanism.varying), *problem.choices]
     if more:
         raise InputError(

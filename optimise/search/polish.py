@@ -58,26 +58,20 @@ def polish(
     scale: Array,
     *,
     chosen: tuple[int, ...] | None = None,
-    iterations: int = ITERATIONS,
+    iterations: int | None = ITERATIONS,
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
-    scale: range of each objective over the front. chosen: improve these objectives only (all by default). A design that
-    was feasible once is feasible in the end.
+    scale: range of each objective over the front. chosen: improve these objectives only (all by default). iterations:
+    None only moves designs that violate constraints onto them, the shortest way. A design that was feasible once is
+    feasible in the end.
     """
     batch = _Batch(evaluator, start, scale, chosen)
-    if iterations:
+    if iterations != 0:
         batch.restore()
-    for _ in range(iterations):
+    for _ in range(iterations or 0):
         if not batch.advance():
             break
-    return batch.result()
-
-
-def project(evaluator: Evaluates, start: Array, scale: Array) -> Polished:
-    """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
-    batch = _Batch(evaluator, start, scale, None)
-    batch.restore()
     return batch.result()
 
 

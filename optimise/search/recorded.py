@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +13,9 @@ from .checkpoints import Numbers, floats, integers
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
-from .polish import project as project_here
+
+_Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None]
+"""Scale, chosen objectives and iterations of a polish."""
 
 
 def polished(
@@ -31,7 +32,7 @@ def polished(
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
-    """Return the result of `polish.project`."""
+    """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
     return _step(evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None))
 
 
@@ -43,39 +44,25 @@ def polish(
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
 ) -> Polished:
-    """Return the result of `polish.polish`, of `polish.project` without iterations, on the engine where that pays.
+    """Return the result of `polish.polish`, on the engine where that pays; no record is kept.
 
-    Every design is polished by itself, so that many are shared out among workers. No record is kept.
+    Every design is polished by itself, so that many are shared out among workers.
     """
-    asked = _Asked(tuple(scale.tolist()), chosen, iterations)
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
-        return asked.of(evaluator, start)
+        return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations)
     before = evaluator.evaluations
+    asked = (tuple(scale.tolist()), chosen, iterations)
     parts = evaluator.chunked(_polish, asked, start, kind="polish", together=True)
     evaluator.evaluations = before + sum(count for _, count in parts)
     (first, _), *others = parts
     return first.join(*(part for part, _ in others))
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """Settings of a polish; see `polish.polish`. iterations: None to project only."""
-
-    scale: tuple[float, ...]
-    chosen: tuple[int, ...] | None
-    iterations: int | None
-
-    def of(self, evaluator: Evaluates, start: Array) -> Polished:
-        scale = np.array(self.scale)
-        if self.iterations is None:
-            return project_here(evaluator, start, scale)
-        return polish_here(evaluator, start, scale, chosen=self.chosen, iterations=self.iterations)
-
-
 def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
     """Return polished designs and how many were evaluated for them."""
-    before = evaluator.evaluations
-    return asked.of(evaluator, start), evaluator.evaluations - before
+    before, (scale, chosen, iterations) = evaluator.evaluations, asked
+    found = polish_here(evaluator, start, np.array(scale), chosen=chosen, iterations=iterations)
+    return found, evaluator.evaluations - before
 
 
 def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]) -> Polished:

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.certificate.certificate import Certificate, Step
-from slidercrank.optimise.certificate.certify import certify, certify_designs
+from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
 from slidercrank.optimise.certificate.enclosure import Array
 from slidercrank.optimise.front.front import ParetoFront
@@ -32,7 +32,7 @@ def two() -> ParetoFront:
 
 @cache
 def certificate(epsilon: float = 0.02) -> Certificate:
-    return certify(two(), epsilon=epsilon, seconds=60.0)
+    return certify_designs(two().problem, two().dimensions, epsilon=epsilon, seconds=60.0)
 
 
 def feasible(given: Problem, count: int, seed: int = 9) -> Array:
@@ -59,7 +59,7 @@ def beats(values: Array, designs: Array, span: Array) -> float:
 @pytest.mark.parametrize("of", ["two", "feeder"])
 def test_10_000_random_feasible_designs_do_not_beat_the_bound(of: str) -> None:
     front = two() if of == "two" else shipped_front("feeder")
-    found = certificate() if of == "two" else certify(front)
+    found = certificate() if of == "two" else certify_designs(front.problem, front.dimensions)
     assert found.status == "proven"
     assert found.proven
     assert found.epsilon <= (0.02 if of == "two" else 0.01)
@@ -117,7 +117,7 @@ def test_a_design_that_is_dominated_does_not_pass_for_the_front() -> None:
 
 def test_what_a_small_budget_leaves_open_is_told() -> None:
     front = shipped_front("feeder")
-    found = certify(front, epsilon=0.002, seconds=0.3)
+    found = certify_designs(front.problem, front.dimensions, epsilon=0.002, seconds=0.3)
     assert found.status == "out of budget"
     assert not found.proven
     assert found.epsilon > 0.002
@@ -132,7 +132,9 @@ def test_what_a_small_budget_leaves_open_is_told() -> None:
 
 def test_a_cancelled_proof_keeps_what_is_proven() -> None:
     steps: list[Step] = []
-    found = certify(two(), epsilon=1e-4, progress=steps.append, cancelled=lambda: len(steps) >= 6)
+    found = certify_designs(
+        two().problem, two().dimensions, epsilon=1e-4, progress=steps.append, cancelled=lambda: len(steps) >= 6
+    )
     assert found.status == "cancelled"
     assert len(steps) == 6
     assert [step.boxes for step in steps] == sorted(step.boxes for step in steps)
@@ -142,7 +144,7 @@ def test_a_cancelled_proof_keeps_what_is_proven() -> None:
 
 def test_a_single_objective_is_proven_to_a_share_of_its_value() -> None:
     front = solve(problem({"peak_torque": "minimise"}, HELD))  # type: ignore[arg-type]
-    found = certify(front, epsilon=1e-4)
+    found = certify_designs(front.problem, front.dimensions, epsilon=1e-4)
     assert found.proven
     assert found.delivered <= 1e-4
     best = feasible(front.problem, 10_000).min()
@@ -151,12 +153,12 @@ def test_a_single_objective_is_proven_to_a_share_of_its_value() -> None:
 
 def test_a_target_that_is_met_is_proven_best() -> None:
     front = solve(problem({"time_ratio": 1.15}, HELD))  # type: ignore[arg-type]
-    assert certify(front, epsilon=1e-3).proven
+    assert certify_designs(front.problem, front.dimensions, epsilon=1e-3).proven
 
 
 def test_a_job_that_leaves_one_design_is_certified() -> None:
     front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, crank=0.1, rod=0.3, offset=0.05))
-    found = certify(front)
+    found = certify_designs(front.problem, front.dimensions)
     assert found.proven
     assert len(found.added) == 0
 
@@ -175,7 +177,7 @@ def test_the_hypervolume_gap_holds_for_a_fuller_front() -> None:
 )
 def test_senseless_options_are_refused(options: dict[str, float], reason: str) -> None:
     with pytest.raises(InputError, match=reason):
-        certify(two(), **options)  # type: ignore[arg-type]
+        certify_designs(two().problem, two().dimensions, **options)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="empty front"):
         certify_designs(two().problem, np.zeros((0, 3)))
 
