@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import partial
 
 import numpy as np
@@ -64,18 +65,19 @@ def solve(
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     evaluators = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
     require_eliminated(problem, searched(evaluators))
-    with contextlib.ExitStack() as shown:
-        told = shown.enter_context(progress_bar()) if progress is True else progress or None
-        between = stages or (told if progress is True else None)
-        run = Run(problem, 1, told, checkpoints, stages=between)
-        if fronts is not None:
+    with ExitStack() as shown:
+        if progress is True:
+            progress = shown.enter_context(progress_bar())
+            stages = stages or progress
+        told = progress or None
 
-            def with_front(entry: Progress) -> None:
+        def with_front(entry: Progress) -> None:
+            if fronts is not None:
                 fronts(run.latest)
-                if told is not None:
-                    told(entry)
+            if told is not None:
+                told(entry)
 
-            run.progress = with_front
+        run = Run(problem, 1, with_front, checkpoints, stages=stages)
         if resume:
             run.stand(REPEATING, 0, 1, now=True)
         try:

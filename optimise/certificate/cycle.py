@@ -47,7 +47,6 @@ class Curve:
     """One signal of a machine over boxes of designs. Without friction: its forces are no plain formula."""
 
     def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
-        """Prepare the raw numbers and tables that the signal needs."""
         self.kind, self.peak = peak.signal, peak
         self.mechanism = mechanism
         self.raw, self.loads = inputs_of(mechanism, peak.signal)

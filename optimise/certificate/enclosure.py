@@ -40,7 +40,6 @@ class Enclosure:
     __slots__ = ("_reach", "centre", "empty", "rest", "slopes")
 
     def __init__(self, centre: Any, slopes: Any, rest: Any, empty: Mask | None = None) -> None:
-        """Take the parts as they are."""
         self.centre, self.slopes, self.rest, self.empty = centre, slopes, rest, empty
         self._reach: Array | None = None
 

@@ -16,19 +16,14 @@ class Limits:
     """Conditions `enclosure <= FEASIBLE` on n boxes, gathered one by one, and which boxes may meet them."""
 
     def __init__(self, n: int, k: int) -> None:
-        """Start without conditions."""
         self.alive = np.ones(n, dtype=bool)
         self.rows: list[tuple[Array, Array, Array]] = []  # centre (n,), slopes (k, n), rest (n,)
         self.k = k
 
-    def exist(self, value: Enclosure) -> None:
-        """Require a number to be defined somewhere in the box."""
+    def add(self, value: Enclosure) -> None:
+        """Require a number (n, p), each of its p parts, to be defined somewhere in the box and at most `FEASIBLE`."""
         if value.empty is not None:
             self.alive &= ~value.empty.any(axis=1)
-
-    def add(self, value: Enclosure) -> None:
-        """Require a number (n, p), each of its p parts, to be at most `FEASIBLE`."""
-        self.exist(value)
         self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
         for part in range(value.centre.shape[1]):
             known = np.isfinite(value.size[:, part])

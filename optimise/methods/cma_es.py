@@ -23,9 +23,8 @@ from ..problem.problem import Problem
 from ..search.candidates import stacked
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, generation_seed
 from .method import Method
-from .population import evolve
+from .population import Brood, Generation, evolve, generation_seed
 from .registry import budget
 
 STEP = 0.3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -178,25 +179,16 @@ def _descend(problem: Problem, evaluators: list[Evaluator], index: int, archive:
         keep(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
 
 
-DIFFERENTIAL_EVOLUTION = Method(
+_global = partial(Method, family="global", objectives="one", budget=50_000, uses=("scipy",), equalities=False)
+DIFFERENTIAL_EVOLUTION = _global(
     name="differential_evolution",
     title="Differential evolution",
     help="A population of scipy that moves by differences of its members; the best is improved by SLSQP.",
-    family="global",
-    objectives="one",
     search=differential_evolution,
-    budget=50_000,
-    uses=("scipy",),
-    equalities=False,
 )
-SHGO = Method(
+SHGO = _global(
     name="shgo",
     title="SHGO",
     help="Simplicial homology of scipy: finds the basins of the objective; each is descended by SLSQP.",
-    family="global",
-    objectives="one",
     search=shgo,
-    budget=50_000,
-    uses=("scipy",),
-    equalities=False,
 )

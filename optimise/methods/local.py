@@ -1,19 +1,30 @@
-"""The local solvers of scipy on a scalar programme, with exact gradients."""
+"""Gradient methods of scipy for one objective, from many starts; and its local solvers on a scalar programme."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..front.stationarity import Array
+from ..problem.problem import Problem
+from ..search.assemble import span_of
+from ..search.candidates import Candidates
 from ..search.checkpoints import floats
-from ..search.evaluation import FEASIBLE
-from ..search.search import Archive
-from .scalar import Programme
+from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.sampling import first_samples
+from ..search.search import BANDS, Archive, Run
+from .method import Method
+from .registry import budget
+from .scalar import Form, Programme
 
+SAMPLES = 16384
+"""Samples over all sheets."""
+_ENOUGH = 32
+_STREAM = 3000  # of the seed
 REACH = 1e-6
 """Relative violation that a solver may leave: the delivery moves the design onto the constraints."""
 _STEPS = 100
@@ -24,8 +35,66 @@ _ATTEMPTS = 3
 _MARGIN, _NEARER = 0.1, 0.3  # of the objectives' range: where the barrier begins, and how much nearer each time
 _INSIDE = 1e-6  # of the unit box: a barrier cannot begin on a bound
 _EXACT = 1e-12  # of the objective's range
+_STARTS = {"slsqp": 24, "trust_constr": 8}
 
 Local = Callable[[Programme, Array], Array | None]
+
+
+def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
+    """Return feasible samples of all sheets; where there are few, with such as violate constraints by up to 16 %.
+
+    Solvers remove the violation. Equalities that are left are met by no sample.
+    """
+    loose = any(evaluator.loose for evaluator in evaluators)
+    for attempt, band in enumerate(BANDS[1:] if loose else BANDS):
+        parts = []
+        for index, evaluator in enumerate(evaluators):
+            count = -(-SAMPLES * 4 ** min(attempt, 1) // len(evaluators))
+            u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
+            _, values, violation = evaluator.screen(u, band=band)
+            good = (violation <= band + FEASIBLE) & evaluator.valid(u)
+            met = violation[good] <= FEASIBLE
+            parts.append(Candidates(np.full(len(met), index), u[good], values[good], met))
+        found = parts[0].join(*parts[1:])
+        if len(found) >= _ENOUGH:
+            break
+    return found
+
+
+def slsqp(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the local optima that SLSQP finds from up to 24 starts; see `by_slsqp`."""
+    return _many(problem, evaluators, run, by_slsqp)
+
+
+def trust_constr(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the local optima that trust-constr finds from up to 8 starts; see `by_trust_constr`."""
+    return _many(problem, evaluators, run, by_trust_constr)
+
+
+def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local) -> Archive:
+    begun = samples(problem, evaluators)
+    run.archive, archive = Archive.empty(1), Archive.empty(1)
+    run.archive.put(begun[begun.met])
+    if not len(begun):
+        run.tell("sampling", evaluators, archive)
+        return archive
+    ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
+    rows = begun.leading(0, _STARTS[problem.settings.method])
+    run.rounds = 1 + len(rows)
+    run.tell("sampling", evaluators, archive)
+    for row in rows:
+        if len(archive) and spent(problem, evaluators):
+            break
+        index = int(begun.sheet[row])
+        programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
+        keep(solve, programme, begun.u[row], archive, index)
+        run.tell("descending", evaluators, archive)
+    return archive
+
+
+def spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
+    """Whether the budget of evaluations is used up."""
+    return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
 
 
 def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array] | None:
@@ -143,3 +212,19 @@ def _feasible(programme: Programme, z: Array) -> Array | None:
     if not np.isfinite(u).all():
         return None
     return u if programme.violation(u) <= REACH + FEASIBLE else None
+
+
+_gradient = partial(Method, family="gradient", objectives="one", budget=20_000, uses=("scipy",))
+SLSQP = _gradient(
+    name="slsqp",
+    title="SLSQP",
+    help="Sequential least squares programming of scipy from many starts; peaks are rows of the epigraph form.",
+    search=slsqp,
+)
+TRUST_CONSTR = _gradient(
+    name="trust_constr",
+    title="trust-constr",
+    help="Interior-point method of scipy from a few starts; peaks are rows of the epigraph form.",
+    search=trust_constr,
+    equalities=False,
+)

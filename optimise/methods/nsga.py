@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,9 +27,8 @@ from ...model.errors import InputError
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, generation_seed
 from .method import Method
-from .population import evolve
+from .population import Brood, Generation, evolve, generation_seed
 from .registry import budget
 from .trials import asked, new_study, quiet, space, stored
 
@@ -97,25 +97,18 @@ def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: A
         return evolve(problem, evaluators, run, breed, size=size)
 
 
-NSGA2 = Method(
+_genetic_method = partial(Method, family="evolutionary", budget=20_000, uses=("optuna",), gradients=False)
+NSGA2 = _genetic_method(
     name="nsga2",
     title="NSGA-II",
     help="Genetic algorithm by Optuna's operators whose population is kept diverse by crowding distance.",
-    family="evolutionary",
     objectives="any",
     search=nsga2,
-    budget=20_000,
-    uses=("optuna",),
-    gradients=False,
 )
-NSGA3 = Method(
+NSGA3 = _genetic_method(
     name="nsga3",
     title="NSGA-III",
     help="Genetic algorithm by Optuna's operators whose population is kept diverse by reference directions.",
-    family="evolutionary",
     objectives="several",
     search=nsga3,
-    budget=20_000,
-    uses=("optuna",),
-    gradients=False,
 )

@@ -7,20 +7,62 @@ by the run's seed and its number, and depends on these generations alone: a broo
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..search.candidates import Table
 from ..search.checkpoints import Numbers, floats, integers
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation
 from .registry import budget
+
+Rows = NDArray[np.int64]
 
 BAND = 0.01
 """Relative violation that counts as none where an equality is left, which no sample meets; the delivery removes it."""
+
+
+@dataclass(frozen=True)
+class Brood:
+    """Points to be evaluated together.
+
+    sheet: (n,), index of each point's sheet. u: (n, k), points of the unit box; columns beyond a sheet's own dimension
+    do not count. parents: (p,), rows that the brood was bred from, counted over the points of all generations; empty
+    where a method has none.
+    """
+
+    sheet: Rows
+    u: Array
+    parents: Rows
+
+    def __len__(self) -> int:
+        return len(self.u)
+
+
+@dataclass
+class Generation(Table):
+    """The points of a brood and what they turned out to be.
+
+    sheet, u: see `Brood`. values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated.
+    violation: (n,), the greatest relative one beyond what is tolerated (see `BAND`), infinite where no
+    linkage turns fully. parents: of the brood.
+    """
+
+    sheet: Rows
+    u: Array
+    values: Array
+    violation: Array
+    parents: Rows = field(kw_only=True)
+
+
+def generation_seed(seed: int, generation: int) -> int:
+    """Return the seed of one generation, independent of all others, so that a run may resume at any."""
+    return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])
 
 
 class Breed(Protocol):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -10,9 +11,8 @@ from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, generation_seed
 from .method import Method
-from .population import evolve
+from .population import Brood, Generation, evolve, generation_seed
 from .registry import budget
 
 Draw = Callable[[int, int, int], Array]
@@ -56,24 +56,17 @@ def _sampled(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw
     return evolve(problem, evaluators, run, breed, size=size)
 
 
-RANDOM = Method(
+_baseline = partial(Method, family="sampling", objectives="any", budget=20_000, gradients=False)
+RANDOM = _baseline(
     name="random",
     title="Random points",
     help="Uniformly random points, a baseline that every other method must beat.",
-    family="sampling",
-    objectives="any",
     search=random,
-    budget=20_000,
-    gradients=False,
 )
-SOBOL = Method(
+SOBOL = _baseline(
     name="sobol",
     title="Sobol points",
     help="One scrambled Sobol sequence, a baseline that every other method must beat.",
-    family="sampling",
-    objectives="any",
     search=sobol,
-    budget=20_000,
     uses=("scipy",),
-    gradients=False,
 )

@@ -60,7 +60,6 @@ class Programme:
     """
 
     def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
-        """Prepare the parts that do not depend on the point."""
         self.evaluator = evaluator
         self.form = form
         self.ideal, self.span = ideal, span

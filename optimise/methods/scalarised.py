@@ -8,8 +8,11 @@ designs; later rounds aim at the gaps between optima.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from math import comb
 
 import numpy as np
 
@@ -19,12 +22,9 @@ from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .gradient import spent
-from .local import by_slsqp, keep
+from .local import by_slsqp, keep, samples, spent
 from .method import Method
-from .reference import grid, simplex
 from .scalar import Form, Programme
-from .starts import samples
 
 _SUM = 1e-4
 """rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
@@ -90,7 +90,7 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the front by normal-boundary intersection.
 
     From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
-    go as far as they can along its quasi-normal n = -Phi e (Das and Dennis 1998, see `reference`). As there is a design
+    go as far as they can along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex`). As there is a design
     that is better than the point reached where the front is not met, F <= Phi beta + t n is asked rather than equality
     (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result is
     Pareto-optimal, also on a front that is folded. Of three objectives and more the plane's triangle does not lie over
@@ -184,7 +184,7 @@ class _Front:
         known = self.archive.join(self.begun)
         scaled = self.scaled(known.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
-        worth = _open(form).value(scaled) + 10.0 * excess
+        worth = replace(form, ceilings=np.full(len(form.weights), np.inf)).value(scaled) + 10.0 * excess
         found: list[tuple[float, int, Array]] = []
         for index in np.unique(known.sheet).tolist():
             own = np.flatnonzero(known.sheet == index)
@@ -192,6 +192,27 @@ class _Front:
             found.append((float(worth[row]), index, known.u[row]))
         least = min(value for value, _, _ in found)
         return [(index, u) for value, index, u in found if value <= least + _WORSE]
+
+
+def simplex(objectives: int, least: int) -> Array:
+    """Return at least `least` points (n, m) of the unit simplex, all sums of m shares of 1 / p.
+
+    I. Das and J. E. Dennis, "Normal-boundary intersection: a new method for generating the Pareto surface in nonlinear
+    multicriteria optimization problems", SIAM J. Optim. 8(3), 1998, sec. 4.
+    """
+    parts = 1
+    while comb(parts + objectives - 1, objectives - 1) < least:
+        parts += 1
+    bars = itertools.combinations(range(parts + objectives - 1), objectives - 1)
+    ends = np.array([(-1, *bar, parts + objectives - 1) for bar in bars])
+    return np.asarray((np.diff(ends, axis=1) - 1) / parts)
+
+
+def grid(lower: Array, upper: Array, parts: int) -> Array:
+    """Return the (parts^m, m) points at the upper ends of equal intervals between bounds (m,) each."""
+    steps = np.arange(1, parts + 1) / parts
+    places = np.array(list(itertools.product(steps, repeat=len(lower))))
+    return np.asarray(lower + places * (upper - lower))
 
 
 def _middles(points: Array) -> Array:
@@ -209,10 +230,6 @@ def _first(problem: Problem) -> int:
     """Return how many problems take aim evenly. Of two objectives the front is a line: all of them find their own."""
     share = _MORE if len(problem.objectives) == 2 else _FIRST
     return max(1, int(share * problem.settings.designs))
-
-
-def _open(form: Form) -> Form:
-    return Form(form.weights, form.reference, np.full(len(form.weights), np.inf), form.rho)
 
 
 def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
@@ -242,33 +259,22 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     return shared
 
 
-EPSILON_CONSTRAINT = Method(
+_scalarisation = partial(Method, family="scalarisation", objectives="several", budget=100_000, uses=("scipy",))
+EPSILON_CONSTRAINT = _scalarisation(
     name="epsilon_constraint",
     title="Epsilon-constraint",
     help="Minimises the first objective with ceilings on all others, on a grid of ceilings.",
-    family="scalarisation",
-    objectives="several",
     search=epsilon_constraint,
-    budget=100_000,
-    uses=("scipy",),
 )
-CHEBYSHEV = Method(
+CHEBYSHEV = _scalarisation(
     name="chebyshev",
     title="Weighted Chebyshev",
     help="Minimises the greatest weighted distance from a point below all designs, in evenly spread directions.",
-    family="scalarisation",
-    objectives="several",
     search=chebyshev,
-    budget=100_000,
-    uses=("scipy",),
 )
-NBI = Method(
+NBI = _scalarisation(
     name="nbi",
     title="Normal-boundary intersection",
     help="Goes as far as designs can along the normal of the plane through the single optima.",
-    family="scalarisation",
-    objectives="several",
     search=nbi,
-    budget=100_000,
-    uses=("scipy",),
 )

@@ -16,9 +16,8 @@ import numpy as np
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .generation import Brood, Generation, generation_seed
 from .method import Method
-from .population import evolve
+from .population import Brood, Generation, evolve, generation_seed
 from .registry import budget
 from .trials import asked, new_study, quiet, space, stored
 

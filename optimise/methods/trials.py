@@ -12,7 +12,7 @@ import numpy as np
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.evaluation import FEASIBLE, Evaluator
-from .generation import Generation, Rows
+from .population import Generation, Rows
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

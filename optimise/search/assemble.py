@@ -16,7 +16,7 @@ from ..front.stationarity import STATIONARY, Array, multipliers
 from ..problem.gradients import without_gradient
 from ..problem.problem import Problem, choice_field
 from .candidates import Finished
-from .evaluation import Evaluator, constraints_of
+from .evaluation import Evaluator, constraints_of, sides
 from .fingerprint import versions
 from .search import Run
 
@@ -117,10 +117,8 @@ def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
         if constraint.equality:
             slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
         else:
-            if constraint.upper is not None:
-                slack = np.minimum(slack, _clear(values, constraint.upper, constraint.upper - values))
-            if constraint.lower is not None:
-                slack = np.minimum(slack, _clear(values, constraint.lower, values - constraint.lower))
+            for side, bound, _ in sides(constraint):
+                slack = np.minimum(slack, _clear(values, bound, side * (bound - values)))
         table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
 
 

@@ -217,7 +217,7 @@ class Evaluator:
         parts = []
         for index, constraint in enumerate(self.constraints):
             own = pieces(constraint.quantity)
-            parts += [(index, _beyond(_held(own, side[0]), *side)) for side in _sides(constraint)]
+            parts += [(index, _beyond(_held(own, side[0]), *side)) for side in sides(constraint)]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = UNKNOWNS.index(name)
             sign = self.sheet.sign if name == "offset" else 1.0
@@ -239,7 +239,7 @@ def _costly(quantity: Quantity) -> bool:
     return not type(quantity).__name__.startswith("ClosedForm")
 
 
-def _sides(constraint: Constraint) -> list[Side]:
+def sides(constraint: Constraint) -> list[Side]:
     """Return the sides of a constraint that are not open."""
     bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
     return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
@@ -253,7 +253,7 @@ def _range_sides(bounds: Range) -> list[Side]:
 def _violation(constraint: Constraint, values: Array) -> Array:
     """Relative violation (n,), zero or less where the constraint holds."""
     violation = np.full(len(values), -np.inf)
-    for side in _sides(constraint):
+    for side in sides(constraint):
         violation = np.maximum(violation, _excess(values, *side))
     return np.where(np.isnan(values), np.inf, violation)
 

@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.errors import ForeignRecords
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
-from slidercrank.optimise.methods import starts
+from slidercrank.optimise.methods import local
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust
@@ -49,7 +49,7 @@ SLOW = ("trust_constr", "shgo", "minimax")
 def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep every step at once, so that runs can be cut within their rounds; start from few samples."""
     monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
-    monkeypatch.setattr(starts, "SAMPLES", 512)
+    monkeypatch.setattr(local, "SAMPLES", 512)
 
 
 def asked(method: str) -> Problem:

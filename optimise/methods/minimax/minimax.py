@@ -33,7 +33,7 @@ from ...search.checkpoints import floats
 from ...search.evaluation import FEASIBLE, Evaluator
 from ...search.sampling import apart, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
-from ..gradient import spent
+from ..local import spent
 from ..method import Method
 from .scp import Descent
 

@@ -57,7 +57,6 @@ class Descent:
     """Descents of one evaluator; the programme is stated once for all of them."""
 
     def __init__(self, evaluator: Evaluates, scale: float) -> None:
-        """Prepare for objectives of this scale."""
         self.evaluator, self.scale = evaluator, scale
         self._programmes: dict[tuple[int, int, int], Subproblem] = {}
 

@@ -49,7 +49,6 @@ class Subproblem:
     """The programme for k unknowns, p pieces and q constraint rows; stating it costs a hundred times a solution."""
 
     def __init__(self, k: int, p: int, q: int) -> None:
-        """State the programme."""
         cp = required("cvxpy", "minimax searches need")
 
         self.move, self.top, self.slack = cp.Variable(k), cp.Variable(), cp.Variable(nonneg=True)

@@ -89,8 +89,8 @@ def test_multipliers_predict_what_a_bound_costs(name: str, held: dict[str, Bound
         ends = tuple(None if end is None else share * end for end in bounds)
         return least(problem({"peak_torque": "minimise"}, {**held, name: (ends[0], ends[1])}))
 
-    bounds = held.get(name, (None, 0.15))
-    assert isinstance(bounds, tuple)
+    given = held.get(name, (None, 0.15))
+    bounds = given if isinstance(given, tuple) else (given, given)
     size = next(end for end in bounds if end is not None)
     rate = (moved(1.0001) - moved(0.9999)) / (2e-4 * size)
     rod = (0.06, 0.15) if name == "rod" else (0.06, 0.6)

@@ -14,7 +14,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.methods import nsga as evolutionary
 from slidercrank.optimise.methods import population
-from slidercrank.optimise.methods.generation import Brood, Generation, generation_seed
+from slidercrank.optimise.methods.population import Brood, Generation, generation_seed
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets

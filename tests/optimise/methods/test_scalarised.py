@@ -10,8 +10,8 @@ import pytest
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling
-from slidercrank.optimise.methods.reference import grid, simplex
 from slidercrank.optimise.methods.scalar import Form, Programme
+from slidercrank.optimise.methods.scalarised import grid, simplex
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator

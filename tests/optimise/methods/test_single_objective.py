@@ -10,9 +10,8 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.methods.local import by_slsqp
+from slidercrank.optimise.methods.local import by_slsqp, samples
 from slidercrank.optimise.methods.scalar import Form, Programme
-from slidercrank.optimise.methods.starts import samples
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
