@@ -119,7 +119,7 @@ class Boxes:
                 else:
                     known = self._closed(objective.quantity, r, l, e)
                 value, least, most = known
-                below, above = _ends(value, low, high)
+                below, above = (end.max(axis=1) for end in value.ends(low, high))
                 below = below if least is None else np.maximum(below, least)
                 above = above if most is None else np.minimum(above, most)
                 corner[:, column] = _minimised(objective, below, above)
@@ -206,12 +206,6 @@ def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) ->
     if name == "rod":
         return np.maximum(low, (one + three) / lean), high
     return low, np.minimum(high, lean * four - one if name == "offset" else lean * two - three)
-
-
-def _ends(value: Enclosure, low: Array, high: Array) -> tuple[Array, Array]:
-    """Return a lower and an upper bound on the greatest part of (n, p)."""
-    least, most = value.ends(low, high)
-    return least.max(axis=1), most.max(axis=1)
 
 
 def _minimised(objective: Objective, below: Array, above: Array) -> Array:

@@ -88,7 +88,8 @@ class Search:
                 self.tree.keep(np.setdiff1d(np.arange(len(self.tree)), rows, assume_unique=True))
                 for index, lower, upper in halves:
                     self._take(index, lower, upper, threads)
-        self._refresh()
+        if len(self.tree):  # all designs count for all boxes that are left open
+            self._recovered(np.arange(len(self.tree)))
 
     def _over(self) -> bool:
         self.stopped = self.stopped or (self.cancelled is not None and self.cancelled())
@@ -108,14 +109,11 @@ class Search:
         tree.seen[rows] = len(self.designs)
         done = tree.excess[rows] <= self.epsilon
         self._close(tree.corner[rows[done]], tree.excess[rows[done]])
-        gone = rows[done]
-        left = rows[~done]
-        if len(gone):
-            kept = np.ones(len(tree), dtype=bool)
-            kept[gone] = False
-            left = np.cumsum(kept)[left] - 1
+        kept = np.ones(len(tree), dtype=bool)
+        kept[rows[done]] = False
+        if done.any():
             tree.keep(kept)
-        return np.asarray(left)
+        return np.asarray(np.cumsum(kept)[rows[~done]] - 1)
 
     def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
         """Bound boxes of a sheet, close what can be closed, open the rest."""
@@ -166,11 +164,6 @@ class Search:
         alone = excess(corner, self.front, enough=self.epsilon)
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
-
-    def _refresh(self) -> None:
-        """Count all designs for all open boxes, and close what they cover."""
-        if len(self.tree):
-            self._recovered(np.arange(len(self.tree)))
 
     def _tell(self, progress: Callable[[Step], None] | None) -> None:
         if progress is not None:

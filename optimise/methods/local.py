@@ -35,7 +35,6 @@ _ATTEMPTS = 3
 _MARGIN, _NEARER = 0.1, 0.3  # of the objectives' range: where the barrier begins, and how much nearer each time
 _INSIDE = 1e-6  # of the unit box: a barrier cannot begin on a bound
 _EXACT = 1e-12  # of the objective's range
-_STARTS = {"slsqp": 24, "trust_constr": 8}
 
 Local = Callable[[Programme, Array], Array | None]
 
@@ -61,17 +60,8 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
     return found
 
 
-def slsqp(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the local optima that SLSQP finds from up to 24 starts; see `by_slsqp`."""
-    return _many(problem, evaluators, run, by_slsqp)
-
-
-def trust_constr(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the local optima that trust-constr finds from up to 8 starts; see `by_trust_constr`."""
-    return _many(problem, evaluators, run, by_trust_constr)
-
-
-def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local) -> Archive:
+def from_starts(problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int) -> Archive:
+    """Return the local optima that a solver finds from so many starts, the best ones that lie apart."""
     begun = samples(problem, evaluators)
     run.archive, archive = Archive.empty(1), Archive.empty(1)
     run.archive.put(begun[begun.met])
@@ -79,7 +69,7 @@ def _many(problem: Problem, evaluators: list[Evaluator], run: Run, solve: Local)
         run.tell("sampling", evaluators, archive)
         return archive
     ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
-    rows = begun.leading(0, _STARTS[problem.settings.method])
+    rows = begun.leading(0, starts)
     run.rounds = 1 + len(rows)
     run.tell("sampling", evaluators, archive)
     for row in rows:
@@ -219,12 +209,12 @@ SLSQP = _gradient(
     name="slsqp",
     title="SLSQP",
     help="Sequential least squares programming of scipy from many starts; peaks are rows of the epigraph form.",
-    search=slsqp,
+    search=partial(from_starts, solve=by_slsqp, starts=24),
 )
 TRUST_CONSTR = _gradient(
     name="trust_constr",
     title="trust-constr",
     help="Interior-point method of scipy from a few starts; peaks are rows of the epigraph form.",
-    search=trust_constr,
+    search=partial(from_starts, solve=by_trust_constr, starts=8),
     equalities=False,
 )

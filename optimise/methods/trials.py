@@ -44,7 +44,8 @@ def space(evaluators: list[Evaluator]) -> Space:
     """Return Optuna's parameters: the coordinates of the unit box, and the sheet where there are several."""
     from optuna.distributions import CategoricalDistribution, FloatDistribution
 
-    found: Space = {name: FloatDistribution(0.0, 1.0) for name in _coordinates(evaluators)}
+    dimension = max(evaluator.dimension for evaluator in evaluators)
+    found: Space = {f"u{column:03d}": FloatDistribution(0.0, 1.0) for column in range(dimension)}
     if len(evaluators) > 1:
         found[_SHEET] = CategoricalDistribution(list(range(len(evaluators))))
     return found
@@ -55,10 +56,6 @@ def new_study(problem: Problem, sampler: BaseSampler) -> Study:
     import optuna
 
     return optuna.create_study(directions=["minimize"] * len(problem.objectives), sampler=sampler)
-
-
-def _coordinates(evaluators: list[Evaluator]) -> list[str]:
-    return [f"u{column:03d}" for column in range(max(evaluator.dimension for evaluator in evaluators))]
 
 
 def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:

@@ -194,29 +194,15 @@ class Evaluator:
         self.evaluations += len(u)
         wanted = [objective.quantity for objective in self.problem.objectives]
         names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
-        found_of = dict(zip(names, joined(self.chunked(_exactly, names, dimensions)), strict=True))
-        cache: dict[str, Pieces] = {}
-
-        def pieces(name: str) -> Pieces:
-            if name not in cache:
-                found = found_of[name]
-                # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
-                bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
-                # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
-                unknown = np.isnan(found.values)
-                values = np.where(bounded | unknown, found.values, np.copysign(np.inf, found.values))
-                slopes = np.where(bounded[:, :, None], found.gradients, 0.0)
-                slopes = np.einsum("npd,ndk->npk", slopes, jacobian)
-                cache[name] = Pieces(values, slopes, found.labels, found.least)
-            return cache[name]
-
+        found = joined(self.chunked(_exactly, names, dimensions))
+        pieces = {name: _in_box(own, jacobian) for name, own in zip(names, found, strict=True)}
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(self.problem.objectives):
-            parts += [(index, part) for part in _objective_rows(objective, pieces(objective.quantity))]
+            parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
         goals = _stack(parts, len(u), self.dimension)
         parts = []
         for index, constraint in enumerate(self.constraints):
-            own = pieces(constraint.quantity)
+            own = pieces[constraint.quantity]
             parts += [(index, _beyond(_held(own, side[0]), *side)) for side in sides(constraint)]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = UNKNOWNS.index(name)
@@ -233,6 +219,16 @@ def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) ->
 
 def _exactly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
     return exactly(evaluator.problem, names, dimensions)
+
+
+def _in_box(found: Pieces, jacobian: Array) -> Pieces:
+    """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
+    # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
+    bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
+    # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
+    values = np.where(bounded | np.isnan(found.values), found.values, np.copysign(np.inf, found.values))
+    slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], found.gradients, 0.0), jacobian)
+    return Pieces(values, slopes, found.labels, found.least)
 
 
 def _costly(quantity: Quantity) -> bool:

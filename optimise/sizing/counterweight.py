@@ -166,25 +166,23 @@ def balance(
     )
 
 
+@dataclass
 class _Programme:
     """The programme in the moments of `shaking_rows.NAMES`, each divided by its `unit`."""
 
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        linkage: Linkage,
-        measure: Measure,
-        arm: float | None,
-        most: float | None,
-        rod: RodSpace | None,
-    ) -> None:
-        self.mechanism, self.linkage, self.measure = mechanism, linkage, measure
-        self.arm, self.most, self.rod = arm, most, rod
-        moment = moving_moment(mechanism, linkage)
-        mass, reach = moment / float(linkage.crank), 1.0 if rod is None else rod.radius
+    mechanism: Mechanism
+    linkage: Linkage
+    measure: Measure
+    arm: float | None
+    most: float | None
+    rod: RodSpace | None
+
+    def __post_init__(self) -> None:
+        moment = moving_moment(self.mechanism, self.linkage)
+        mass, reach = moment / float(self.linkage.crank), 1.0 if self.rod is None else self.rod.radius
         self.unit = np.array([moment, moment, mass, mass * reach, mass * reach, mass * reach**2])
-        self.force = moment * mechanism.speed**2  # of order of the forces, N
-        self.count = 2 if rod is None else 6
+        self.force = moment * self.mechanism.speed**2  # of order of the forces, N
+        self.count = 2 if self.rod is None else 6
 
     def solve(self, radius: float) -> Balance:
         """Return the balance with the counterweight at a radius, m."""

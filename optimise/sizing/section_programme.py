@@ -37,9 +37,8 @@ class Task:
     def bars(self, sizes: Array) -> tuple[Bar, Bar]:
         """Return crank and rod."""
         w, d, v, e = np.exp(sizes).tolist()
-        return Bar(width=w, depth=d, density=self.material.density), Bar(
-            width=v, depth=e, density=self.material.density
-        )
+        density = self.material.density
+        return Bar(width=w, depth=d, density=density), Bar(width=v, depth=e, density=density)
 
     def joints(self, sizes: Array) -> JointLoads:
         """Return the joints' loads on these sections."""
@@ -48,8 +47,7 @@ class Task:
 
     def states(self, sizes: Array) -> dict[str, float]:
         """Return the limit states of sizes with their own loads."""
-        w, d, v, e = np.exp(sizes).tolist()
-        return self.limit_states([w, d, v, e], [None, None], self.terms(sizes))
+        return self.limit_states(np.exp(sizes).tolist(), [None, None], self.terms(sizes))
 
     def terms(self, sizes: Array) -> dict[str, float]:
         """Return the joints' loads of these sizes."""
