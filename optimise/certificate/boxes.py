@@ -174,7 +174,10 @@ class Boxes:
             [np.maximum(pair[rises != upper], 0.0)[:, 0] for pair, rises in zip(ends, quantity.rises, strict=True)]
             for upper in (True, False)
         ]
-        least, other = [_turning(int(quantity.forms[0]), *at) for at in (least_at, most_at)]
+        least, other = [
+            np.where(l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan)  # of those that turn fully
+            for r, l, a in (least_at, most_at)
+        ]
         least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
 
@@ -188,11 +191,6 @@ class Boxes:
             if turns.any():
                 found[name][turns] = best_angles(curve.peak, self.problem.mechanism, middle[turns])
         return middle, found
-
-
-def _turning(kind: int, r: Array, l: Array, a: Array) -> Array:
-    """Return a closed form of linkages, not a number where one does not turn fully."""
-    return np.where(l > r + a, closed_form(kind, r, l, a), np.nan)
 
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:

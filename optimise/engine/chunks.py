@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import pairwise
 from statistics import median
 from time import perf_counter
@@ -143,21 +143,13 @@ class Chunked(Generic[Subject]):
         most = each * engine.workers if each == 1 else max(each * engine.workers, int(seconds / LONGEST))
         count = max(1, min(int(seconds / CHUNK), most, len(rows)))
         edges = np.linspace(0, len(rows), count + 1).astype(int)
-        tasks = [_Task(work, self.shared, asked, rows[a:b]) for a, b in pairwise(edges.tolist())]
-        found = engine.map(_timed, tasks, poll=self.poll)
-        pace.row = median(seconds / len(task.rows) for task, (seconds, _) in zip(tasks, found, strict=True))
+        chunks = [rows[a:b] for a, b in pairwise(edges.tolist())]
+        found = engine.map(partial(_timed, work, self.shared, asked), chunks, poll=self.poll)
+        pace.row = median(seconds / len(chunk) for chunk, (seconds, _) in zip(chunks, found, strict=True))
         return [part for _, part in found]
 
 
-@dataclass(frozen=True)
-class _Task:
-    work: Callable[..., Any]
-    shared: Shared[Any]
-    asked: Any
-    rows: Array
-
-
-def _timed(task: _Task) -> tuple[float, Any]:
+def _timed(work: Work[Subject, Asked, Part], shared: Shared[Subject], asked: Asked, rows: Array) -> tuple[float, Part]:
     start = perf_counter()
-    part = task.work(task.shared.value, task.asked, task.rows)
+    part = work(shared.value, asked, rows)
     return perf_counter() - start, part

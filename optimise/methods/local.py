@@ -87,27 +87,20 @@ def spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
     return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
 
 
-def found_by(solve: Local, programme: Programme, u: Array) -> tuple[Array, Array] | None:
-    """Return the optimum near u (k,), a recorded step, with its scaled objectives (m,); None if not feasible."""
-    form, evaluator = programme.form, programme.evaluator
-    scaling, shares = (programme.ideal, programme.span), (form.weights, form.reference, form.ceilings)
+def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
+    """Take the optimum near u (k,), a recorded step, into an archive; return its objectives (m,), SI, None without."""
+    form, scaling, u = programme.form, (programme.ideal, programme.span), u[: programme.k]
+    given = (u, form.weights, form.reference, form.ceilings, np.array([form.rho]), *scaling)
 
     def compute() -> tuple[Array, ...]:
-        found = solve(programme, u)
-        return () if found is None else (found, programme.objectives(found))
+        optimum = solve(programme, u)
+        return () if optimum is None else (optimum, programme.objectives(optimum))
 
-    found = evaluator.step("descent", (u, *shares, np.array([form.rho]), *scaling), compute)
-    return (floats(found[0]), floats(found[1])) if found else None
-
-
-def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
-    """Take the optimum near u (k,) into an archive; return its objectives (m,), SI, None without one."""
-    optimum = found_by(solve, programme, u[: programme.k])
-    if optimum is None:
+    found = [floats(array) for array in programme.evaluator.step("descent", given, compute)]
+    if not found:
         return None
-    found, scaled = optimum
-    values = np.asarray(scaled * programme.span + programme.ideal)
-    archive.take(index, found[None], values[None])
+    values = np.asarray(found[1] * programme.span + programme.ideal)
+    archive.take(index, found[0][None], values[None])
     archive.feasible += 1
     return values
 

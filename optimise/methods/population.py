@@ -6,9 +6,8 @@ by the run's seed and its number, and depends on these generations alone: a broo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,12 +64,8 @@ def generation_seed(seed: int, generation: int) -> int:
     return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])
 
 
-class Breed(Protocol):
-    """The step by which a method finds its next points."""
-
-    def __call__(self, past: Sequence[Generation]) -> Brood:
-        """Return the brood that follows these generations, which depends on nothing but them."""
-        ...
+Breed = Callable[[Sequence[Generation]], Brood]
+"""How a method finds its next points: the brood that follows these generations, which depends on nothing but them."""
 
 
 def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed, *, size: int) -> Archive:

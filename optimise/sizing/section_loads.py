@@ -84,7 +84,8 @@ class Whip:
 
 def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
     """Return the joints' loads on crank and rod; pin forces to machine precision, the others sampled."""
-    angles = _angles(mechanism, linkage)
+    cuts = breakpoints(mechanism, linkage)
+    angles = np.concatenate([np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES), cuts - _ASIDE, cuts + _ASIDE])
     curves = cycle(mechanism, linkage, angles)
     motion = linkage.at(angles)
     pin = np.stack([curves.crank_pin_x, curves.crank_pin_y])  # of the crank on the rod
@@ -129,11 +130,6 @@ def whip_of(mechanism: Mechanism, linkage: Linkage) -> Whip:
         turning=float(np.abs(motion.rod_acceleration).max()),
         spinning=float((motion.rod_velocity**2).max()),
     )
-
-
-def _angles(mechanism: Mechanism, linkage: Linkage) -> Array:
-    cuts = breakpoints(mechanism, linkage)
-    return np.concatenate([np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES), cuts - _ASIDE, cuts + _ASIDE])
 
 
 def _range(values: Array) -> Range:

@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ..front.stationarity import Array
 from .limit_states import Above, crank_loads, joint_terms, limit_states, rod_loads, same
 from .section_limits import Material, SectionLimits
-from .section_loads import JointLoads, Whip, joint_loads
+from .section_loads import Whip, joint_loads
 
 _STEP = 1e-4  # relative, for central differences of the loads: error 1e-8 of them
 _EXACT = 1e-11  # of the solver
@@ -40,18 +40,15 @@ class Task:
         density = self.material.density
         return Bar(width=w, depth=d, density=density), Bar(width=v, depth=e, density=density)
 
-    def joints(self, sizes: Array) -> JointLoads:
-        """Return the joints' loads on these sections."""
-        crank, rod = self.bars(sizes)
-        return joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
-
     def states(self, sizes: Array) -> dict[str, float]:
         """Return the limit states of sizes with their own loads."""
         return self.limit_states(np.exp(sizes).tolist(), [None, None], self.terms(sizes))
 
     def terms(self, sizes: Array) -> dict[str, float]:
         """Return the joints' loads of these sizes."""
-        return joint_terms(self.joints(sizes), self.material, self.limits)
+        crank, rod = self.bars(sizes)
+        joints = joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
+        return joint_terms(joints, self.material, self.limits)
 
     def powers(self, sizes: Array) -> Array:
         """Return the slopes (n, 4) of the loads' logarithms by the sizes."""
@@ -106,7 +103,9 @@ class SectionProgramme:
         states = task.limit_states(
             x, [z[0], z[1]], {name: above(monomials[row]) for row, name in enumerate(loads)}, above
         )
-        self.held = {name: state <= (1.0 if _of_range(name) else over) for name, state in states.items()}
+        self.held = {
+            name: state <= (1.0 if name.endswith(("width", "depth")) else over) for name, state in states.items()
+        }
         self.programme = cp.Problem(
             cp.Minimize(task.mass(x) * over**_SLACK),
             [*self.held.values(), *bounds, over >= 1.0, self.sizes >= self.low, self.sizes <= self.high],
@@ -131,7 +130,3 @@ class SectionProgramme:
             )
         duals = {name: max(0.0, float(constraint.dual_value)) for name, constraint in self.held.items()}
         return np.log(np.asarray(self.sizes.value, dtype=np.float64)), duals
-
-
-def _of_range(name: str) -> bool:
-    return name.endswith(("width", "depth"))

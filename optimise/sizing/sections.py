@@ -24,7 +24,7 @@ from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from .limit_states import AMPLIFICATION
 from .section_limits import Material, SectionLimits
-from .section_loads import JointLoads, whip_of
+from .section_loads import whip_of
 from .section_programme import SectionProgramme, Task
 
 _ITERATIONS = 60
@@ -41,7 +41,7 @@ class Sections:
     crank, rod: as bars of the material. mass: of both, kg. utilisation: of each limit state, at most one, by names like
     "rod: fatigue". sensitivity: percent of mass that one percent more of that limit saves, to first order, the dynamics
     included; zero where a limit is not active. iterations: geometric programmes solved. change: the last relative
-    change of the sections. joints: the loads that the joints put on these sections.
+    change of the sections.
     """
 
     crank: Bar
@@ -51,7 +51,6 @@ class Sections:
     sensitivity: dict[str, float]
     iterations: int
     change: float
-    joints: JointLoads
 
     @property
     def settled(self) -> bool:
@@ -104,5 +103,4 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
         sensitivity={name: sensitivity[name] for name in states},
         iterations=count,
         change=change,
-        joints=task.joints(sizes),
     )

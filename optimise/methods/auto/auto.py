@@ -99,11 +99,6 @@ def _candidates(problem: Problem) -> int:
     return max(16, int(1.3 * problem.settings.designs))
 
 
-def planned(problem: Problem) -> int:
-    """Return how many batches the polish takes if nothing needs filling."""
-    return -(-_candidates(problem) // BATCH)
-
-
 def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> NDArray[np.int64]:
     """Return the rows of designs whose polish is to become the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
@@ -129,7 +124,7 @@ def _extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> list[
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the archive of what sampling and zooming find, which the polish starts from."""
-    run.rounds = len(run.told) + 1 + len(WIDTHS) + planned(problem)
+    run.rounds = len(run.told) + 1 + len(WIDTHS) + -(-_candidates(problem) // BATCH)  # if nothing needs filling
     return explore(problem, evaluators, run)
 
 
