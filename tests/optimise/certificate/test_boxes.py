@@ -28,7 +28,7 @@ CLOSED = ("time_ratio", "transmission_angle", "stroke", "rod_to_offset", "rod_to
 PEAKS = (
     *("peak_torque", "peak_torque_outward", "peak_torque_inward", "position_error", "position_error_rss"),
     *("peak_pivot_force", "peak_crank_pin_force", "peak_slider_pin_force", "peak_guide_force", "peak_power"),
-    *("peak_slider_speed", "peak_slider_acceleration", "peak_reflected_inertia"),
+    *("peak_slider_speed", "peak_slider_acceleration", "peak_slider_jerk", "peak_reflected_inertia"),
     *("peak_shaking_force", "peak_shaking_moment"),
 )
 LOADED = replace(
