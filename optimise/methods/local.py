@@ -63,7 +63,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
 def from_starts(problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int) -> Archive:
     """Return the local optima that a solver finds from so many starts, the best ones that lie apart."""
     begun = samples(problem, evaluators)
-    run.archive, archive = Archive.empty(1), Archive.empty(1)
+    archive = Archive.empty(1)
     run.archive.put(begun[begun.met])
     if not len(begun):
         run.tell("sampling", evaluators, archive)

@@ -236,7 +236,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     """Return samples and payoff table; None where nothing was found to begin with."""
     m = len(problem.objectives)
     begun = samples(problem, evaluators)
-    run.archive, front = Archive.empty(m), Archive.empty(m)
+    front = Archive.empty(m)
     run.archive.put(begun[begun.met])
     if not len(begun):
         run.tell("sampling", evaluators, front)

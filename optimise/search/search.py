@@ -108,14 +108,14 @@ class Run:
     checkpoints: Checkpoints = field(default_factory=Checkpoints)
     told: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)
-    archive: Archive | None = None
-    finished: Finished | None = None
     settled: list[Evaluator] = field(default_factory=list)
     stages: Callback | None = None
 
     def __post_init__(self) -> None:
+        count = len(self.problem.objectives)
+        self.archive, self.finished = Archive.empty(count), Finished.none(np.ones(count))
         self._growth = Growth(self._targets)
-        self.latest: Array = np.zeros((0, len(self.problem.objectives)))
+        self.latest: Array = np.zeros((0, count))
         self._heard = time.monotonic()
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
@@ -125,8 +125,8 @@ class Run:
         told is not told again, only that it is repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        polished = [] if self.finished is None else [self.finished.values]
-        values = np.concatenate([archive.values, *polished])
+        polished = self.finished.values
+        values = np.concatenate([archive.values, polished])
         values = values[nondominated(values)]
         self.latest = values[:: 1 + len(values) // _SHOWN]
         entry = Progress(
@@ -134,8 +134,8 @@ class Run:
             len(self.told) + 1,
             max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
-            archive.feasible + (0 if self.finished is None else int((~self.finished.free).sum())),
-            self._growth.take(np.concatenate([archive.values[archive.met], *polished])),
+            archive.feasible + int((~self.finished.free).sum()),
+            self._growth.take(np.concatenate([archive.values[archive.met], polished])),
             self.checkpoints.seconds,
         )
         self.told.append(entry)
@@ -195,9 +195,7 @@ def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -
 
     Each such sheet has one design, which is evaluated exactly: no sampling decides about these.
     """
-    count = len(problem.objectives)
-    free = searched(evaluators)
-    finished = run.finished = Finished.none(np.ones(count))
+    free, finished = searched(evaluators), run.finished
     run.settled = evaluators[len(free) :]
     point = np.zeros((1, 0))
     for place, evaluator in enumerate(run.settled):
@@ -205,7 +203,7 @@ def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -
         if evaluator.valid(point)[0]:
             finished.add(len(free) + place, polished(evaluator, point, finished.span))
         if (place + 1) % _ROUND == 0 or place + 1 == len(run.settled):
-            run.tell("enumerating", free, Archive.empty(count))
+            run.tell("enumerating", free, Archive.empty(len(problem.objectives)))
     return finished
 
 

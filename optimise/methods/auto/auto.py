@@ -80,11 +80,10 @@ def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, ru
 
 def _begun(problem: Problem, archive: Archive, run: Run) -> Finished:
     """Return the settled designs, which those of the archive are to join; the run has them too."""
-    settled = Finished.none(np.ones(len(problem.objectives))) if run.finished is None else run.finished
-    values = np.concatenate([archive.values, settled.values])
+    values = np.concatenate([archive.values, run.finished.values])
     if len(problem.objectives) > 1:
         values = values[nondominated(values)]
-    run.finished = settled.only_settled(span_of(problem, values) if len(values) else settled.span)
+    run.finished = run.finished.only_settled(span_of(problem, values) if len(values) else run.finished.span)
     return run.finished
 
 

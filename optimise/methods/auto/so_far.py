@@ -56,11 +56,10 @@ _SLOW = (
 
 def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     finished, archive = run.finished, run.archive
-    if archive is not None and len(archive) and (finished is None or not finished.free.any()):
-        settled = finished or Finished.none(np.ones(len(problem.objectives)))
-        finished = settled.only_settled(span_of(problem, np.concatenate([archive.values, settled.values])))
+    if len(archive) and not finished.free.any():
+        finished = finished.only_settled(span_of(problem, np.concatenate([archive.values, finished.values])))
         _take(problem, evaluators, archive, finished)
-    if finished is None or not len(finished):
+    if not len(finished):
         return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     finished = finished[_spread(finished.values, _MOST)]
     best = finished.best()
