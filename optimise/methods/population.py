@@ -75,17 +75,17 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     """
     allowed = budget(problem)
     run.rounds = max(1, allowed // size)
-    seen = _Seen(problem, evaluators)
+    archive, known = Archive.empty(len(problem.objectives)), _Known()
     past: list[Generation] = []
     count = 0
     while True:
         brood = _bred(evaluators[0], breed, past)
         if count + len(brood) > allowed and past:
             break
-        past.append(seen.evaluate(brood))
+        past.append(_evaluated(evaluators, brood, archive, known))
         count += len(brood)
-        run.tell("evolving", evaluators, seen.archive)
-    return seen.archive
+        run.tell("evolving", evaluators, archive)
+    return archive
 
 
 def _bred(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
@@ -98,41 +98,28 @@ def _bred(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
     return Brood(integers(sheet), floats(u), integers(parents))
 
 
-class _Seen:
-    """Every point that was evaluated, so that none is evaluated twice, and the archive of the best."""
+_Known = dict[tuple[int, bytes], tuple[Array, float]]
+"""Objectives and violation of every point that was evaluated, by sheet and coordinates: none is evaluated twice."""
 
-    def __init__(self, problem: Problem, evaluators: list[Evaluator]) -> None:
-        self.evaluators = evaluators
-        self.archive = Archive.empty(len(problem.objectives))
-        self.known: dict[tuple[int, bytes], tuple[Array, float]] = {}
 
-    def evaluate(self, brood: Brood) -> Generation:
-        """Return the evaluated generation of a brood; each sheet's new points are evaluated in one batch."""
-        keys = self._keys(brood)
-        fresh = {key: row for row, key in enumerate(keys) if key not in self.known}
-        for index, evaluator in enumerate(self.evaluators):
-            own = [(key, row) for key, row in fresh.items() if key[0] == index]
-            if own:
-                u = brood.u[[row for _, row in own], : evaluator.dimension]
-                values, violation = screened(evaluator, u, BAND if evaluator.loose else 0.0)
-                self.known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
-                self._archive(index, u, values, violation)
-        values, violation = (np.array([self.known[key][part] for key in keys]) for part in (0, 1))
-        return Generation(brood.sheet, brood.u, values, violation, parents=brood.parents)
-
-    def _keys(self, brood: Brood) -> list[tuple[int, bytes]]:
-        u = brood.u + 0.0  # no negative zeros
-        return [
-            (index, point[: self.evaluators[index].dimension].tobytes())
-            for index, point in zip(brood.sheet.tolist(), u, strict=True)
-        ]
-
-    def _archive(self, index: int, u: Array, values: Array, violation: Array) -> None:
-        good = violation <= FEASIBLE
-        met = np.full(int(good.sum()), not self.evaluators[index].loose)
-        self.archive.feasible += int(met.sum())
-        if good.any():
-            self.archive.take(index, u[good], values[good], met)
+def _evaluated(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: _Known) -> Generation:
+    """Return the generation of a brood, the archive has what is feasible; a sheet's new points are one batch."""
+    points = zip(brood.sheet.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
+    keys = [(index, point[: evaluators[index].dimension].tobytes()) for index, point in points]
+    fresh = {key: row for row, key in enumerate(keys) if key not in known}
+    for index, evaluator in enumerate(evaluators):
+        own = [(key, row) for key, row in fresh.items() if key[0] == index]
+        if own:
+            u = brood.u[[row for _, row in own], : evaluator.dimension]
+            values, violation = screened(evaluator, u, BAND if evaluator.loose else 0.0)
+            known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
+            good = violation <= FEASIBLE
+            met = np.full(int(good.sum()), not evaluator.loose)
+            archive.feasible += int(met.sum())
+            if good.any():
+                archive.take(index, u[good], values[good], met)
+    values, violation = (np.array([known[key][part] for key in keys]) for part in (0, 1))
+    return Generation(brood.sheet, brood.u, values, violation, parents=brood.parents)
 
 
 def screened(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:

@@ -19,7 +19,7 @@ from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
-from slidercrank.optimise.search.search import Run
+from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
@@ -50,14 +50,14 @@ def asked(method: str) -> Problem:
 def bred(given: Problem) -> tuple[ParetoFront, tuple[Generation, ...]]:
     """Return the front of a problem and all generations that led to it."""
     found: list[Generation] = []
-    inner = population._Seen.evaluate
+    inner = population._evaluated
 
-    def evaluate(seen: population._Seen, brood: Brood) -> Generation:
-        found.append(inner(seen, brood))
+    def evaluated(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: population._Known) -> Generation:
+        found.append(inner(evaluators, brood, archive, known))
         return found[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(population._Seen, "evaluate", evaluate)
+        patch.setattr(population, "_evaluated", evaluated)
         return solve(given), tuple(found)
 
 
