@@ -46,6 +46,5 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
             rows = tree.largest(_BATCH)
             if late or not len(rows):
                 return False
-            fresh = tree.halves(rows)
-            tree.keep(np.setdiff1d(np.arange(len(tree)), rows))
+            fresh = tree.halved(rows)
     return not len(tree)

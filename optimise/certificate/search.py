@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 
@@ -83,10 +84,7 @@ class Search:
                 rows = self.tree.largest(_BATCH)
                 if not len(rows) or self._over():
                     break
-                rows = self._recovered(rows)
-                halves = self.tree.halves(rows)
-                self.tree.keep(np.setdiff1d(np.arange(len(self.tree)), rows, assume_unique=True))
-                for index, lower, upper in halves:
+                for index, lower, upper in self.tree.halved(self._recovered(rows)):
                     self._take(index, lower, upper, threads)
         if len(self.tree):  # all designs count for all boxes that are left open
             self._recovered(np.arange(len(self.tree)))
@@ -254,8 +252,7 @@ class Search:
         row = int(np.argmax(tree.excess))
         evaluator = self.evaluators[int(tree.sheet[row])]
         k = evaluator.dimension
-        corners = np.stack(np.meshgrid(*([0.0, 1.0],) * k, indexing="ij"), axis=-1).reshape(-1, k) if k else None
         low, high = tree.lower[row, :k], tree.upper[row, :k]
-        u = np.zeros((1, 0)) if corners is None else low + (high - low) * corners
-        found = evaluator.sheet.dimensions(u)
+        corners = np.array(list(itertools.product((0.0, 1.0), repeat=k))).reshape(2**k, k)
+        found = evaluator.sheet.dimensions(low + (high - low) * corners)
         return np.stack([found.min(axis=0), found.max(axis=0)], axis=1)

@@ -89,8 +89,8 @@ class Tree(Table):
             return rows
         return rows[np.argpartition(-self.excess[rows], count)[:count]]
 
-    def halves(self, rows: NDArray[np.int64]) -> list[tuple[int, Array, Array]]:
-        """Return the two halves of boxes, by sheet: index, lower, upper (n, k)."""
+    def halved(self, rows: NDArray[np.int64]) -> list[tuple[int, Array, Array]]:
+        """Take boxes out and return their two halves, by sheet: index, lower, upper (n, k)."""
         found = []
         for index, boxes in enumerate(self.sheets):
             own, k = rows[self.sheet[rows] == index], len(boxes.sheet.free)
@@ -105,6 +105,7 @@ class Tree(Table):
             lower = np.stack([low, right], axis=1).reshape(-1, k)
             upper = np.stack([left, high], axis=1).reshape(-1, k)
             found.append((index, lower, upper))
+        self.keep(np.setdiff1d(np.arange(len(self)), rows, assume_unique=True))
         return found
 
 

@@ -197,7 +197,6 @@ class Cluster:
 
 
 def _call(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
-    """Return function(item) on a worker."""
     versions, function, item = task
     if versions != _versions():
         raise EngineError(

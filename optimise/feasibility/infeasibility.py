@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..engine.engine import Engine
 from ..front.stationarity import Array
 from ..problem.problem import Problem, Settings
-from ..search.checkpoints import Checkpoints, floats
+from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
 from ..search.evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from ..search.recorded import polished
@@ -152,4 +152,4 @@ def _greatest(evaluator: Evaluator, u: Array) -> Array:
     def greatest() -> tuple[Array]:
         return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
 
-    return floats(evaluator.step("violation", (u,), greatest)[0])
+    return evaluator.step("violation", (u,), greatest)[0]

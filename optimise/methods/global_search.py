@@ -10,7 +10,6 @@ import numpy as np
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.assemble import span_of
-from ..search.checkpoints import floats
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
@@ -46,7 +45,7 @@ class _Exact:
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        values, violation = map(floats, self.evaluator.step("points", (u,), lambda: self._at(u)))
+        values, violation = self.evaluator.step("points", (u,), lambda: self._at(u))
         self.known = {
             point.tobytes(): value
             for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)

@@ -13,7 +13,6 @@ from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.assemble import span_of
 from ..search.candidates import Candidates
-from ..search.checkpoints import floats
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import first_samples
 from ..search.search import BANDS, Archive, Run
@@ -96,7 +95,7 @@ def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: 
         optimum = solve(programme, u)
         return () if optimum is None else (optimum, programme.objectives(optimum))
 
-    found = [floats(array) for array in programme.evaluator.step("descent", given, compute)]
+    found = programme.evaluator.step("descent", given, compute)
     if not found:
         return None
     values = np.asarray(found[1] * programme.span + programme.ideal)
@@ -125,7 +124,6 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
 
 
 def _slsqp(programme: Programme, u: Array) -> Array:
-    """Return where one run of SLSQP ends."""
     from scipy.optimize import minimize
 
     minimised: Any = minimize  # its stubs know no mixed arguments

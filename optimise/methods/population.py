@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.candidates import Table
-from ..search.checkpoints import Numbers, floats, integers
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
 from .registry import budget
@@ -89,13 +88,12 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
 
 
 def _bred(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
-    def compute() -> tuple[Numbers, ...]:
+    def compute() -> tuple[Rows, Array, Rows]:
         evaluator.checkpoints.poll()
         brood = breed(past)
         return brood.sheet, brood.u, brood.parents
 
-    sheet, u, parents = evaluator.step("breeding", (np.array([len(past)]),), compute)
-    return Brood(integers(sheet), floats(u), integers(parents))
+    return Brood(*evaluator.step("breeding", (np.array([len(past)]),), compute))
 
 
 _Known = dict[tuple[int, bytes], tuple[Array, float]]

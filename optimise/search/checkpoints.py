@@ -15,19 +15,20 @@ import hashlib
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import ForeignRecords
-from ..front.stationarity import Array
 
 PAUSE = 1.0
 """s between two records of a long round: what a kill loses at most, and the step under way."""
 
 Numbers = NDArray[np.float64] | NDArray[np.int64]
 Words = NDArray[np.int64]
+Arrays = TypeVar("Arrays", bound=tuple[Numbers, ...])
+"""What a step gives: the same number of arrays, floats and integers in the same places, every time."""
 
 
 class Cancelled(Exception):
@@ -127,9 +128,7 @@ class Checkpoints:
         """Neither ask nor keep from now on: what follows belongs to no step."""
         self._cancelled = self._keep = self._next = None
 
-    def step(
-        self, kind: str, given: Sequence[Numbers], compute: Callable[[], tuple[Numbers, ...]], counts: Counts
-    ) -> tuple[Numbers, ...]:
+    def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays], counts: Counts) -> Arrays:
         """Return the result of a step: that of the earlier run, else computed now.
 
         kind, given: what tells it from other steps, all that it depends on besides the problem. counts: takes the
@@ -143,7 +142,7 @@ class Checkpoints:
             if past.key != key:
                 raise ForeignRecords(_OTHERWISE.format(kind))
             counts.evaluations += past.evaluations
-            return past.found
+            return cast(Arrays, past.found)
         before = counts.evaluations
         found = compute()
         self._pending.append(_words(_Step(key, counts.evaluations - before, found)))
@@ -239,15 +238,3 @@ _OTHERWISE = (
     "a run goes on only where it computes the same; the search came to another step ({}) than the one that was kept, "
     f"on another kind of processor perhaps; {_ANEW}"
 )
-
-
-def floats(value: Numbers) -> Array:
-    """Return an array of a step that is known to hold floats."""
-    assert value.dtype == np.float64
-    return value  # type: ignore[return-value]
-
-
-def integers(value: Numbers) -> NDArray[np.int64]:
-    """Return an array of a step that is known to hold integers."""
-    assert value.dtype == np.int64
-    return value  # type: ignore[return-value]

@@ -15,7 +15,7 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Constraint, Objective, Problem, Range
-from .checkpoints import Checkpoints, Numbers, floats, integers
+from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly
 
@@ -113,9 +113,7 @@ class Evaluator:
     def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
         return Evaluator, (self.problem, self.sheet)
 
-    def step(
-        self, kind: str, given: Sequence[Numbers], compute: Callable[[], tuple[Numbers, ...]]
-    ) -> tuple[Numbers, ...]:
+    def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step, see `Checkpoints.step`."""
         return self.checkpoints.step(kind, given, compute, self)
 
@@ -131,8 +129,8 @@ class Evaluator:
         dimensions = self.sheet.dimensions(u)
         rows, found, violation = self.step("screening", (u, np.array([band])), lambda: self._screened(dimensions, band))
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
-        objectives[integers(rows)] = floats(found)
-        return dimensions, objectives, floats(violation)
+        objectives[rows] = found
+        return dimensions, objectives, violation
 
     def _screened(self, dimensions: Array, band: float) -> tuple[NDArray[np.int64], Array, Array]:
         """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""

@@ -293,5 +293,4 @@ def _left(limits: Rows, move: Array) -> float:
 
 
 def _beyond(excess: Array) -> Array:
-    """Return the excess beyond rounding."""
     return np.maximum(excess - ROUNDING, 0.0)

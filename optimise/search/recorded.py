@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..engine.engine import Serial
 from ..front.stationarity import Array
 from .candidates import Polished, ragged
-from .checkpoints import Numbers, floats, integers
+from .checkpoints import Numbers
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 
+Lengths = NDArray[np.int64]
 _Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None]
 """Scale, chosen objectives and iterations of a polish."""
 
@@ -68,7 +70,7 @@ def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished
 def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]) -> Polished:
     """Return the result of a step; a record has ragged rows end to end, with their lengths."""
 
-    def arrays() -> tuple[Numbers, ...]:
+    def arrays() -> tuple[Array, Array, Array, Array, Lengths, Array, Array, Lengths, Array]:
         found = compute()
         k, owners = found.u.shape[1], [owner for owner, _ in found.goals]
         return (
@@ -84,8 +86,7 @@ def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: 
         )
 
     u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.step(kind, given, arrays)
-    n, ends = len(pieces), np.cumsum(integers(pieces))[:-1]
-    goals = zip(np.split(floats(owners), ends), np.split(floats(slopes), ends), strict=True)
-    held = np.split(floats(active), np.cumsum(integers(edges))[:-1])
-    columns = floats(u), floats(values), floats(violation), floats(residual)
-    return Polished(*columns, ragged(goals if n else ()), ragged(held if n else ()))
+    n, ends = len(pieces), np.cumsum(pieces)[:-1]
+    goals = zip(np.split(owners, ends), np.split(slopes, ends), strict=True)
+    held = np.split(active, np.cumsum(edges)[:-1])
+    return Polished(u, values, violation, residual, ragged(goals if n else ()), ragged(held if n else ()))

@@ -114,6 +114,7 @@ class Run:
     def __post_init__(self) -> None:
         count = len(self.problem.objectives)
         self.archive, self.finished = Archive.empty(count), Finished.none(np.ones(count))
+        self._targets = np.array([objective.target or 0.0 for objective in self.problem.objectives])
         self._growth = Growth(self._targets)
         self.latest: Array = np.zeros((0, count))
         self._heard = time.monotonic()
@@ -169,10 +170,6 @@ class Run:
         if hearing is not None:
             hearing(entry)
         self._heard = time.monotonic()
-
-    @property
-    def _targets(self) -> Array:
-        return np.array([objective.target or 0.0 for objective in self.problem.objectives])
 
     def history(self, ideal: Array, span: Array, most: int | None = None) -> tuple[Progress, ...]:
         """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.

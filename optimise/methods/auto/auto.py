@@ -14,7 +14,6 @@ from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import SELECTING, assemble, span_of
 from ...search.candidates import Candidates, Finished
-from ...search.checkpoints import integers
 from ...search.evaluation import Evaluator
 from ...search.recorded import polished, projected
 from ...search.search import WIDTHS, Archive, Run, enumerate_settled, explore, searched
@@ -109,7 +108,7 @@ def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) ->
     def compute() -> tuple[NDArray[np.int64]]:
         return (choose(values, _candidates(problem), always=always, stand=stand),)
 
-    return rows[integers(evaluator.step("choice", (values,), compute)[0])]
+    return rows[evaluator.step("choice", (values,), compute)[0]]
 
 
 def _extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> list[tuple[int, Array]]:

@@ -29,7 +29,6 @@ import numpy as np
 
 from ...front.stationarity import Array
 from ...problem.problem import Problem
-from ...search.checkpoints import floats
 from ...search.evaluation import FEASIBLE, Evaluator
 from ...search.sampling import apart, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
@@ -67,8 +66,8 @@ def _end(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float
         return point.u, np.array([point.top, point.violation])
 
     end, measures = evaluator.step("descent", (u, np.array([descent.scale])), compute)
-    top, violation = floats(measures).tolist()
-    return floats(end), top, violation
+    top, violation = measures.tolist()
+    return end, top, violation
 
 
 def _within_budget(problem: Problem) -> Problem:
