@@ -40,7 +40,7 @@ from .commands.submit import submit, watch
 from .commands.sweep import sweep
 from .commands.worker import worker
 from .resources.disk import full_places, is_full
-from .text.options import spread_groups
+from .text.options import for_typer
 from .text.screen import give, say
 from .text.streams import give_up_output, guard_streams
 
@@ -148,7 +148,7 @@ COMMANDS = (
     *(serve, submit, jobs, watch, cancel, resume, delete, worker, doctor),
 )
 for command in COMMANDS:
-    app.command()(spread_groups(command))
+    app.command()(for_typer(command))
 
 
 def main() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -11,22 +10,19 @@ from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Dimensions, Json, drawable, value_option
+from ..text.options import Dimensions, Figures, JobFile, Json, value_option
 from ..text.screen import console, give, say, waiting
 
 
 def allocate(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with [costs].")],
-    limit: Annotated[str, typer.Option(metavar="LENGTH", help='Position error that is allowed, such as "0.1 mm".')],
+    job: Annotated[JobFile, "A job file with [costs]."],
+    limit: Annotated[str, typer.Option(metavar="LENGTH"), 'Position error that is allowed, such as "0.1 mm".'],
     *,
     size: Dimensions,
     kind: Annotated[
-        str, typer.Option(metavar="KIND", help='How errors add up: "worst case" or "rss" (root-sum-square).')
+        str, typer.Option(metavar="KIND"), 'How errors add up: "worst case" or "rss" (root-sum-square).'
     ] = "worst case",
-    figures: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", callback=drawable, help="Draw error and costs into allocation.png there."),
-    ] = None,
+    figures: Annotated[Figures, "Draw error and costs into allocation.png there."] = None,
     json: Json = False,
 ) -> None:
     """Find the tolerances of least manufacturing cost that keep the position error within a limit.

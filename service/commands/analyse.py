@@ -14,7 +14,7 @@ from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import Dimensions, Json, Runs, Units, drawable, speed_option, value_option
+from ..text.options import Angle, Dimensions, Figures, File, Json, Length, Runs, Units, speed_option, value_option
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
 from ..topics.design_analysis import analysis_of, numbers_of
@@ -35,45 +35,30 @@ _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 def analyse(
     job: Annotated[
         Path | None,
-        typer.Argument(
-            metavar="JOB", help="A job file: what masses, loads, tolerances and speed come from. A run with --design."
-        ),
+        typer.Argument(metavar="JOB"),
+        "A job file: what masses, loads, tolerances and speed come from. A run with --design.",
     ] = None,
     *,
     size: Dimensions,
     speed: Annotated[
-        str | None,
-        typer.Option(metavar="SPEED", help='Crank speed, such as "300 rpm"; negative is clockwise.'),
+        str | None, typer.Option(metavar="SPEED"), 'Crank speed, such as "300 rpm"; negative is clockwise.'
     ] = None,
     put: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="PATH=VALUE",
-            help='A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
-        ),
+        typer.Option("--set", metavar="PATH=VALUE"),
+        'A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
     ] = None,
     design: Annotated[
-        int | None, typer.Option(metavar="NO", help="A design of a run: its number in `slidercrank front RUN`.")
+        int | None, typer.Option(metavar="NO"), "A design of a run: its number in `slidercrank front RUN`."
     ] = None,
-    show: Annotated[list[str] | None, typer.Option(metavar="TOPIC", help=_TOPIC_HELP)] = None,
-    at: Annotated[
-        str | None, typer.Option(metavar="ANGLE", help='Crank angle of the polygons.  [default: "30 deg"]')
-    ] = None,
-    limit: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Position error that a machine may have: gives the yield.")
-    ] = None,
+    show: Annotated[list[str] | None, typer.Option(metavar="TOPIC"), _TOPIC_HELP] = None,
+    at: Annotated[Angle, 'Crank angle of the polygons.  [default: "30 deg"]'] = None,
+    limit: Annotated[Length, "Position error that a machine may have: gives the yield."] = None,
     fluctuation: Annotated[
-        float | None,
-        typer.Option(metavar="SHARE", help="Speed fluctuation that the flywheel is for.  [default: 0.02]"),
+        float | None, typer.Option(metavar="SHARE"), "Speed fluctuation that the flywheel is for.  [default: 0.02]"
     ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", callback=drawable, help="Draw the design into design.png there, and each topic."),
-    ] = None,
-    cycle: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write motion, forces and torque over the cycle as CSV.")
-    ] = None,
+    figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None,
+    cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -11,43 +10,26 @@ from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, MASS, Kind
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Dimensions, Json, drawable, value_option
+from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, value_option
 from ..text.screen import console, give, say, waiting
 
 if TYPE_CHECKING:
     from ...optimise.sizing.counterweight import RodSpace
 
-_LENGTH = "LENGTH"
-
 
 def balance(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file: speed and masses come from it.")],
+    job: Annotated[JobFile, "A job file: speed and masses come from it."],
     *,
     size: Dimensions,
     measure: Annotated[
-        str, typer.Option(metavar="MEASURE", help='What is to be least over the cycle: "peak" or "rms".')
+        str, typer.Option(metavar="MEASURE"), 'What is to be least over the cycle: "peak" or "rms".'
     ] = "peak",
-    radius: Annotated[
-        str | None,
-        typer.Option(metavar=_LENGTH, help="Place of the counterweight's centre.  [default: as in JOB, or the crank]"),
-    ] = None,
-    mass: Annotated[
-        str | None, typer.Option(metavar="MASS", help="Greatest mass of the counterweight, such as 2 kg.")
-    ] = None,
-    rod_radius: Annotated[
-        str | None, typer.Option(metavar=_LENGTH, help="Space around the crank pin for a balance mass on the rod.")
-    ] = None,
-    rod_mass: Annotated[str | None, typer.Option(metavar="MASS", help="Greatest mass of it.")] = None,
-    arm: Annotated[
-        str | None,
-        typer.Option(metavar=_LENGTH, help="Count the shaking moment too, as moment / arm; needs a rod balance."),
-    ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", callback=drawable, help="Draw the hodograph before and after into balance.png there."
-        ),
-    ] = None,
+    radius: Annotated[Length, "Place of the counterweight's centre.  [default: as in JOB, or the crank]"] = None,
+    mass: Annotated[Mass, "Greatest mass of the counterweight, such as 2 kg."] = None,
+    rod_radius: Annotated[Length, "Space around the crank pin for a balance mass on the rod."] = None,
+    rod_mass: Annotated[Mass, "Greatest mass of it."] = None,
+    arm: Annotated[Length, "Count the shaking moment too, as moment / arm; needs a rod balance."] = None,
+    figures: Annotated[Figures, "Draw the hodograph before and after into balance.png there."] = None,
     json: Json = False,
 ) -> None:
     """Find the counterweight, instead of that of JOB, of least shaking force, and a balance mass on the rod.

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..runs.result import json_text
 from ..runs.run_folder import disk
-from ..text.options import Json, drawable
+from ..text.options import Figures, Json
 from ..text.screen import console, give, say
 
 
 def cases(
     case: Annotated[
-        int | None, typer.Option("--case", min=1, max=5, metavar="N", help="Only case N, 1 to 5, in full.")
+        int | None, typer.Option("--case", min=1, max=5, metavar="N"), "Only case N, 1 to 5, in full."
     ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", callback=drawable, help="Draw the publications' figures anew, as PNG files there."),
-    ] = None,
+    figures: Annotated[Figures, "Draw the publications' figures anew, as PNG files there."] = None,
     json: Json = False,
 ) -> None:
     """Show published mechanisms: printed numbers, exact ones, and a verdict.

@@ -33,10 +33,8 @@ _SIZES = tuple(f"{name}_mm" for name in DIMENSIONS)
 
 def certify(
     run: Run,
-    epsilon: Annotated[
-        float, typer.Option(help="Distance to be proven, as a share of each objective's range over the front.")
-    ] = 0.01,
-    seconds: Annotated[float, typer.Option(help="Stop after so long with what is proven by then.")] = 60.0,
+    epsilon: Annotated[float, "Distance to be proven, as a share of each objective's range over the front."] = 0.01,
+    seconds: Annotated[float, "Stop after so long with what is proven by then."] = 60.0,
     runs: Runs = None,
     json: Json = False,
 ) -> None:

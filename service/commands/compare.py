@@ -18,7 +18,7 @@ from ..jobs.find_run import find_run
 from ..runs.result import Result, json_text, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import job_file, read_run
-from ..text.options import Json, Runs, Units, drawable
+from ..text.options import Figures, Json, Runs, Units
 from ..text.screen import console, give, say
 from ..text.tables import print_table
 
@@ -38,13 +38,9 @@ class _Compared:
 
 
 def compare(
-    run: Annotated[list[str], typer.Argument(metavar="RUN...", help="The runs, two or more, as in `front`.")],
-    tolerance: Annotated[
-        float, typer.Option(min=0.0, help="Share of an objective's range that counts as equal.")
-    ] = 1e-6,
-    figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", callback=drawable, help="Also draw the fronts, into this folder.")
-    ] = None,
+    run: Annotated[list[str], typer.Argument(metavar="RUN..."), "The runs, two or more, as in `front`."],
+    tolerance: Annotated[float, typer.Option(min=0.0), "Share of an objective's range that counts as equal."] = 1e-6,
+    figures: Annotated[Figures, "Also draw the fronts, into this folder."] = None,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,

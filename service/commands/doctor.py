@@ -11,7 +11,7 @@ import typer
 from ...model.errors import NotFound
 from ..jobs.stores import Address, has_store, is_named, store_address
 from ..runs.run_folder import runs_place
-from ..text.options import Json, Runs
+from ..text.options import File, Json, Runs
 from ..text.screen import console, give, say
 
 UNHEALTHY = 1
@@ -21,10 +21,7 @@ UNHEALTHY = 1
 def doctor(
     store: Address = None,
     runs: Runs = None,
-    backup: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Copy a store that is a file into a new file, while it is used."),
-    ] = None,
+    backup: Annotated[File, "Copy a store that is a file into a new file, while it is used."] = None,
     json: Json = False,
 ) -> None:
     """Look whether store, workers, disks and software are in order; exit code 1 if anything is not.

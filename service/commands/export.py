@@ -13,7 +13,7 @@ from ..designs.selection import chosen_rows, none_meets, numbered, part_of
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import Run, Runs, Units, value_option
+from ..text.options import Angle, File, Run, Runs, Units, value_option
 from ..text.screen import give, say, waiting
 from .ending import end_without_design
 from .run_choice import Choice, Where, run_of, shown_result
@@ -26,33 +26,21 @@ _FILES = ("--dxf", "--svg", "--motion", "--gif", "--cycle")
 
 def export(
     run: Run,
-    csv: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the designs as CSV; - is standard output.")
-    ] = None,
-    json: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all of it as JSON; - is standard output.")
-    ] = None,
+    csv: Annotated[str | None, typer.Option(metavar="FILE"), "Write the designs as CSV; - is standard output."] = None,
+    json: Annotated[str | None, typer.Option(metavar="FILE"), "Write all of it as JSON; - is standard output."] = None,
     *,
     choice: Choice,
-    dxf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the linkage of one design at true scale as DXF.")
-    ] = None,
-    svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the same drawing as SVG.")] = None,
-    motion: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write its motion as an HTML file that needs nothing else.")
-    ] = None,
-    gif: Annotated[Path | None, typer.Option(metavar="FILE", help="Write its motion as an animated GIF.")] = None,
-    cycle: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write its motion, forces and torque over the cycle as CSV.")
-    ] = None,
+    dxf: Annotated[File, "Write the linkage of one design at true scale as DXF."] = None,
+    svg: Annotated[File, "Write the same drawing as SVG."] = None,
+    motion: Annotated[File, "Write its motion as an HTML file that needs nothing else."] = None,
+    gif: Annotated[File, "Write its motion as an animated GIF."] = None,
+    cycle: Annotated[File, "Write its motion, forces and torque over the cycle as CSV."] = None,
     where: Where = None,
     sort: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Sort the designs of --csv and --json, as in `front`.")
+        str | None, typer.Option(metavar="NAME"), "Sort the designs of --csv and --json, as in `front`."
     ] = None,
-    reverse: Annotated[bool, typer.Option("--reverse", help="Turn the order round.")] = False,
-    at: Annotated[
-        str | None, typer.Option(metavar="ANGLE", help='Crank angle of the drawing.  [default: "60 deg"]')
-    ] = None,
+    reverse: Annotated[bool, "Turn the order round."] = False,
+    at: Annotated[Angle, 'Crank angle of the drawing.  [default: "60 deg"]'] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from ..runs.result import json_text
-from ..text.options import Json
+from ..text.options import JobFile, Json
 from ..text.screen import console, give
 
 
 def check(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
+    job: Annotated[JobFile, "The job file, .toml or .json."],
     json: Json = False,
 ) -> None:
     """Check a job file and say what was understood of it."""

@@ -31,14 +31,12 @@ Ends = tuple[float | None, float | None]
 
 def like(
     run: Run,
-    number: Annotated[int, typer.Argument(metavar="NO", help="The design: its number in `slidercrank front RUN`.")],
+    number: Annotated[int, typer.Argument(metavar="NO"), "The design: its number in `slidercrank front RUN`."],
     where: Annotated[
         list[str],
-        typer.Option(
-            metavar="CONDITION",
-            help='What it must also meet: a quantity or a dimension, >= <= or =, a value, such as "crank = 40 mm". '
-            "May be repeated.",
-        ),
+        typer.Option(metavar="CONDITION"),
+        'What it must also meet: a quantity or a dimension, >= <= or =, a value, such as "crank = 40 mm". '
+        "May be repeated.",
     ],
     runs: Runs = None,
     units: Units = "metric",

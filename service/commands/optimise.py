@@ -39,23 +39,22 @@ _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither
 
 
 def optimise(
-    job: Annotated[Path | None, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")] = None,
+    job: Annotated[Path | None, typer.Argument(metavar="JOB"), "The job file, .toml or .json."] = None,
     resume: Annotated[
-        str | None, typer.Option(metavar="RUN", help="Instead of a job: go on with an interrupted or cancelled run.")
+        str | None, typer.Option(metavar="RUN"), "Instead of a job: go on with an interrupted or cancelled run."
     ] = None,
     runs: Runs = None,
     store: Address = None,
-    designs: Annotated[int | None, typer.Option(min=1, max=10_000, help="Deliver at most so many designs.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything random.")] = None,
+    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None,
+    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None,
     *,
     engine: EngineOptions,
     units: Units = "metric",
     json: Json = False,
     figures: Annotated[
         bool | None,
-        typer.Option(
-            "--figures/--no-figures", help='Draw the figures.  [default: if the extra "figures" is installed]'
-        ),
+        typer.Option("--figures/--no-figures"),
+        'Draw the figures.  [default: if the extra "figures" is installed]',
     ] = None,
 ) -> None:
     """Find the Pareto front of a job.

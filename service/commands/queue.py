@@ -22,11 +22,10 @@ if TYPE_CHECKING:
 
 def jobs(
     state: Annotated[
-        list[str] | None,
-        typer.Option(help="Only those that are queued, running, done, infeasible, cancelled or failed. Repeatable."),
+        list[str] | None, "Only those that are queued, running, done, infeasible, cancelled or failed. Repeatable."
     ] = None,
-    name: Annotated[str, typer.Option(help="Only those whose name has this in it.")] = "",
-    limit: Annotated[int, typer.Option(min=1, max=10_000, help="The latest so many.")] = 20,
+    name: Annotated[str, "Only those whose name has this in it."] = "",
+    limit: Annotated[int, typer.Option(min=1, max=10_000), "The latest so many."] = 20,
     store: Address = None,
     json: Json = False,
 ) -> None:

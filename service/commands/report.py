@@ -6,13 +6,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from ...model.errors import InputError, RunError
 from ...objectives.kinds import System
 from ..runs.run_folder import slug, write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import Run, Runs, Units
+from ..text.options import File, Run, Runs, Units
 from ..text.screen import say, waiting
 from .run_choice import Choice, Where, run_of
 
@@ -27,14 +25,9 @@ def report(
     choice: Choice,
     where: Where = None,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Where to write it: HTML, or PDF for a name that ends in .pdf.  "
-            "[default: <run>-design-<NO>.html here]",
-        ),
+        File, "Where to write it: HTML, or PDF for a name that ends in .pdf.  [default: <run>-design-<NO>.html here]"
     ] = None,
-    pdf: Annotated[bool, typer.Option("--pdf", help="Write PDF instead of HTML.")] = False,
+    pdf: Annotated[bool, "Write PDF instead of HTML."] = False,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:

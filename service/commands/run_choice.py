@@ -50,18 +50,15 @@ Where = Annotated[
 class Choice:
     """Options that name one design of a run."""
 
-    design: Annotated[
-        int | None, typer.Option(metavar="NO", help="The design: its number in `slidercrank front RUN`.")
-    ] = None
-    knee: Annotated[
-        bool, typer.Option("--knee", help="The design nearest to the ideal, objectives by their range.")
-    ] = False
+    design: Annotated[int | None, typer.Option(metavar="NO"), "The design: its number in `slidercrank front RUN`."] = (
+        None
+    )
+    knee: Annotated[bool, "The design nearest to the ideal, objectives by their range."] = False
     topsis: Annotated[
-        str | None,
-        typer.Option(metavar="WEIGHTS", help="The design that weights of the objectives choose, as in `front`."),
+        str | None, typer.Option(metavar="WEIGHTS"), "The design that weights of the objectives choose, as in `front`."
     ] = None
     lexicographic: Annotated[
-        str | None, typer.Option(metavar="RANKING", help="The design that ranked objectives choose, as in `front`.")
+        str | None, typer.Option(metavar="RANKING"), "The design that ranked objectives choose, as in `front`."
     ] = None
 
     @property

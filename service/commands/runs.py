@@ -19,45 +19,31 @@ def front(
     run: Run,
     where: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="CONDITION",
-            help='Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". '
-            "May be repeated.",
-        ),
+        typer.Option(metavar="CONDITION"),
+        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
     ] = None,
     sort: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME",
-            help="Sort by a quantity or column: best first for an objective, else smallest first.",
-        ),
+        typer.Option(metavar="NAME"),
+        "Sort by a quantity or column: best first for an objective, else smallest first.",
     ] = None,
-    reverse: Annotated[bool, typer.Option("--reverse", help="Turn the order round.")] = False,
+    reverse: Annotated[bool, "Turn the order round."] = False,
     columns: Annotated[
-        str | None,
-        typer.Option(metavar="NAMES", help="Quantities or columns to show, separated by commas."),
+        str | None, typer.Option(metavar="NAMES"), "Quantities or columns to show, separated by commas."
     ] = None,
-    rows: Annotated[int, typer.Option(min=0, help="Show at most so many designs; 0 shows all.")] = ROWS,
-    design: Annotated[
-        int | None, typer.Option(metavar="NO", help="Show one design by its number in the front.")
-    ] = None,
-    knee: Annotated[
-        bool, typer.Option("--knee", help="Choose one design: the nearest to the ideal, objectives by their range.")
-    ] = False,
+    rows: Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."] = ROWS,
+    design: Annotated[int | None, typer.Option(metavar="NO"), "Show one design by its number in the front."] = None,
+    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False,
     topsis: Annotated[
         str | None,
-        typer.Option(
-            metavar="WEIGHTS",
-            help='Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
-        ),
+        typer.Option(metavar="WEIGHTS"),
+        'Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
     ] = None,
     lexicographic: Annotated[
         str | None,
-        typer.Option(
-            metavar="RANKING",
-            help="Choose one design by ranked objectives, each with what it may give up for the next, such as "
-            '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
-        ),
+        typer.Option(metavar="RANKING"),
+        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
+        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
     ] = None,
     runs: Runs = None,
     units: Units = "metric",

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from ..runs.result import json_text
-from ..text.options import Dimensions, Json
+from ..text.options import Dimensions, JobFile, Json
 from ..text.screen import console, give, waiting
 
 if TYPE_CHECKING:
@@ -19,7 +16,7 @@ _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
 
 def sections(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file with a table [sections].")],
+    job: Annotated[JobFile, "A job file with a table [sections]."],
     *,
     size: Dimensions,
     json: Json = False,

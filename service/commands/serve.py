@@ -23,30 +23,27 @@ _SHORTEST = 16
 
 def serve(
     store: Address = None,
-    host: Annotated[str, typer.Option(help="Address of this machine to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="To listen on; 0 takes any that is free.")] = 8765,
+    host: Annotated[str, "Address of this machine to listen on."] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535), "To listen on; 0 takes any that is free."] = 8765,
     workers: Annotated[
         int | None,
-        typer.Option(
-            min=0, max=256, help="How many jobs are solved here at a time.  [default: one a processor, at most 4]"
-        ),
+        typer.Option(min=0, max=256),
+        "How many jobs are solved here at a time.  [default: one a processor, at most 4]",
     ] = None,
     token: Annotated[
         str | None,
-        typer.Option(
-            help=f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
-            f"[default: {TOKEN_VARIABLE}, else a random one, printed once]"
-        ),
+        f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
+        f"[default: {TOKEN_VARIABLE}, else a random one, printed once]",
     ] = None,
-    no_token: Annotated[bool, typer.Option("--no-token", help="Let in all users of this machine.")] = False,
+    no_token: Annotated[bool, "Let in all users of this machine."] = False,
     allow_host: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="By which the service may be called, too. Repeatable.")
+        list[str] | None, typer.Option(metavar="NAME"), "By which the service may be called, too. Repeatable."
     ] = None,
     allow_quantity: AllowQuantity = None,
     submissions: Annotated[
-        int, typer.Option("--submissions-per-minute", min=0, help="Sum over all clients; 0 is no limit.")
+        int, typer.Option("--submissions-per-minute", min=0), "Sum over all clients; 0 is no limit."
     ] = 600,
-    most_queued: Annotated[int, typer.Option(min=1, help="Most jobs that may wait.")] = 10_000,
+    most_queued: Annotated[int, typer.Option(min=1), "Most jobs that may wait."] = 10_000,
     *,
     most: Most,
     lease: Lease = 30.0,

@@ -14,7 +14,7 @@ from ...model.errors import StoreError
 from ...optimise.front.progress import standing
 from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
 from ..resources.memory import size_of
-from ..text.options import Json
+from ..text.options import JobFile, Json
 from ..text.screen import console, give, progress_bar, say
 from ..text.streams import reader_left
 from .ending import EXIT_CODES
@@ -29,21 +29,17 @@ _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
 def submit(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="The job file, .toml or .json.")],
+    job: Annotated[JobFile, "The job file, .toml or .json."],
     store: Address = None,
-    priority: Annotated[int, typer.Option(help="-1000 to 1000; jobs of higher priority are solved first.")] = 0,
-    key: Annotated[
-        str | None, typer.Option(help="Key of this submission: repeating it with the same key gives the same job.")
-    ] = None,
-    attempts: Annotated[int, typer.Option(help="Number of tries, without progress, before it fails.")] = 3,
-    seconds: Annotated[float | None, typer.Option(help="End its search after so long, with what it found.")] = None,
-    evaluations: Annotated[
-        int | None, typer.Option(help="End its search after so many designs, with what it found.")
-    ] = None,
+    priority: Annotated[int, "-1000 to 1000; jobs of higher priority are solved first."] = 0,
+    key: Annotated[str | None, "Key of this submission: repeating it with the same key gives the same job."] = None,
+    attempts: Annotated[int, "Number of tries, without progress, before it fails."] = 3,
+    seconds: Annotated[float | None, "End its search after so long, with what it found."] = None,
+    evaluations: Annotated[int | None, "End its search after so many designs, with what it found."] = None,
     memory: Annotated[
-        str | None, typer.Option(metavar="SIZE", help='Let it fail if its worker takes more, such as "2 GB".')
+        str | None, typer.Option(metavar="SIZE"), 'Let it fail if its worker takes more, such as "2 GB".'
     ] = None,
-    watch: Annotated[bool, typer.Option("--watch", help="Show what happens to it until it ends.")] = False,
+    watch: Annotated[bool, "Show what happens to it until it ends."] = False,
     json: Json = False,
 ) -> None:
     """Queue a job for the workers of a store, see `serve` and `worker`.

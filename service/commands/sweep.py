@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, get_args
 
 import typer
@@ -13,7 +12,7 @@ from ...objectives.kinds import ANGULAR_SPEED, LENGTH
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..runs.run_folder import disk
-from ..text.options import Dimensions, Json, Units, drawable, length_option, value_option
+from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option, value_option
 from ..text.screen import give, say
 from ..topics.sweep.text import show
 
@@ -27,19 +26,14 @@ MOST_VALUES = 10_000
 
 
 def sweep(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="A job file, .toml or .json.")],
+    job: Annotated[JobFile, "A job file, .toml or .json."],
     over: Annotated[
-        list[str],
-        typer.Option(metavar="RANGE", help='What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.'),
+        list[str], typer.Option(metavar="RANGE"), 'What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.'
     ],
-    of: Annotated[
-        list[str], typer.Option(metavar="QUANTITY", help="Quantity to compute, such as peak_torque. Repeatable.")
-    ],
+    of: Annotated[list[str], typer.Option(metavar="QUANTITY"), "Quantity to compute, such as peak_torque. Repeatable."],
     *,
     size: Dimensions,
-    figures: Annotated[
-        Path | None, typer.Option(metavar="DIR", callback=drawable, help="Draw the sweep into sweep.png there.")
-    ] = None,
+    figures: Annotated[Figures, "Draw the sweep into sweep.png there."] = None,
     units: Units = "metric",
     json: Json = False,
 ) -> None:

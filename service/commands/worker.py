@@ -46,17 +46,14 @@ class Most:
     """Options that limit what jobs take."""
 
     most_running: Annotated[
-        int | None, typer.Option(min=1, help="Let at most so many jobs of the store be solved at a time.")
+        int | None, typer.Option(min=1), "Let at most so many jobs of the store be solved at a time."
     ] = None
-    most_seconds: Annotated[
-        float | None, typer.Option(help="End the search of every job after so long, with what it found.")
-    ] = None
+    most_seconds: Annotated[float | None, "End the search of every job after so long, with what it found."] = None
     most_evaluations: Annotated[
-        int | None, typer.Option(help="End the search of every job after so many designs, with what it found.")
+        int | None, "End the search of every job after so many designs, with what it found."
     ] = None
     most_memory: Annotated[
-        str | None,
-        typer.Option(metavar="SIZE", help='Let a job fail if its worker takes more memory, such as "2 GB".'),
+        str | None, typer.Option(metavar="SIZE"), 'Let a job fail if its worker takes more memory, such as "2 GB".'
     ] = None
 
     def limits(self) -> Limits:
@@ -69,10 +66,10 @@ class Most:
 
 def worker(
     store: Address = None,
-    processes: Annotated[int, typer.Option(min=1, max=256, help="Workers; each solves one job at a time.")] = 1,
+    processes: Annotated[int, typer.Option(min=1, max=256), "Workers; each solves one job at a time."] = 1,
     lease: Lease = 30.0,
     allow_quantity: AllowQuantity = None,
-    drain: Annotated[bool, typer.Option("--drain", help="End as soon as no job waits.")] = False,
+    drain: Annotated[bool, "End as soon as no job waits."] = False,
     *,
     most: Most,
     grace: Grace = 10.0,

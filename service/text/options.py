@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, fields, is_dataclass
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 import typer
 
@@ -27,6 +28,12 @@ def drawable(folder: Path | None) -> Path | None:
     return folder
 
 
+JobFile = Annotated[Path, typer.Argument(metavar="JOB")]
+File = Annotated[Path | None, typer.Option(metavar="FILE")]
+Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=drawable)]
+Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]
+Length = Annotated[str | None, typer.Option(metavar="LENGTH")]
+Mass = Annotated[str | None, typer.Option(metavar="MASS")]
 Units = Annotated[
     System,
     typer.Option(
@@ -48,19 +55,21 @@ Run = Annotated[
 ]
 
 
-def spread_groups(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command for typer with the fields of a dataclass of options for each parameter of its type."""
+def for_typer(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command for typer, whose parameters have their help as a text in `Annotated`.
+
+    A parameter of a dataclass of options stands for the fields of that. A flag is off unless it is given.
+    """
     hints = get_type_hints(command, include_extras=True)
     groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
-    own = inspect.signature(command).parameters
     options: list[inspect.Parameter] = []
-    for name, parameter in own.items():
+    for name, parameter in inspect.signature(command).parameters.items():
         given = [(name, parameter.default, hints[name])]
         if name in groups:
             types = get_type_hints(groups[name], include_extras=True)
             given = [(field.name, field.default, types[field.name]) for field in fields(groups[name])]
         options += [
-            inspect.Parameter(option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+            inspect.Parameter(option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_helped(option, hint))
             for option, default, hint in given
         ]
 
@@ -75,18 +84,25 @@ def spread_groups(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
+def _helped(name: str, hint: Any) -> Any:
+    """Return the annotation of an option as typer reads it, its help in the option."""
+    kind, *options = get_args(hint)
+    if not isinstance(options[-1], str):
+        return hint
+    *options, text = options
+    flag = [f"--{name.replace('_', '-')}"] if kind is bool else []
+    option = copy(options[0]) if options else typer.Option(*flag)
+    option.help = text
+    return Annotated[kind, option]
+
+
 @dataclass(frozen=True)
 class Dimensions:
     """Crank, rod and offset as they are given."""
 
-    crank: Annotated[
-        str | None, typer.Option("--crank", metavar="LENGTH", help='Crank, such as "40 mm", unless JOB fixes it.')
-    ] = None
-    rod: Annotated[str | None, typer.Option("--rod", metavar="LENGTH", help="Connecting rod, likewise.")] = None
-    offset: Annotated[
-        str | None,
-        typer.Option("--offset", metavar="LENGTH", help='Offset of the slider line, such as "-20 mm", likewise.'),
-    ] = None
+    crank: Annotated[Length, 'Crank, such as "40 mm", unless JOB fixes it.'] = None
+    rod: Annotated[Length, "Connecting rod, likewise."] = None
+    offset: Annotated[Length, 'Offset of the slider line, such as "-20 mm", likewise.'] = None
 
     def lengths(self, problem: Problem | None) -> list[float]:
         """Return crank, rod and offset, m, each as `length_option` gives it."""
