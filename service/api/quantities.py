@@ -1,11 +1,12 @@
-"""Meanings of the quantities, and the units in which they are shown."""
+"""Meanings of the dimensions and of the quantities, and the units in which they are shown."""
 
 from __future__ import annotations
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from ...objectives.kinds import KINDS, SHOWN, TIME, shown_in
+from ...objectives.kinds import KINDS, LENGTH, SHOWN, TIME, shown_in
+from ...objectives.quantity import MECHANICS, Group, Quantity
 
 router = APIRouter(tags=["designs"])
 
@@ -94,6 +95,68 @@ def list_units() -> UnitTable:
 @router.get("/quantities")
 def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and where it comes from."""
-    from ..explained.explained import explained
+    from ...objectives.registry import FACTS
 
-    return QuantityList(quantities=[QuantityModel(**vars(item)) for item in explained()])
+    return QuantityList(quantities=[*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())])
+
+
+_STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better")
+"""Facts of a quantity that are sent as they are."""
+
+
+def _quantity(of: Quantity) -> QuantityModel:
+    return QuantityModel(
+        **{fact: getattr(of, fact) for fact in _STATED},
+        offered=list(of.offered),
+        column=of.field,
+        unit=of.unit.symbol,
+        kind=of.kind.plain,
+        group=of.group.value,
+    )
+
+
+def _dimension(name: str) -> QuantityModel:
+    title, section, sentence, advice, formula = _DIMENSIONS[name]
+    return QuantityModel(
+        name=name,
+        column=name + LENGTH.metric.suffix,
+        title=title,
+        unit=LENGTH.metric.symbol,
+        kind=LENGTH.plain,
+        group=Group.DIMENSIONS.value,
+        sentence=sentence,
+        advice=advice,
+        formula=formula,
+        section=section,
+        source=MECHANICS,
+        picture=name,
+        better="",
+        offered=[],
+    )
+
+
+_DIMENSIONS = {
+    "crank": (
+        "crank",
+        "2. Closed forms",
+        "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
+        "It sets the stroke, which is twice the crank without offset and a little more with one.",
+        "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
+    ),
+    "rod": (
+        "connecting rod",
+        "2. Closed forms",
+        "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
+        "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
+        "l; the crank turns fully if l > r + |e|",
+    ),
+    "offset": (
+        "offset",
+        "1. Notation and signs",
+        "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
+        "direction, on the crossed branch to its right; it makes one stroke slower than the other.",
+        "The more offset, the higher the time ratio, and the smaller the transmission angle.",
+        "e; the slider line is y = e",
+    ),
+}
+"""Title, section of the theory, sentence, advice and formula."""

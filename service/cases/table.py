@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..text.tables import print_table
+from ..text.tables import print_table, table
 from . import case_1, case_2, case_3, case_4, case_5
 from .published import CASES, Case, Row, read_case
 
@@ -27,30 +27,25 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
 
     full: every cell of a long printed table; else one line for each of its columns.
     """
-    from rich import box
-    from rich.table import Column, Table
-
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)
     screen.print(f"Given: {case.given}.", style="dim", soft_wrap=True)
-    values = (Column(name, justify="right", no_wrap=True) for name in ("printed", "exact"))
-    others = (Column(name, no_wrap=True) for name in ("unit", "verdict"))
-    table = Table("quantity", *values, *others, box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, pad_edge=False)
+    rows = table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True, pad_edge=False)
     reasons: list[str] = []
     folded = 0
     for _, group in groupby(case.rows, key=lambda row: _column(row, full)):
-        first, *more = rows = list(group)
+        first, *more = cells = list(group)
         if first.why and first.why not in reasons:
             reasons.append(first.why)
         note = f" [{reasons.index(first.why) + 1}]" if first.why else ""
         if more:
-            folded += len(rows)
+            folded += len(cells)
             name = first.what.partition(" at ")[0]
-            table.add_row(name, f"{len(rows)} rows", "", first.unit, f"{_counted(rows)}{note}")
+            rows.add_row(name, f"{len(cells)} rows", "", first.unit, f"{_counted(cells)}{note}")
         else:
             exact = "-" if first.exact is None else _like(first)
-            table.add_row(first.what, first.printed or "-", exact, first.unit, f"{first.verdict}{note}")
-    print_table(screen, table)
+            rows.add_row(first.what, first.printed or "-", exact, first.unit, f"{first.verdict}{note}")
+    print_table(screen, rows)
     for index, reason in enumerate(reasons, start=1):
         screen.print(f"[{index}] {reason}.", soft_wrap=True)
     if folded:

@@ -20,12 +20,25 @@ from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import job_file, read_run
 from ..text.options import Figures, Json, Runs, Units
 from ..text.screen import console, give, say
-from ..text.tables import print_table
+from ..text.tables import print_table, table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from ...optimise.questions.compare import Comparison
+
+_COLUMNS = {
+    "run": "{place} {run}",
+    "method": "{method}",
+    "seed": "{seed}",
+    "designs": "{designs}",
+    "in union\nfront": "{in_union}",
+    "hyper-\nvolume": "{hypervolume:.5f}",
+    "% of\nunion's": "{percent:.3f}",
+    "evaluated": "{evaluations}",
+    "s": "{seconds:.1f}",
+}
+"""Heads of the table, and what stands below them."""
 
 
 @dataclass(frozen=True)
@@ -174,29 +187,18 @@ def _show(screen: Console, compared: Sequence[_Compared], found: Comparison) -> 
         soft_wrap=True,
     )
     rows = [
-        [
-            f"{index + 1} {item.name}",
-            item.method,
-            str(item.result.seed),
-            f"{found.sizes[index]}",
-            f"{found.in_union[index]}",
-            f"{found.hypervolumes[index]:.5f}",
-            f"{100.0 * found.shares[index]:.3f}",
-            f"{item.result.evaluations}",
-            f"{item.result.seconds:.1f}",
-        ]
-        for index, item in enumerate(compared)
+        [form.format(place=place, percent=100.0 * run["share_of_union"], **run) for form in _COLUMNS.values()]
+        for place, run in enumerate(_record(compared, found)["runs"], 1)
     ]
-    heads = ["run", "method", "seed", "designs", "in union\nfront", "hyper-\nvolume", "% of\nunion's", "evaluated", "s"]
-    _print(screen, heads, rows)
+    _print(screen, list(_COLUMNS), rows)
     numbers = [str(place) for place in range(1, len(compared) + 1)]
-    for title, table, form in (
+    for title, values, form in (
         ("Coverage: % of the column's designs that the row's weakly dominate", 100.0 * found.coverage, ".1f"),
         ("Additive epsilon: by how much the row falls short of the column at worst, in ranges", found.epsilon, ".2e"),
     ):
         screen.print(f"\n{title}", soft_wrap=True)
         cells = [
-            [numbers[a], *("" if a == b else format(table[a, b], form) for b in range(len(numbers)))]
+            [numbers[a], *("" if a == b else format(values[a, b], form) for b in range(len(numbers)))]
             for a in range(len(numbers))
         ]
         _print(screen, ["", *numbers], cells)
@@ -225,12 +227,10 @@ def _verdict(compared: Sequence[_Compared], found: Comparison) -> list[str]:
 
 
 def _print(screen: Console, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
-    for place, head in enumerate(heads):
-        table.add_column(head, justify="right" if place else "left", vertical="bottom", no_wrap=True)
+    first, *others = heads
+    shown = table(first, *(f">{head}" for head in others), ruled=True, padding=(0, 1, 0, 0))
+    for column in shown.columns:
+        column.vertical = "bottom"
     for row in rows:
-        table.add_row(*row)
-    print_table(screen, table)
+        shown.add_row(*row)
+    print_table(screen, shown)

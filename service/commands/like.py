@@ -17,7 +17,7 @@ from ..runs.result import Result, Row, json_text, rows_of
 from ..runs.stored_runs import problem_of
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give, waiting
-from ..text.tables import print_table
+from ..text.tables import print_table, table
 from .ending import end_without_design
 from .run_choice import run_of
 
@@ -146,18 +146,14 @@ def _moved(before: Row, after: Row, key: str) -> float | None:
 def _show(
     result: Result, number: int, where: list[str], found: ParetoFront, apart: float, before: Row, after: Row
 ) -> None:
-    from rich import box
-    from rich.table import Table
-
     screen = console()
     screen.print(
         f"{result.name}: like design {number}, with {' and '.join(text.strip() for text in where)}",
         style="bold",
         soft_wrap=True,
     )
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), show_edge=False)
-    for place, head in enumerate(("quantity", "unit", f"design {number}", "now", "change", "% of range")):
-        table.add_column(head, justify="right" if place > 1 else "left", no_wrap=True)
+    heads = ("quantity", "unit", f">design {number}", ">now", ">change", ">% of range")
+    rows = table(*heads, ruled=True, padding=(0, 2, 0, 0))
     columns = {wanted.column for wanted in result.objectives}
     for key in after:
         change = _moved(before, after, key)
@@ -166,9 +162,9 @@ def _show(
         column, objective = find_column(key, after), key in columns
         share = f"{100.0 * change / _range(result, key):+.2f}" if objective and _range(result, key) else ""
         numbers = (f"{before[key]:.6g}", f"{after[key]:.6g}", f"{change:+.3g}", share)
-        table.add_row(column.title, column.unit, *numbers, style="bold" if objective else "")
+        rows.add_row(column.title, column.unit, *numbers, style="bold" if objective else "")
     screen.print()
-    print_table(screen, table)
+    print_table(screen, rows)
     screen.print(
         f"\n{after['status']}: residual {after['residual']:.1e}; distance {apart:.4g} of the objectives' ranges",
         soft_wrap=True,

@@ -13,6 +13,7 @@ from ..jobs.stores import Address, Name, find_job, has_store, store_address, sto
 from ..runs.result import json_text
 from ..text.options import Json
 from ..text.screen import console, give, say
+from ..text.tables import table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -82,17 +83,14 @@ def _tell(job: Job, json: bool, what: str = "") -> None:
 
 
 def _show(screen: Console, found: list[Job]) -> None:
-    from rich import box
-    from rich.table import Column, Table
-
-    short = (Column(title, no_wrap=True) for title in ("submitted", "job", "state"))
-    number = Column("no.", justify="right", no_wrap=True)
-    table = Table(number, *short, "where it stands", box=box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    rows = table(">no.", "submitted", "job", "state", "where it stands", ruled=True)
+    for column in rows.columns[:-1]:
+        column.no_wrap = True
     for job in found:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
         state = "stopping" if job.state == "running" and job.cancel_asked else job.state
-        table.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_standing(job), 120))
-    screen.print(table)
+        rows.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_standing(job), 120))
+    screen.print(rows)
 
 
 def _standing(job: Job) -> str:

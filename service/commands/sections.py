@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from ..runs.result import json_text
 from ..text.options import Dimensions, JobFile, Json
 from ..text.screen import console, give, waiting
+from ..text.tables import table
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -60,16 +61,13 @@ def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
 
 
 def _show(found: Sections) -> None:
-    from rich.table import Column, Table
-
     screen = console()
     for name, bar in (("crank", found.crank), ("rod", found.rod)):
         screen.print(f"{name}: width {1e3 * bar.width:.4g} mm, depth {1e3 * bar.depth:.4g} mm", soft_wrap=True)
     settled = "" if found.settled else "; sections and dynamics have not settled"
     screen.print(f"mass of both: {found.mass:.5g} kg, after {found.iterations} iterations{settled}", soft_wrap=True)
-    numbers = (Column(head, justify="right") for head in ("used, %", "1 % more of it saves"))
-    table = Table("limit", *numbers, box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    rows = table("limit", ">used, %", ">1 % more of it saves")
     for name, used in found.utilisation.items():
         rate = found.sensitivity[name]
-        table.add_row(name, f"{100.0 * used:.4g}", f"{rate:.3g} % of mass" if rate > _ACTIVE else "")
-    screen.print(table)
+        rows.add_row(name, f"{100.0 * used:.4g}", f"{rate:.3g} % of mass" if rate > _ACTIVE else "")
+    screen.print(rows)

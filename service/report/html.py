@@ -5,87 +5,31 @@ from __future__ import annotations
 import base64
 import re
 from html import escape
+from pathlib import Path
+from string import Template
 
 from ..figures.style import image
 from .document import Block, Facts, Paragraph, Picture, Report, Section, Table
 
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-_STYLE = """
-:root { --ink: #1a1a1a; --muted: #5c5c5c; --line: #d0d0d0; --blue: #00588a; --good: #1c6b30; --bad: #a8321f; }
-* { box-sizing: border-box; }
-body { margin: 0; background: #fff; color: var(--ink); font: 15px/1.45 system-ui, "Segoe UI", Arial, sans-serif; }
-main { max-width: 64rem; margin: 0 auto; padding: 1.5rem 1.2rem 3rem; }
-header { border-bottom: 2px solid var(--ink); margin-bottom: 1.2rem; padding-bottom: 0.6rem; }
-h1 { margin: 0; font-size: 1.6rem; line-height: 1.2; overflow-wrap: anywhere; }
-header p { margin: 0.3rem 0 0; color: var(--muted); }
-h2 { margin: 2rem 0 0.6rem; font-size: 1.2rem; border-bottom: 1px solid var(--line); padding-bottom: 0.2rem; }
-h3 { margin: 1.1rem 0 0.35rem; font-size: 1rem; }
-p { margin: 0.4rem 0; max-width: 52rem; }
-.note { color: var(--muted); font-size: 0.87rem; }
-.good::before { content: "\\2713\\00a0"; font-weight: 700; }
-.bad::before { content: "\\2717\\00a0"; font-weight: 700; }
-.good { color: var(--good); }
-.bad { color: var(--bad); font-weight: 600; }
-dl { display: grid; grid-template-columns: minmax(8rem, 11rem) 1fr; gap: 0.25rem 1rem; margin: 0.4rem 0; }
-dt { color: var(--muted); }
-dd { margin: 0; overflow-wrap: anywhere; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.22rem 0.55rem; text-align: left; vertical-align: top; border-bottom: 1px solid #e6e6e6; }
-thead th { border-bottom: 1.5px solid var(--ink); vertical-align: bottom; font-weight: 600; }
-tbody th { font-weight: 400; }
-.right { text-align: right; }
-td.right { white-space: nowrap; }
-.small { font-size: 0.83rem; }
-.bold > * { font-weight: 700; }
-figure { margin: 1rem 0; }
-figure svg, figure img { display: block; width: 100%; height: auto; max-height: 60rem; }
-figcaption { font-weight: 600; margin-bottom: 0.4rem; }
-.signatures { display: grid; grid-template-columns: repeat(auto-fit, minmax(11rem, 1fr)); gap: 1.4rem;
-  margin-top: 1rem; }
-.signatures div { border-top: 1px solid var(--ink); margin-top: 2.6rem; padding-top: 0.25rem; color: var(--muted);
-  font-size: 0.87rem; }
-@media (max-width: 40rem) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 0.5rem; } }
-@media print {
-  @page { size: A4; margin: 16mm 15mm 18mm; }
-  body { font-size: 9.5pt; }
-  main { max-width: none; padding: 0; }
-  h2, h3, figcaption { break-after: avoid; }
-  h2 { margin-top: 1.2rem; }
-  figure, .facts, .signatures, tr { break-inside: avoid; }
-  figure svg, figure img { max-height: 22cm; }
-  thead { display: table-header-group; }
-  .scroll { overflow: visible; }
-}
-"""
+_PAGE = Path(__file__).parent / "page"
 
 
 def html_file(report: Report) -> bytes:
     """Return the report as the content of an HTML file."""
-    parts = [
-        "<!doctype html>",
-        '<html lang="en">',
-        "<head>",
-        '<meta charset="utf-8">',
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{escape(report.title)}</title>",
-        f"<style>{_STYLE}</style>",
-        "</head>",
-        "<body>",
-        "<main>",
-        f"<header><h1>{escape(report.title)}</h1><p>{escape(report.subtitle)}; {escape(report.made)}</p></header>",
-    ]
+    parts = []
     for place, section in enumerate(report.sections):
         parts += _section(section, place)
         if place == 0:
-            parts.append(_signatures(report))
-    return "\n".join([*parts, "</main>", "</body>", "</html>", ""]).encode()
-
-
-def _signatures(report: Report) -> str:
-    boxes = "".join(f"<div>{escape(name)} by, date</div>" for name in report.signatures)
-    return f'<div class="signatures">{boxes}</div>'
+            boxes = "".join(f"<div>{escape(name)} by, date</div>" for name in report.signatures)
+            parts.append(f'<div class="signatures">{boxes}</div>')
+    page = Template((_PAGE / "report.html").read_text(encoding="utf-8")).substitute(
+        title=escape(report.title),
+        subtitle=escape(report.subtitle),
+        made=escape(report.made),
+        style=(_PAGE / "report.css").read_text(encoding="utf-8"),
+        sections="\n".join(parts),
+    )
+    return page.encode()
 
 
 def _section(section: Section, place: int) -> list[str]:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from .tables import table
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -15,15 +17,13 @@ Line = tuple[str, float | str | None, str, str]
 
 def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
     """Write a heading and one line for each number."""
-    from rich.table import Column, Table
-
     console.print(title, style="bold")
-    columns = ("name", Column(justify="right", no_wrap=True), Column(no_wrap=True), Column(style="dim"))
-    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    rows = table("", ">", "", "")
+    rows.columns[2].no_wrap, rows.columns[3].style = True, "dim"
     for name, value, unit, remark in lines:
         text = "undefined" if value is None else value if isinstance(value, str) else f"{value:.6g}"
-        table.add_row(f"  {name}", text, "" if value is None else unit, remark)
-    console.print(table)
+        rows.add_row(f"  {name}", text, "" if value is None else unit, remark)
+    console.print(rows)
 
 
 def plain(value: Any) -> float | None:

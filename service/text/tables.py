@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..designs.columns import DIMENSIONS, Column, find_column, metric_key
 from ..runs.result import Cell, Result, Row
@@ -53,18 +53,33 @@ def show_front(
 
 def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None) -> None:
     """Write all quantities of one design, one a line; those without a value are left out."""
-    from rich.table import Column, Table
-
-    columns = ("name", Column(justify="right"), "unit")
-    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    rows = table("", ">", "")
     for key in only or row:
         value = row[key]
         if value is None or (isinstance(value, float) and math.isnan(value)):
             continue
         column = find_column(key, row)
         text = value if isinstance(value, str) else f"{value:.6g}"
-        table.add_row(column.title, text, column.unit)
-    print_table(screen, table)
+        rows.add_row(column.title, text, column.unit)
+    print_table(screen, rows)
+
+
+def table(*columns: str, ruled: bool = False, **look: Any) -> Table:
+    """Return an empty table. columns: heads, aligned to the right where they begin with ">". ruled: the heads.
+
+    look: further options of `rich.table.Table`.
+    """
+    from rich import box
+    from rich.table import Table
+
+    usual: dict[str, Any] = {"box": None, "pad_edge": False, "padding": (0, 2, 0, 0)}
+    if ruled:
+        usual = {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False}
+    found = Table(**({"show_header": any(column.strip(">") for column in columns)} | usual | look))
+    for column in columns:
+        right = column.startswith(">")
+        found.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
+    return found
 
 
 def print_table(screen: Console, table: Table) -> None:
@@ -112,16 +127,14 @@ def _chosen(keys: list[str]) -> list[str]:
 
 
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
-    table.add_column("no.", justify="right", vertical="bottom")
+    shown = table(ruled=True, padding=0, show_header=True)
+    shown.add_column("no.", justify="right", vertical="bottom")
     for column in columns:
         title = "\n".join(f"{line} " for line in (*_narrow(column.title), column.unit))
-        table.add_column(title, justify="right", vertical="bottom", no_wrap=True)
-    table.add_column("", no_wrap=True)
+        shown.add_column(title, justify="right", vertical="bottom", no_wrap=True)
+    shown.add_column("", no_wrap=True)
     best = {
         (result.extremes[wanted.quantity], wanted.column)
         for wanted in result.objectives
@@ -135,8 +148,8 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
             Text(text + ("*" if top else " "), style="bold" if top else "")
             for text, top in zip(line, tops, strict=True)
         ]
-        table.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
-    return table
+        shown.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
+    return shown
 
 
 def _narrow(title: str) -> list[str]:

@@ -15,9 +15,8 @@ from ....model.tolerance.exact import worst
 from ....model.tolerance.sources import limits
 from ....optimise.problem.costs import NAMES, Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
-from ...text.tables import print_table
+from ...text.tables import print_table, table
 from ..peaks import peak
-from ..tables import table
 
 
 def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> dict[str, Any]:

@@ -14,8 +14,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn
-from ...text.tables import print_table
-from ..tables import table
+from ...text.tables import print_table, table
 
 _TOLD, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}

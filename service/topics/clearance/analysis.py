@@ -15,7 +15,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ...text.screen import error_console
-from ..tables import table
+from ...text.tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,8 +15,8 @@ from ....model.transient.flywheel import design_flywheel
 from ....model.transient.steady import Runner, SteadyRunning
 from ...figures.numerals import shown
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
+from ...text.tables import table
 from ..start_up.analysis import RPM, in_order, steady_numbers
-from ..tables import table
 
 FLUCTUATION = 0.02
 """Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""

@@ -14,8 +14,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, lengths
-from ...text.tables import print_table
-from ..tables import table
+from ...text.tables import print_table, table
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 _POLYGONS = (

@@ -12,9 +12,8 @@ from ....model.machine.mechanism import Mechanism
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
 from ...runs.result import finite, rows_of
-from ...text.tables import print_table
+from ...text.tables import print_table, table
 from ..peaks import row_of
-from ..tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -17,7 +17,7 @@ from ....model.transient.record import Transient
 from ....model.transient.steady import SteadyRunning, steady_running
 from ...figures.numerals import shown
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
-from ..tables import table
+from ...text.tables import table
 
 LONGEST = 60.0
 """s; a start that takes longer is not followed to its end unless asked for."""

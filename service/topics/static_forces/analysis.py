@@ -18,9 +18,8 @@ from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, lengths, over_turn
-from ...text.tables import print_table
+from ...text.tables import print_table, table
 from ..peaks import peak
-from ..tables import table
 
 _STEP = 30
 _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is near

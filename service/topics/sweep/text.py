@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
     """Write one row for each point; then how many have no value, and why the first has none."""
     from ...text.tables import print_table
-    from ..tables import table as table_of
+    from ...text.tables import table as table_of
 
     units_of = ["rpm" if axis.parameter == "speed" else "mm" for axis in axes]
     heads = [f">{axis.parameter}, {shown_in(unit, units)[0]}" for axis, unit in zip(axes, units_of, strict=True)]

@@ -16,9 +16,8 @@ from ....model.tolerance.exact import worst
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
 from ....model.tolerance.sources import SOURCES, limits, source_influences
-from ...text.tables import print_table
+from ...text.tables import print_table, table
 from ..peaks import row_of
-from ..tables import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
