@@ -9,9 +9,8 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ..runs.result import json_text
-from ..runs.run_folder import disk
 from ..text.options import Dimensions, Figures, JobFile, Json, value_option
-from ..text.screen import console, give, say, waiting
+from ..text.screen import console, give, say, write_figure
 
 
 def allocate(
@@ -53,11 +52,7 @@ def allocate(
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:
-        from ..figures.style import save
         from ..topics.allocation.figure import allocation_curves, allocation_figure
 
-        with disk(figures), waiting("drawing the figure"):
-            figures.mkdir(parents=True, exist_ok=True)
-            file = figures / "allocation.png"
-            save(allocation_figure(allocation_curves(found, linkage, problem.costs, mechanism)), file)
-        say(f"figure: {file}")
+        curves = allocation_curves(found, linkage, problem.costs, mechanism)
+        write_figure(figures / "allocation.png", lambda: allocation_figure(curves))

@@ -10,6 +10,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
+from ..designs.conditions import plain_number
 from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
@@ -204,21 +205,14 @@ def _load(job: Path | None, put: list[str]) -> Problem | None:
         return None
     from ...optimise.job import load_job
 
-    values = {}
+    values: dict[str, str | float] = {}
     for text in put:
         path, sign, value = (part.strip() for part in text.partition("="))
         if not (path and sign and value):
             raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
-        values[path] = _plain(value)
+        number = plain_number(value)
+        values[path] = value if number is None else number
     return load_job(job, values)
-
-
-def _plain(value: str) -> float | str:
-    """Return a number without a unit as a number, anything else as it stands."""
-    try:
-        return float(value)
-    except ValueError:
-        return value
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:

@@ -9,9 +9,8 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, MASS, Kind
 from ..runs.result import json_text
-from ..runs.run_folder import disk
 from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, value_option
-from ..text.screen import console, give, say, waiting
+from ..text.screen import console, give, say, write_figure
 
 if TYPE_CHECKING:
     from ...optimise.sizing.counterweight import RodSpace
@@ -66,13 +65,7 @@ def balance(
     if not found.converged:
         say(f"not proven to be the best: {found.objective:.6g} N, and no less than {found.bound:.6g} N is possible")
     if figures is not None:
-        from ..figures.panels import save_sheet
-
-        with disk(figures), waiting("drawing the figure"):
-            figures.mkdir(parents=True, exist_ok=True)
-            file = figures / "balance.png"
-            save_sheet(analysis.figure(found, title=problem.name), file)
-        say(f"figure: {file}")
+        write_figure(figures / "balance.png", lambda: analysis.figure(found, title=problem.name))
 
 
 def _space(radius: float | None, mass: float | None) -> RodSpace | None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,7 +14,7 @@ from ..runs.result import Result, Row, csv_text, json_text, rows_of
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import job_file
 from ..text.options import Json, Run, Runs
-from ..text.screen import console, error_console, give
+from ..text.screen import console, give, waiting
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
 from .run_choice import run_of
 
@@ -53,17 +51,20 @@ def certify(
     problem = load_job(job)
     if not result.designs:
         _nothing_feasible(result, problem, seconds, json=json)
+    import numpy as np
+
     from ...optimise.certificate.certify import certify_designs
 
-    with Interruption() as interruption, _progress() as show:
-        found = certify_designs(
-            problem,
-            _dimensions(result),
-            epsilon=epsilon,
-            seconds=seconds,
-            progress=show,
-            cancelled=interruption.asked,
-        )
+    sizes = np.array([[row[name] for name in _SIZES] for row in result.designs], dtype=np.float64) / 1e3
+    with Interruption() as interruption, waiting("bounding the design box") as status:
+
+        def tell(at: Step) -> None:
+            proven = f"{100.0 * at.epsilon:.3g} % proven" if math.isfinite(at.epsilon) else "nothing proven yet"
+            if status is not None:
+                status.update(f"{proven}, {at.open:,} of {at.boxes:,} boxes open, {at.added:,} designs added")
+
+        options = {"epsilon": epsilon, "seconds": seconds}
+        found = certify_designs(problem, sizes, **options, progress=tell, cancelled=interruption.asked)
     rows = rows_of(found.table.to_dict("list")) if len(found.table) else []
     record = _record(found, problem, str(folder), rows)
     write_file(folder / "certificate.json", json_text(record))
@@ -75,12 +76,6 @@ def certify(
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if found.proven else NOT_PROVEN)
-
-
-def _dimensions(result: Result) -> NDArray[np.float64]:
-    import numpy as np
-
-    return np.array([[row[name] for name in _SIZES] for row in result.designs], dtype=np.float64) / 1e3
 
 
 def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json: bool) -> None:
@@ -113,9 +108,7 @@ def _record(found: Certificate, problem: Problem, run: str, rows: list[Row]) -> 
         "boxes": found.boxes,
         "open_boxes": found.open,
         "remaining_share": found.remaining,
-        "remaining_where": None
-        if found.where is None
-        else dict(zip(_SIZES, (1e3 * found.where).tolist(), strict=True)),
+        "remaining_where": _by_size(found.where),
         "notes": list(found.notes),
         "seconds": found.seconds,
         "added": rows,
@@ -153,19 +146,3 @@ def _ranges(where: NDArray[np.float64]) -> str:
     return ", ".join(
         f"{name} {1e3 * low:.6g} to {1e3 * high:.6g} mm" for name, (low, high) in zip(DIMENSIONS, where, strict=True)
     )
-
-
-@contextlib.contextmanager
-def _progress() -> Iterator[Callable[[Step], None]]:
-    """Show a live line on standard error if it is a terminal; yield what is to be called between rounds."""
-    screen = error_console()
-    if not screen.is_terminal:
-        yield lambda _: None
-        return
-    with screen.status("bounding the design box") as status:
-
-        def tell(at: Step) -> None:
-            proven = f"{100.0 * at.epsilon:.3g} % proven" if math.isfinite(at.epsilon) else "nothing proven yet"
-            status.update(f"{proven}, {at.open:,} of {at.boxes:,} boxes open, {at.added:,} designs added")
-
-        yield tell

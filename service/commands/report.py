@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from ...model.errors import InputError, RunError
-from ...objectives.kinds import System
 from ..runs.run_folder import slug, write_file
 from ..runs.stored_runs import problem_of
 from ..text.options import File, Run, Runs, Units
 from ..text.screen import say, waiting
 from .run_choice import Choice, Where, run_of
-
-if TYPE_CHECKING:
-    from ..report.document import Report
-    from ..runs.result import Result
 
 
 def report(
@@ -43,35 +38,17 @@ def report(
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with waiting("writing the report"):
-        content = _content(_report(folder, result, number, units), pdf=pdf)
+        from ..report.design_report import design_report
+        from ..report.html import html_file
+        from ..report.pdf import pdf_file
+        from ..report.subject import subject_of
+
+        versions, certificate = _kept(folder / "versions.json") or {}, _kept(folder / "certificate.json")
+        kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
+        made = design_report(subject_of(problem_of(folder, result), result, number, run=folder.name, **kept))
+        content = pdf_file(made) if pdf else html_file(made)
     write_file(file, content)
     say(f"report: {file}")
-
-
-def _report(folder: Path, result: Result, number: int, units: System) -> Report:
-    from ..report.design_report import design_report
-    from ..report.subject import subject_of
-
-    subject = subject_of(
-        problem_of(folder, result),
-        result,
-        number,
-        run=folder.name,
-        versions=_kept(folder / "versions.json") or {},
-        certificate=_kept(folder / "certificate.json"),
-        system=units,
-    )
-    return design_report(subject)
-
-
-def _content(made: Report, *, pdf: bool) -> bytes:
-    if pdf:
-        from ..report.pdf import pdf_file
-
-        return pdf_file(made)
-    from ..report.html import html_file
-
-    return html_file(made)
 
 
 def _kept(file: Path) -> dict[str, Any] | None:

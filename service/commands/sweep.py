@@ -11,9 +11,8 @@ from ...model.errors import InputError
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
-from ..runs.run_folder import disk
 from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option, value_option
-from ..text.screen import give, say
+from ..text.screen import give, write_figure
 from ..topics.sweep.text import show
 
 if TYPE_CHECKING:
@@ -63,14 +62,10 @@ def sweep(
     else:
         show(table, axes, quantities, units)
     if figures is not None:
-        from ..figures.style import save
         from ..topics.sweep.figure import sweep_figure
 
-        with disk(figures):
-            figures.mkdir(parents=True, exist_ok=True)
-            file = figures / "sweep.png"
-            save(sweep_figure(table, axes, quantities, title=problem.name, system=units), file)
-        say(f"figure: {file}")
+        file = figures / "sweep.png"
+        write_figure(file, lambda: sweep_figure(table, axes, quantities, title=problem.name, system=units))
 
 
 def parse_axis(text: str) -> Axis:

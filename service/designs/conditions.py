@@ -70,18 +70,21 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     return Condition(column, comparison, _number(text, column, value))
 
 
+def plain_number(text: str) -> float | None:
+    """Return the number that a text is, None if it is none or has a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
 def _number(text: str, column: Column, value: str) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
     from ...optimise.job.units import kind_of, to_si
 
-    if column.own_unit or not column.unit:
-        try:
-            number = float(value)
-        except ValueError:
-            pass
-        else:
-            if math.isfinite(number):
-                return number * column.plain
+    number = plain_number(value)
+    if (column.own_unit or not column.unit) and number is not None and math.isfinite(number):
+        return number * column.plain
     try:
         return to_si(value, kind_of(column.unit)) * column.factor
     except InputError as error:

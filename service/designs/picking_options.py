@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ..runs.result import Result, Wanted
+from .conditions import plain_number
 
 if TYPE_CHECKING:
     from ...optimise.front.stationarity import Array
@@ -72,11 +73,8 @@ def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
     for part in _parts(text, _TOPSIS):
         name, equals, value = part.partition("=")
         column = _column(name, objectives)
-        try:
-            weight = float(value)
-        except ValueError:
-            weight = math.nan
-        if not equals or not math.isfinite(weight) or weight < 0.0 or column in named:
+        weight = plain_number(value)
+        if not equals or weight is None or not math.isfinite(weight) or weight < 0.0 or column in named:
             raise InputError(
                 f"a weight is an objective, =, and a number of zero or more, each objective once; got {part!r}; "
                 f"write it like {_TOPSIS}"
@@ -105,19 +103,11 @@ def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
         if value.endswith("%"):
             return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
         kind = kind_for(wanted.unit)
-        if kind.unit and _plain(value):
+        if kind.unit and plain_number(value) is not None:
             raise InputError(f"must be {kind.name} with its unit, or a share of the range; got {value}")
         return to_si(value, kind, sign="zero or more") * per_si(wanted.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
-
-
-def _plain(value: str) -> bool:
-    try:
-        float(value)
-    except ValueError:
-        return False
-    return True
 
 
 def _parts(text: str, example: str) -> list[str]:

@@ -83,13 +83,8 @@ def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:
 
 def moving(pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank with their pins where crank pin and slider pin are."""
-    pivot: Point = (0.0, 0.0)
-    return [
-        block(on.SLIDER, slider, look.block),
-        bar(on.ROD, pin, slider, look.rod_width),
-        bar(on.CRANK, pivot, pin, look.crank_width),
-        *(Circle(on.PINS, point, look.pin) for point in (pivot, pin, slider)),
-    ]
+    links = _links((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
+    return [*links, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 
 
 def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
@@ -102,8 +97,9 @@ def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
     for layer, angle, end in zip(
         (on.INNER, on.OUTER), linkage.dead_centre_angles, (look.inner, look.outer), strict=True
     ):
-        r = look.crank
-        ghosts += _ghost(layer, (r * math.cos(angle), r * math.sin(angle)), end, look)
+        pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
+        ghosts += _links((layer,) * 3, pin, end, look)
+        ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
     return [*axes, *paths, *ghosts, *_rails(look), *_bearing(look, below=below)]
 
 
@@ -127,14 +123,12 @@ def block(layer: Layer, pin: Point, height: float) -> Outline:
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def _ghost(layer: Layer, pin: Point, slider: Point, look: Look) -> list[Shape]:
-    """Return the linkage in another position, pins as small circles."""
+def _links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
+    """Return slider, rod and crank, each on its layer."""
     return [
-        block(layer, slider, look.block),
-        bar(layer, pin, slider, look.rod_width),
-        bar(layer, (0.0, 0.0), pin, look.crank_width),
-        Circle(layer, pin, 0.6 * look.pin),
-        Circle(layer, slider, 0.6 * look.pin),
+        block(layers[0], slider, look.block),
+        bar(layers[1], pin, slider, look.rod_width),
+        bar(layers[2], (0.0, 0.0), pin, look.crank_width),
     ]
 
 

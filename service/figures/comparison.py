@@ -16,7 +16,7 @@ from ...objectives.kinds import unit_text
 from ..runs.result import Wanted
 from .numerals import with_unit
 from .scatter import MOST, triangle
-from .style import INK, SMALL, dress, heading, limits, new_figure, write
+from .style import INK, SMALL, dress, heading, legend_at, limits, new_figure, write
 
 # Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -62,17 +62,9 @@ def comparison_matrix(
     heading(figure, title, more, left=0.2)
     for line, note in enumerate(notes):
         write(figure, 0.2, below - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
-    figure.legend(
-        [Line2D([], [], **_style(index)) for index in range(len(runs))],
-        [f"{run.label}, {len(run.values)} design{'s' if len(run.values) != 1 else ''}" for run in runs],
-        loc="upper left",
-        bbox_to_anchor=(0.2 / width, (height - _TOP) / height),
-        fontsize=SMALL,
-        frameon=False,
-        borderpad=0.0,
-        borderaxespad=0.0,
-        handletextpad=0.4,
-    )
+    handles = [Line2D([], [], **_style(index)) for index in range(len(runs))]
+    counted = [f"{run.label}, {len(run.values)} design{'s' if len(run.values) != 1 else ''}" for run in runs]
+    legend_at(figure, 0.2, height - _TOP, handles, counted)
     return figure
 
 

@@ -11,8 +11,6 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ...model.linkage.linkage import Linkage
-from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
@@ -78,33 +76,27 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
 
 def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric") -> Figure:
     """Return the sheet of a design of a front. label: what it is among the others. system: of units."""
-    mechanism = front.mechanism(row)
-    crank, rod, offset = front.dimensions[row, :3]
-    linkage = Linkage(crank, rod, offset, mechanism.branch)
+    design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))
     numbers = {str(key): value for key, value in front.designs.iloc[row].items()}
-    return _sheet(front, mechanism, linkage, numbers, (label, f"design {row + 1} of {len(front)}"), system)
+    subtitle = f"design {row + 1} of {len(front)}"
+    return sheet_of_changed(front, design, numbers, label, system, subtitle=subtitle)
 
 
 def sheet_of_changed(
-    front: ParetoFront, design: StoredDesign, numbers: Mapping[str, Any], label: str, system: System = "metric"
+    front: ParetoFront,
+    design: StoredDesign,
+    numbers: Mapping[str, Any],
+    label: str,
+    system: System = "metric",
+    *,
+    subtitle: str = "other lengths than those found",
 ) -> Figure:
-    """Return the sheet of a design with other lengths than any of the front.
+    """Return the sheet of a design, of other lengths than any of the front unless `subtitle` says what it is.
 
     numbers: its row of a table of designs, metric. system: of the units that the sheet shows.
     """
-    words = (label, "other lengths than those found")
-    return _sheet(front, design.mechanism, design.linkage, numbers, words, system)
-
-
-def _sheet(
-    front: ParetoFront,
-    mechanism: Mechanism,
-    linkage: Linkage,
-    numbers: Mapping[str, Any],
-    words: tuple[str, str],
-    system: System,
-) -> Figure:
-    title, subtitle = f"{front.problem.name}: {words[0]}", words[1]
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     bold = {of.field: of.short_title for of in wanted}
-    return design_sheet(mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)
+    title = f"{front.problem.name}: {label}"
+    options: dict[str, Any] = {"title": title, "subtitle": subtitle, "bold": bold, "system": system}
+    return design_sheet(design.mechanism, design.linkage, numbers, **options)

@@ -13,17 +13,7 @@ from matplotlib.lines import Line2D
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .marks import Axis, Mark, dimension_axes, marks, objective_axis
-from .style import (
-    INK,
-    SMALL,
-    TEXT,
-    colours,
-    dress,
-    heading,
-    limits,
-    new_figure,
-    place,
-)
+from .style import INK, SMALL, TEXT, colours, dress, heading, legend_at, limits, new_figure, place
 
 MOST = 6
 """Objectives drawn at most: beyond, the panels are too small to read."""
@@ -124,20 +114,8 @@ def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y:
 
 
 def _legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
-    width, height = figure.get_size_inches()
     handles = [Line2D([], [], **mark.style) for mark in marked]
-    figure.legend(
-        handles,
-        ["\n".join(mark.labels) for mark in marked],
-        loc="upper left",
-        bbox_to_anchor=(x / width, y / height),
-        fontsize=SMALL,
-        frameon=False,
-        handletextpad=0.4,
-        borderpad=0.0,
-        borderaxespad=0.0,
-        labelspacing=0.6,
-    )
+    legend_at(figure, x, y, handles, ["\n".join(mark.labels) for mark in marked], spacing=0.6)
 
 
 def _heading(figure: Figure, front: ParetoFront, objectives: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -55,8 +55,16 @@ def design_sheet(
     rows = _rows(numbers, bold or {})
     tall = max(_ROWS, math.ceil(len(rows) / 2))
     for column in range(2):
-        own = rows[tall * column : tall * (column + 1)]
-        _column(figure, _LEFT + 2.95 * column, 0.2 * _ROWS / tall, own, numbers, bold or {}, system)
+        x, y = _LEFT + 2.95 * column, _TABLE - 0.12
+        for key, name in rows[tall * column : tall * (column + 1)]:
+            unit, factor = shown_in(split_unit(key)[1], system)
+            style: dict[str, Any] = {"weight": "bold" if key in (bold or {}) else "normal", "color": INK}
+            name = textwrap.shorten(name, 2 * _LETTERS, placeholder=" ...")
+            write(figure, x, y, name, fontsize=TEXT * min(1.0, _LETTERS / len(name)), **style)
+            write(figure, x + 2.38, y, shown(float(numbers[key]) * factor, 5, zeros=True), ha="right", **style)
+            if unit:
+                write(figure, x + 2.44, y, unit_text(unit), **style)
+            y -= 0.2 * _ROWS / tall
 
     curves = cycle_curves(mechanism, linkage, torque=torque, system=system)
     count = len(curves.curves)
@@ -82,24 +90,3 @@ def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tup
     spare = [key for key in reversed(known) if key not in objectives][: max(0, len(known) - room)]
     kept = {key: title for key, title in usual.items() if key in known and key not in spare}
     return list((kept | {key: title for key, title in extra.items() if there(key)}).items())
-
-
-def _column(
-    figure: Figure,
-    x: float,
-    step: float,
-    rows: Sequence[tuple[str, str]],
-    numbers: Mapping[str, Any],
-    bold: Collection[str],
-    system: System,
-) -> None:
-    y = _TABLE - 0.12
-    for column, title in rows:
-        unit, factor = shown_in(split_unit(column)[1], system)
-        style = {"weight": "bold" if column in bold else "normal", "color": INK}
-        title = textwrap.shorten(title, 2 * _LETTERS, placeholder=" ...")
-        write(figure, x, y, title, fontsize=TEXT * min(1.0, _LETTERS / len(title)), **style)
-        write(figure, x + 2.38, y, shown(float(numbers[column]) * factor, 5, zeros=True), ha="right", **style)
-        if unit:
-            write(figure, x + 2.44, y, unit_text(unit), **style)
-        y -= step

@@ -20,6 +20,7 @@ from .numerals import on_scale
 
 with NamingExtra("figures need"):
     import matplotlib
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import ListedColormap
@@ -115,6 +116,16 @@ def legend_beside(axes: Axes, *, stacked: int = 0) -> None:
     place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
     looks: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handlelength": 2.4, "handleheight": 1.1}
     axes.legend([handles[i] for i in order], [labels[i] for i in order], **place, **looks)
+
+
+def legend_at(
+    figure: Figure, x: float, y: float, handles: Sequence[Artist], labels: Sequence[str], *, spacing: float = 0.5
+) -> None:
+    """Name the marks of a figure in a legend whose upper left corner is at a place, inches from the lower left."""
+    width, height = figure.get_size_inches()
+    place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (x / width, y / height), "borderaxespad": 0.0}
+    looks: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handletextpad": 0.4, "borderpad": 0.0}
+    figure.legend(list(handles), list(labels), labelspacing=spacing, **place, **looks)
 
 
 def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:

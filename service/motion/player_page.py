@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from string import Template
@@ -19,7 +18,7 @@ from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
 from ..drawings.parts import bar, block, in_words, look_of, scenery
-from ..drawings.shapes import Circle, Layer, Shape
+from ..drawings.shapes import Circle, Shape
 from ..drawings.svg import elements, group
 from ..figures.numerals import shown as number
 
@@ -35,15 +34,6 @@ _READOUT = (
 """Curves that are read out, and their strips, by how their keys begin."""
 _STRIP = (360.0, 64.0)  # width, one unit a degree, and height
 _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.FRAME)
-
-
-@dataclass(frozen=True)
-class Moving:
-    """A moving part, with its shapes in its own coordinates."""
-
-    name: str
-    layer: Layer
-    shapes: tuple[Shape, ...]
 
 
 def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "") -> bytes:
@@ -102,23 +92,20 @@ def _drawing(mechanism: Mechanism, linkage: Linkage, title: str) -> str:
     frame = f"{left - margin:.9g} {-high - margin:.9g} {right - left + 2 * margin:.9g} {high - low + 2 * margin:.9g}"
     still = scenery(linkage, look, below=True)
     pin = (0.0, 0.0)
-    parts = (
-        Moving("slider", on.SLIDER, (block(on.SLIDER, pin, look.block),)),
-        Moving("rod", on.ROD, (bar(on.ROD, pin, (look.rod, 0.0), look.rod_width),)),
-        Moving("crank", on.CRANK, (bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width),)),
-        Moving("pivot", on.PINS, (Circle(on.PINS, pin, look.pin),)),
-        Moving("crank-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),
-        Moving("slider-pin", on.PINS, (Circle(on.PINS, pin, look.pin),)),
-    )
+    moving: dict[str, Shape] = {  # each in its own coordinates
+        "slider": block(on.SLIDER, pin, look.block),
+        "rod": bar(on.ROD, pin, (look.rod, 0.0), look.rod_width),
+        "crank": bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width),
+        **dict.fromkeys(("pivot", "crank-pin", "slider-pin"), Circle(on.PINS, pin, look.pin)),
+    }
     lines = [f'<svg id="drawing" viewBox="{frame}" role="img" aria-label="{escape(title, quote=True)}, moving">']
     for layer in _STILL:
         lines.append(group(layer, size))
         lines += [line for shape in still if shape.layer is layer for line in elements(shape)]
         lines.append("</g>")
-    for part in parts:
-        lines.append(group(part.layer, size).replace(f'id="{part.layer.name}"', f'id="{part.name}" class="part"', 1))
-        lines += [line for shape in part.shapes for line in elements(shape)]
-        lines.append("</g>")
+    for name, shape in moving.items():
+        start = group(shape.layer, size).replace(f'id="{shape.layer.name}"', f'id="{name}" class="part"', 1)
+        lines += [start, *elements(shape), "</g>"]
     return "\n".join([*lines, "</svg>"])
 
 

@@ -15,6 +15,7 @@ import typer
 from ...model.errors import InputError
 from ...model.extras import required
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
+from ..designs.conditions import plain_number
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -137,11 +138,7 @@ def value_option(option: str, text: str, kind: Kind, *, sign: Any = "any") -> fl
     """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
     from ...optimise.job.units import shown, to_si
 
-    try:
-        float(text)
-    except ValueError:
-        pass
-    else:
+    if plain_number(text) is not None:
         raise InputError(
             f'{option} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"'
         )

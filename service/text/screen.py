@@ -6,12 +6,18 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from ..runs.run_folder import disk
+
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.console import Console
+    from rich.status import Status
 
     from ...optimise.front.progress import Progress
+    from ..figures.sheets import Sheet
 
 
 def console() -> Console:
@@ -43,10 +49,20 @@ def give(text: str) -> None:
     sys.stdout.flush()
 
 
-def waiting(text: str) -> contextlib.AbstractContextManager[object]:
+def waiting(text: str) -> contextlib.AbstractContextManager[Status | None]:
     """Return a context that shows an activity while entered; nothing where standard error is no terminal."""
     screen = error_console()
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
+
+
+def write_figure(file: Path, draw: Callable[[], Sheet | Figure]) -> None:
+    """Write a figure as PNG, its folder made if it is not there, and say where it is."""
+    from ..figures.panels import save_sheet
+
+    with disk(file.parent), waiting("drawing the figure"):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        save_sheet(draw(), file)
+    say(f"figure: {file}")
 
 
 def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,6 @@ from ....model.clearance.statistics import summarise
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ...text.screen import error_console
 from ...text.tables import table
 
 if TYPE_CHECKING:
@@ -131,18 +131,15 @@ def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
 
     Threads other than the main one show nothing: a service simulates for others.
     """
-    screen = error_console()
-    if not screen.is_terminal or threading.current_thread() is not threading.main_thread():
+    if not sys.stderr.isatty() or threading.current_thread() is not threading.main_thread():
         yield None
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from tqdm import tqdm
 
-    columns = (TextColumn("{task.description}"), BarColumn(bar_width=24), TimeElapsedColumn())
-    with Progress(*columns, console=screen, transient=True) as bar:
-        task = bar.add_task("loose joint, turn 1", total=None)
+    with tqdm(desc="loose joint, turn 1", bar_format="{desc} {bar:24} {elapsed}", total=1, leave=False) as bar:
 
         def tell(at: ClearanceProgress) -> None:
-            text = f"loose joint, turn {at.cycle} of {at.cycles}, {at.impacts} impacts"
-            bar.update(task, description=text, completed=at.cycle, total=at.cycles)
+            bar.total, bar.n = at.cycles, at.cycle
+            bar.set_description_str(f"loose joint, turn {at.cycle} of {at.cycles}, {at.impacts} impacts")
 
         yield tell
