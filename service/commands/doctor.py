@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import platform
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import typer
 
-from ...model.errors import NotFound
+from ...model.errors import NotFound, SlidercrankError
 from ..jobs.stores import Address, has_store, is_named, store_address
+from ..resources.memory import size_text
 from ..runs.run_folder import runs_place
 from ..text.options import File, Json, Runs
 from ..text.screen import console, give, say
 
+if TYPE_CHECKING:
+    from ..store.database import Database
+
 UNHEALTHY = 1
 """Exit code where something is not in order; 2 is for wrong input."""
+Grade = Literal["ok", "note", "problem"]
+_LEAST_ROOM, _LITTLE_ROOM = 200e6, 2e9  # bytes
+_CLOCKS = 2.0  # s between clocks that is worth a note
+_REMEDY = "; stop the service and restore a backup, see docs/service.md"
+_PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
+_OPTIONAL = ("psycopg", "distributed", "pyarrow")
 
 
 def doctor(
@@ -30,7 +46,6 @@ def doctor(
     worker, places to write, free disk, versions. No job is changed.
     """
     from ..runs.result import json_text
-    from .diagnosis import diagnose
 
     address = store_address(store, runs)
     if backup is not None:
@@ -57,3 +72,161 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
     with contextlib.closing(Database(store_address(store, runs))) as database:
         back_up(database, target)
     say(f"{target}: a copy of {database.name}")
+
+
+class Check(NamedTuple):
+    """Something that was looked at. text: what was found, and what to do about it unless it is ok."""
+
+    name: str
+    grade: Grade
+    text: str
+
+
+def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
+    """Check a store, given by its address, the place of runs and this machine; change no job.
+
+    named: whether somebody says that there is a store at the address; it may be missing otherwise.
+    """
+    return [
+        *_store(address, named),
+        _writable("runs", runs),
+        *([] if "://" in address else [_room("disk of the store", Path(address).parent)]),
+        _room("disk of runs", runs),
+        _compiled(),
+        _versions(),
+    ]
+
+
+def _store(address: str, named: bool) -> Iterator[Check]:
+    from ..store.database import Database
+
+    if "://" not in address and not Path(address).exists():
+        left = [name for end in ("-wal", "-shm") if Path(name := f"{address}{end}").exists()]
+        if named or left:
+            why = f"{left[0]} is left of one that was deleted" if left else "the first job makes a new one"
+            text = f"there is none at {address}: {why}; put it back, or restore a backup, see docs/service.md"
+            yield Check("store", "problem", text)
+        else:
+            yield Check("store", "ok", f"there is none at {address} yet; the first job makes it")
+        yield _writable("place of the store", Path(address).parent)
+        return
+    try:
+        with contextlib.closing(Database(address)) as database:
+            yield from _private(address)
+            yield from _database(address, database)
+    except SlidercrankError as error:
+        yield Check("store", "problem", str(error))
+
+
+def _private(address: str) -> Iterator[Check]:
+    """Check who may use a store that is a file: it holds everything that a service's token protects."""
+    from ..store.database import may_use, remedy_of_rights
+
+    if "://" not in address and not may_use(Path(address)):
+        text = f"{address} may not be written, so that no job gets on; {remedy_of_rights(Path(address))}"
+        yield Check("permissions", "problem", text)
+    elif "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
+        text = f"others of this machine may read or write {address} (mode {mode:03o} for them); chmod 600 {address}"
+        yield Check("permissions", "note", text)
+
+
+def _database(address: str, database: Database) -> Iterator[Check]:
+    from ..store.inspection import clock_ahead, damages, server_version
+    from ..store.schema_version import strangers, versions
+
+    if not database.sqlite:
+        database.require_ready()
+    yield Check("store", "ok", f"{database.name} answers, {server_version(database)}")
+    foreign = strangers(database)
+    if foreign:
+        text = f"they are of something else ({foreign}); name another store with --store"
+        yield Check("tables", "problem", text)
+        return
+    version, latest, known = versions(database)
+    if not known:
+        text = f"they have version {version}, this software knows {latest}; install the release that made them"
+        yield Check("tables", "problem", text)
+        return
+    if version != latest:
+        text = f"they have version {version or 'none'}; {latest} is made of them when a command opens the store"
+        yield Check("tables", "note", text)
+        return
+    yield Check("tables", "ok", f"version {version}")
+    wrong = damages(database)
+    text = "; ".join(wrong) + _REMEDY if wrong else "nothing is damaged"
+    yield Check("integrity", "problem" if wrong else "ok", text)
+    ahead = clock_ahead(database)
+    text = f"the one of the store differs by {ahead:+.2f} s from the one of this machine"
+    far = abs(ahead) > _CLOCKS
+    yield Check("clock", "note" if far else "ok", f"{text}; set them by NTP" if far else text)
+    yield from _at_work(address, time.time() + ahead)
+
+
+def _at_work(address: str, now: float) -> Iterator[Check]:
+    """Look at jobs and workers. now: on the clock of the store."""
+    from ..store import Store
+    from ..store.records import SILENT
+
+    with Store(address) as store:
+        counts, heard = store.counts(), store.workers_at_work()
+        silent = max(0, len(store.workers()) - heard)
+        running = store.jobs(states=["running"], limit=10_000)
+    expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
+    text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
+    yield Check("jobs", "ok", text)
+    text = f"{heard} at work"
+    if silent:
+        text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
+    waiting = counts.get("queued", 0) + len(expired)
+    if waiting and not heard:
+        text += f"; {waiting} jobs wait for one; start slidercrank serve or slidercrank worker"
+    yield Check("workers", "problem" if waiting and not heard else "note" if silent else "ok", text)
+    names = ", ".join(str(job.id) for job in expired[:5])
+    text = f"those of jobs {names} have ended; the next free worker goes on with them" if expired else "none has ended"
+    yield Check("leases", "note" if expired else "ok", text)
+
+
+def _existing(folder: Path) -> Path:
+    """Return the folder, or the nearest one above it that is there."""
+    return next((place for place in (folder, *folder.parents) if place.exists()), folder)
+
+
+def _writable(name: str, folder: Path) -> Check:
+    try:
+        with tempfile.TemporaryFile(dir=_existing(folder)):
+            pass
+    except OSError as error:
+        text = f"{folder} cannot be written: {error.strerror or error}; permit it, or choose another place"
+        return Check(name, "problem", text)
+    return Check(name, "ok", f"{folder} can be written")
+
+
+def _room(name: str, folder: Path) -> Check:
+    free = shutil.disk_usage(_existing(folder.absolute())).free
+    grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
+    remedy = "" if grade == "ok" else "; make room: a full disk stops all writing"
+    return Check(name, grade, f"{size_text(free)} free{remedy}")
+
+
+def _compiled() -> Check:
+    """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
+    from ...model.kernel.folder import choose_folder
+
+    folder, _, refused = choose_folder()
+    if not refused:
+        return Check("compiled model", "ok", f"{folder} can be written")
+    grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
+    text = f"{refused}; it is {f'kept in {folder}' if folder else 'compiled anew at every start'}"
+    return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
+
+
+def _versions() -> Check:
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = [f"Python {platform.python_version()}"]
+    for name in (*_PACKAGES, *_OPTIONAL):
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            found.append(f"{name} not installed")
+    return Check("versions", "ok", ", ".join(found))

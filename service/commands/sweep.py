@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, get_args
 
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import ANGULAR_SPEED, LENGTH
+from ...objectives.kinds import ANGULAR_SPEED, LENGTH, System, shown_in
+from ..designs.columns import key_in
 from ..designs.shown_units import rows_in
 from ..runs.result import json_text, rows_of
 from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option, value_option
-from ..text.screen import give, write_figure
-from ..topics.sweep.text import show
+from ..text.screen import console, give, say, write_figure
+from ..text.tables import print_table
+from ..text.tables import table as empty_table
 
 if TYPE_CHECKING:
+    import pandas as pd
+
+    from ...objectives.quantity import Quantity
     from ...objectives.tables.sweep import Axis
 
 _FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
@@ -60,12 +66,31 @@ def sweep(
     if json:
         give(json_text(rows_in(rows_of(table.to_dict("list")), units)))
     else:
-        show(table, axes, quantities, units)
+        _show(table, axes, quantities, units)
     if figures is not None:
         from ..topics.sweep.figure import sweep_figure
 
         file = figures / "sweep.png"
         write_figure(file, lambda: sweep_figure(table, axes, quantities, title=problem.name, system=units))
+
+
+def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
+    """Write one row for each point; then how many have no value, and why the first has none."""
+    units_of = ["rpm" if axis.parameter == "speed" else "mm" for axis in axes]
+    heads = [f">{axis.parameter}, {shown_in(unit, units)[0]}" for axis, unit in zip(axes, units_of, strict=True)]
+    heads += [f">{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", ") for item in quantities]
+    shown = empty_table(*heads)
+    stuck = 0
+    keys = [f"{axis.parameter}_{unit}" for axis, unit in zip(axes, units_of, strict=True)]
+    for row in rows_in(rows_of(table.to_dict("list")), units):
+        at = [row[key_in(key, units)[0]] for key in keys]
+        values = [row[key_in(item.field, units)[0]] for item in quantities]
+        stuck += bool(row["reason"])
+        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
+    print_table(console(), shown)
+    if stuck:
+        first = next(reason for reason in table["reason"] if reason)
+        say(f"{stuck} of {len(table)} without a value; the first: {first}")
 
 
 def parse_axis(text: str) -> Axis:

@@ -124,16 +124,6 @@ def _judged(rule: Requirement, value: Cell, system: System) -> JudgedRule:
         if missed <= MET * max(abs(rule.lower or 0.0), abs(rule.upper or 0.0)):
             missed = 0.0
     unit, factor = shown_in(rule.unit, system)
-    lower, upper, shown, missed = (
-        None if item is None else item * factor for item in (rule.lower, rule.upper, number, missed)
-    )
-    return JudgedRule(
-        quantity=rule.quantity,
-        title=rule.title,
-        unit=unit,
-        lower=lower,
-        upper=upper,
-        value=shown,
-        met=missed == 0.0,
-        missed_by=missed,
-    )
+    told = {"lower": rule.lower, "upper": rule.upper, "value": number, "missed_by": missed}
+    shown = {name: None if item is None else item * factor for name, item in told.items()}
+    return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **shown)

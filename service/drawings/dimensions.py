@@ -18,7 +18,7 @@ def dimension(name: str, start: Point, end: Point, through: Point, angle: float,
     """
     turn = math.radians(angle)
     along, across = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
-    feet = [_foot(point, through, along) for point in (start, end)]
+    feet = [_at(through, along, _dot(_less(point, through), along)) for point in (start, end)]
     if _dot(feet[1], along) < _dot(feet[0], along):
         feet.reverse()
         start, end = end, start
@@ -40,17 +40,12 @@ def dimension(name: str, start: Point, end: Point, through: Point, angle: float,
         parts.append(Wedge(DIMENSIONS, corners))
     if inside:
         parts.append(Line(DIMENSIONS, *feet))
-        middle, anchor = _at(feet[0], along, 0.5 * length), "middle"
+        middle = _at(feet[0], along, 0.5 * length)
     else:
         parts.append(Line(DIMENSIONS, _at(feet[0], along, -2.0 * arrow), _at(feet[1], along, 2.4 * arrow + wide)))
-        middle, anchor = _at(feet[1], along, 2.2 * arrow + 0.5 * wide), "middle"
-    parts.append(Label(DIMENSIONS, text, _at(middle, across, 0.4 * height), height, angle, anchor))  # type: ignore[arg-type]
+        middle = _at(feet[1], along, 2.2 * arrow + 0.5 * wide)
+    parts.append(Label(DIMENSIONS, text, _at(middle, across, 0.4 * height), height, angle, "middle"))
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts))
-
-
-def _foot(point: Point, through: Point, along: Point) -> Point:
-    """Return the point of the dimension line that is nearest to a point."""
-    return _at(through, along, _dot(_less(point, through), along))
 
 
 def _at(point: Point, unit: Point, length: float) -> Point:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -171,9 +170,4 @@ def _scale(axes: Axes, panel: Panel) -> None:
     elif right > left:
         axes.set_xlim(left, right)
     if panel.turns:
-        axes.set_xticks(_quarters(ends))
-
-
-def _quarters(ends: Array) -> Sequence[float]:
-    step = 45.0 if ends.max() - ends.min() <= 400.0 else 90.0
-    return [float(tick) for tick in np.arange(0.0, ends.max() + 1.0, step)]
+        axes.set_xticks(np.arange(0.0, right + 1.0, 45.0 if right - left <= 400.0 else 90.0))

@@ -38,7 +38,10 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     panel.set_ylim(0, 1)
     panel.axis("off")
 
-    heights = np.stack([_heights(axis) for axis in axes], axis=1)
+    ends = [_range(axis) for axis in axes]
+    heights = np.stack(
+        [(axis.values - low) / (high - low) for axis, (low, high) in zip(axes, ends, strict=True)], axis=1
+    )
     lines = np.stack([np.broadcast_to(np.arange(len(axes)), heights.shape), heights], axis=2)
     first = objectives[0].values
     order = np.argsort(first)
@@ -89,11 +92,6 @@ def _range(axis: Axis) -> tuple[float, float]:
     """Return the values at the lower and the upper end; for objectives the better end is up."""
     low, high = limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
     return (high, low) if axis.better < 0 else (low, high)
-
-
-def _heights(axis: Axis) -> np.ndarray:
-    low, high = _range(axis)
-    return np.asarray((axis.values - low) / (high - low))
 
 
 def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:

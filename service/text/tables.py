@@ -1,4 +1,4 @@
-"""Results as tables for people: a front, one design."""
+"""Tables for people: a front, one design, the numbers of an analysis."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
 _DIGITS = 4
+Line = tuple[str, float | str | None, str, str]
+"""Name, value (None where undefined), unit, remark."""
 
 
 def show_front(
@@ -93,6 +95,23 @@ def print_table(screen: Console, table: Table) -> None:
         screen.width = before
 
 
+def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
+    """Write a heading and one line for each number."""
+    console.print(title, style="bold")
+    rows = table("", ">", "", "")
+    rows.columns[2].no_wrap, rows.columns[3].style = True, "dim"
+    for name, value, unit, remark in lines:
+        text = "undefined" if value is None else value if isinstance(value, str) else f"{value:.6g}"
+        rows.add_row(f"  {name}", text, "" if value is None else unit, remark)
+    console.print(rows)
+
+
+def plain(value: Any) -> float | None:
+    """Return a number that JSON can have: None for what is not finite."""
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
     from ...objectives.proportions import STROKE
@@ -132,7 +151,8 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
     shown = table(ruled=True, padding=0, show_header=True)
     shown.add_column("no.", justify="right", vertical="bottom")
     for column in columns:
-        title = "\n".join(f"{line} " for line in (*_narrow(column.title), column.unit))
+        narrow = textwrap.wrap(column.title.removesuffix(", worst case"), 8, break_long_words=False)
+        title = "\n".join(f"{line} " for line in (*narrow, column.unit))
         shown.add_column(title, justify="right", vertical="bottom", no_wrap=True)
     shown.add_column("", no_wrap=True)
     best = {
@@ -150,11 +170,6 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
         ]
         shown.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
     return shown
-
-
-def _narrow(title: str) -> list[str]:
-    """Return a title in short lines."""
-    return textwrap.wrap(title.removesuffix(", worst case"), 8, break_long_words=False)
 
 
 def _aligned(values: Sequence[Cell]) -> list[str]:

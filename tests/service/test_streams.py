@@ -67,7 +67,7 @@ def test_too_little_memory_is_no_fault_of_the_software(
     def fail(*_: object, **__: object) -> None:
         raise ValueError("what came of it") from error
 
-    monkeypatch.setattr("slidercrank.service.commands.diagnosis.diagnose", fail)
+    monkeypatch.setattr("slidercrank.service.commands.doctor.diagnose", fail)
     done = command("doctor")
     assert (done.exit_code, done.stdout) == (2, "")
     assert "there must be memory enough" in done.stderr

@@ -46,6 +46,7 @@ def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism
             }
         )
     was = costs_before(costs, linkage, before)
+    error = Signal.POSITION_ERROR if found.kind == "worst case" else Signal.POSITION_ERROR_RSS
     return {
         "kind": found.kind,
         "limit_mm": 1e3 * found.limit,
@@ -59,7 +60,7 @@ def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism
             for angle, saving in zip(found.angles, found.savings, strict=True)
         ],
         "cost_before": None if was is None else sum(was.values()),
-        "error_before_mm": None if was is None else 1e3 * _error_of(found, linkage, before),
+        "error_before_mm": None if was is None else 1e3 * peak(before, error, linkage).value,
         "rounds": found.rounds,
         "residual": found.residual,
         "converged": found.converged,
@@ -72,12 +73,6 @@ def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str,
     if not all(reach[name] > 0.0 for name in costs.given):
         return None
     return {name: cost.of(float(reach[name])) for name, cost in costs.given.items()}
-
-
-def _error_of(found: Allocation, linkage: Linkage, mechanism: Mechanism) -> float:
-    """Return the greatest first-order error, m, of a mechanism, added up as in an allocation."""
-    kind = Signal.POSITION_ERROR if found.kind == "worst case" else Signal.POSITION_ERROR_RSS
-    return peak(mechanism, kind, linkage).value
 
 
 def show(screen: Console, numbers: dict[str, Any]) -> None:

@@ -15,7 +15,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
-from ...text import lines as text
+from ...text import tables as text
 from ..peaks import peak, row_of
 
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))

@@ -10,7 +10,7 @@ from rich.console import Console
 from ....optimise.sizing.counterweight import Balance, Shaking
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
-from ...text import lines as text
+from ...text import tables as text
 
 _SAMPLES = 1441
 

@@ -18,8 +18,8 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
-from ...text import lines as text
-from ...text.lines import plain
+from ...text import tables as text
+from ...text.tables import plain
 from ..peaks import peak, row_of
 
 _WORDS = {

@@ -20,8 +20,8 @@ from ....model.signals.averages import average, average_torque
 from ....model.signals.peaks import find_peaks
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
-from ...text import lines as text
-from ...text.lines import plain
+from ...text import tables as text
+from ...text.tables import plain
 from ..peaks import row_of
 
 _SAMPLES = 2048
