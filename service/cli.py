@@ -163,12 +163,7 @@ def main() -> None:
         say(_MORE_MEMORY)
         sys.exit(WRONG_INPUT)
     finally:
-        _last()
-
-
-def _last() -> None:
-    """Write what is kept back, while a failure can still be told."""
-    try:
-        sys.stdout.flush()
-    except OutputLost:
-        give_up_output()
+        try:  # while a failure can still be told
+            sys.stdout.flush()
+        except OutputLost:
+            give_up_output()

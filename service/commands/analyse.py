@@ -10,8 +10,8 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
-from ..designs.conditions import plain_number
 from ..designs.requirements import judged
+from ..designs.selection import plain_number
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file

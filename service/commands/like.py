@@ -10,8 +10,8 @@ import typer
 
 from ...model.errors import InputError
 from ..designs.columns import DIMENSIONS, find_column
-from ..designs.conditions import Condition, parse_condition
 from ..designs.picking_options import minimised_values, require_alone
+from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
 from ..runs.result import Result, Row, json_text, rows_of
 from ..runs.stored_runs import problem_of

@@ -182,15 +182,11 @@ def show_result(result: Result) -> None:
     for sentence in result.warnings:
         screen.print(f"\nWarning: {sentence}.", style="yellow", soft_wrap=True)
     screen.print(f"\nFiles: {result.run}", soft_wrap=True)
-    listed = ", ".join(_contents(Path(result.run)))
+    listed = [name for name in _FILES if (Path(result.run) / name).exists()]
+    pictures = len(list(Path(result.run, "figures").glob("*.png")))
+    listed += [f"figures/ ({pictures} pictures)"] if pictures else []
     if listed:
-        screen.print(f"  {listed}", soft_wrap=True)
-
-
-def _contents(folder: Path) -> list[str]:
-    names = [name for name in _FILES if (folder / name).exists()]
-    pictures = len(list((folder / "figures").glob("*.png")))
-    return [*names, f"figures/ ({pictures} pictures)"] if pictures else names
+        screen.print(f"  {', '.join(listed)}", soft_wrap=True)
 
 
 def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:

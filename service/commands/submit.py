@@ -162,7 +162,9 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
     from ..text.screen import error_console
 
     if json:
-        yield lambda event: give(f"{_line(event)}\n")
+        from ..store.serialisation import text_of
+
+        yield lambda event: give(f"{text_of({key: getattr(event, key) for key in ('number', 'at', 'kind', 'data')})}\n")
         return
     from ...optimise.front.progress import Progress
 
@@ -178,13 +180,6 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
                 give(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
 
         yield show
-
-
-def _line(event: Event) -> str:
-    """Return an event as the API has it, on one line."""
-    from ..store.serialisation import text_of
-
-    return text_of({"number": event.number, "at": event.at, "kind": event.kind, "data": event.data})
 
 
 def in_words(event: Event) -> str:

@@ -32,17 +32,15 @@ DIMENSIONS = ("crank", "rod", "offset")
 class Column:
     """A column. key: as in JSON and CSV. title: for people. factor: what one SI unit is in its unit.
 
-    own_unit: whether it was called by a key that carries a unit, so that a plain number is in that unit.
-    plain: what such a number is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`. group: that
-    it is shown in.
+    plain: what a number without a unit is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`,
+    None for a column with a unit that was called by a name without. group: that it is shown in.
     """
 
     key: str
     title: str
     unit: str
     factor: float
-    own_unit: bool
-    plain: float = 1.0
+    plain: float | None = 1.0
     group: Group | None = None
 
 
@@ -66,8 +64,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         f"slack of {title}" if slack else title,
         unit,
         factor,
-        same is not None,
-        1.0 if same is None else factor / split_unit(name)[2],
+        factor / split_unit(name)[2] if same is not None else None if unit else 1.0,
         _group(metric_key(key)),
     )
 

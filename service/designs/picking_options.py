@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ..runs.result import Result, Wanted
-from .conditions import plain_number
+from .selection import plain_number
 
 if TYPE_CHECKING:
     from ...optimise.front.stationarity import Array

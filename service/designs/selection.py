@@ -1,13 +1,112 @@
-"""Selection of designs of a front: those that meet conditions, in an order, and the front of only these."""
+"""Selection of designs: conditions as people write them, "transmission_angle >= 40 deg", order, part of a front."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import replace
+import math
+import operator
+import re
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
-from ..runs.result import Result, Row
-from .columns import find_column
-from .conditions import order_key, select
+from ...model.errors import InputError
+from ..runs.result import Cell, Result, Row
+from .columns import Column, find_column
+
+_TOLERANCE = 1e-8
+"""Relative: designs meet their constraints to this, so that one that sits on a bound counts as meeting it."""
+
+_FORM = re.compile(r"\s*([A-Za-z_]\w*)\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
+_OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
+    ">=": operator.ge,
+    "<=": operator.le,
+    ">": operator.gt,
+    "<": operator.lt,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+_SAME = {"=": "==", "≥": ">=", "≤": "<="}
+_EXAMPLE = '--where "transmission_angle >= 40 deg"'
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A column, a comparison and a value in the column's unit, or a word for columns of words."""
+
+    column: Column
+    comparison: str
+    value: float | str
+
+    def holds(self, row: Row) -> bool:
+        """Return whether a design meets it; one without a value does not. Equal means equal to 1e-8 relative."""
+        cell = row[self.column.key]
+        if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
+            return _OPERATORS[self.comparison](cell, self.value)
+        if math.isnan(cell):
+            return False
+        same = cell == self.value or abs(cell - self.value) <= _TOLERANCE * abs(self.value)
+        return self.comparison in (">=", "<=", "==") if same else _OPERATORS[self.comparison](cell, self.value)
+
+
+def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition:
+    """Return the condition of a text: quantity or column, comparison, value with unit.
+
+    keys: of the table. example: one of its rows, to tell columns of words from columns of numbers.
+    Raises `InputError` for anything else.
+    """
+    match = _FORM.fullmatch(text)
+    if match is None:
+        raise InputError(
+            "a condition is a quantity, one of >= <= > < = !=, and a value with its unit; "
+            f"got {text!r}; write it like {_EXAMPLE}"
+        )
+    name, comparison, value = match.groups()
+    column = find_column(name, keys)
+    comparison = _SAME.get(comparison, comparison)
+    if isinstance(example[column.key], str):
+        if comparison not in ("==", "!="):
+            raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
+        return Condition(column, comparison, value.strip("\"'"))
+    return Condition(column, comparison, _number(text, column, value))
+
+
+def plain_number(text: str) -> float | None:
+    """Return the number that a text is, None if it is none or has a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _number(text: str, column: Column, value: str) -> float:
+    """Return the value in the column's unit; without a unit only where the column's name has it."""
+    from ...optimise.job.units import kind_of, to_si
+
+    number = plain_number(value)
+    if column.plain is not None and number is not None and math.isfinite(number):
+        return number * column.plain
+    try:
+        return to_si(value, kind_of(column.unit)) * column.factor
+    except InputError as error:
+        raise InputError(f"the value in {text.strip()!r} {error}") from None
+
+
+def select(rows: list[Row], conditions: Collection[str]) -> list[int]:
+    """Return the positions of the designs that meet all conditions. Raises `InputError` for a wrong condition."""
+    if not rows:
+        return []
+    parsed = [parse_condition(text, list(rows[0]), rows[0]) for text in conditions]
+    chosen = list(range(len(rows)))
+    for condition in parsed:
+        chosen = [n for n in chosen if condition.holds(rows[n])]
+    return chosen
+
+
+def order_key(cell: Cell) -> tuple[bool, float, str]:
+    """Return a key that sorts numbers by size, words by letters, and what is not defined last."""
+    if cell is None or (isinstance(cell, float) and math.isnan(cell)):
+        return True, 0.0, ""
+    return (False, 0.0, cell) if isinstance(cell, str) else (False, float(cell), "")
 
 
 def chosen_rows(result: Result, where: Collection[str], *, sort: str | None = None, reverse: bool = False) -> list[int]:

@@ -15,7 +15,7 @@ import typer
 from ...model.errors import InputError
 from ...model.extras import required
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
-from ..designs.conditions import plain_number
+from ..designs.selection import plain_number
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage

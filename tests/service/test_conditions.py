@@ -7,7 +7,7 @@ import math
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.designs.conditions import parse_condition, select
+from slidercrank.service.designs.selection import parse_condition, select
 from slidercrank.service.runs.result import Row
 
 ROWS: list[Row] = [
