@@ -15,7 +15,7 @@ from ..jobs.stores import Address, open_store, store_address
 from ..text.screen import give
 from ..workers.engines import EngineOptions
 from .ending import Interruption
-from .worker import AllowQuantity, Grace, Lease, LogFormat, Logs, Most
+from .worker import AllowQuantity, Grace, Lease, Logs, Most
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
@@ -49,7 +49,7 @@ def serve(
     lease: Lease = 30.0,
     grace: Grace = 10.0,
     engine: EngineOptions,
-    log_format: Logs = LogFormat.text,
+    log_format: Logs = "text",
 ) -> None:
     """Serve the API, and solve its jobs, until stopped.
 
@@ -81,13 +81,13 @@ def serve(
         lease=lease,
         most_running=most.most_running,
         terms=Terms(limits=limits, grace=grace, engine=shared, allowed_quantities=allowed),
-        log_format=log_format.value,
+        log_format=log_format,
     )
     with Interruption(service=True), listen(host, port) as socket, open_store(store) as opened:
         opened.most_queued = most_queued
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
-        set_up_logs(log_format.value)
+        set_up_logs(log_format)
         with Supervisor(work, processes) as supervisor:
             run_server(app, socket, stopping=supervisor.leave)
     _leave_requests()

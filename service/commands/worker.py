@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -13,21 +12,15 @@ from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
 from ..resources.memory import size_of
 from ..workers.engines import EngineOptions
+from ..workers.logs import Format
 from .ending import Interruption
 
 if TYPE_CHECKING:
     from ..store import Limits
 
 
-class LogFormat(StrEnum):
-    """Format of logs."""
-
-    text = "text"
-    json = "json"
-
-
 Logs = Annotated[
-    LogFormat, typer.Option("--log-format", help="Log format on standard error: for people, or one JSON object a line.")
+    Format, typer.Option("--log-format", help="Log format on standard error: for people, or one JSON object a line.")
 ]
 Lease = Annotated[
     float, typer.Option(min=1.0, max=3600.0, help="Seconds until a job whose worker is gone goes to another one.")
@@ -74,7 +67,7 @@ def worker(
     most: Most,
     grace: Grace = 10.0,
     engine: EngineOptions,
-    log_format: Logs = LogFormat.text,
+    log_format: Logs = "text",
 ) -> None:
     """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
 
@@ -99,11 +92,11 @@ def worker(
             engine=engine.checked().shared_by(processes),
             allowed_quantities=tuple(sorted(set(allow_quantity or ()))),
         ),
-        log_format=log_format.value,
+        log_format=log_format,
     )
     with Interruption(service=True) as termination:
         open_store(store).close()  # what is wrong with it is told at once, and by nobody but this process
-        set_up_logs(log_format.value)
+        set_up_logs(log_format)
         with Supervisor(settings, processes) as supervisor:
             while not (termination.asked() or supervisor.finished()):
                 time.sleep(0.1)

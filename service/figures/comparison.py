@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ...objectives.kinds import unit_text
 from ..runs.result import Wanted
 from .numerals import with_unit
 from .scatter import MOST, triangle
@@ -90,7 +89,5 @@ def _style(index: int) -> dict[str, Any]:
 
 
 def _label(wanted: Wanted) -> str:
-    title = with_unit(wanted.title.removesuffix(", worst case"), wanted.unit)
-    if wanted.target is not None:
-        title += f" (target {wanted.target:g} {unit_text(wanted.unit)}".rstrip() + ")"
+    title = with_unit(wanted.title.removesuffix(", worst case"), wanted.unit, wanted.target)
     return f"{title}\n{_WORDS[wanted.sense]}".rstrip()

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.kinds import System, shown_in, unit_text
+from ...objectives.kinds import System, shown_in
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
@@ -89,11 +89,8 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
     better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
     symbol, factor = shown_in(of.unit.symbol, system)
     values = front.designs[of.field].to_numpy(dtype=np.float64) * factor
-    title = with_unit(of.short_title, symbol)
-    if objective.target is not None:
-        unit = f" {unit_text(symbol)}" if symbol else ""
-        title += f" (target {objective.target * of.unit.factor * factor:g}{unit})"
-    return Axis(title, symbol, values, better)
+    target = None if objective.target is None else objective.target * of.unit.factor * factor
+    return Axis(with_unit(of.short_title, symbol, target), symbol, values, better)
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:

@@ -25,6 +25,7 @@ def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
     return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
-def with_unit(title: str, symbol: str) -> str:
-    """Return an axis title with its unit."""
-    return f"{title}, {unit_text(symbol)}" if symbol else title
+def with_unit(title: str, symbol: str, target: float | None = None) -> str:
+    """Return an axis title with its unit, and the target that is to be met, if there is one."""
+    named = f"{title}, {unit_text(symbol)}" if symbol else title
+    return named if target is None else f"{named} (target {f'{target:g} {unit_text(symbol)}'.rstrip()})"
