@@ -43,15 +43,11 @@ def sections(
 
 
 def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
-    """Return the result ready for JSON."""
+    bars = (("crank", found.crank), ("rod", found.rod))
     return {
         **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
-        "crank_width_mm": 1e3 * found.crank.width,
-        "crank_depth_mm": 1e3 * found.crank.depth,
-        "rod_width_mm": 1e3 * found.rod.width,
-        "rod_depth_mm": 1e3 * found.rod.depth,
-        "crank_mass_kg": found.crank.mass(float(linkage.crank)),
-        "rod_mass_kg": found.rod.mass(float(linkage.rod)),
+        **{f"{name}_{side}_mm": 1e3 * getattr(bar, side) for name, bar in bars for side in ("width", "depth")},
+        **{f"{name}_mass_kg": bar.mass(float(getattr(linkage, name))) for name, bar in bars},
         "mass_kg": found.mass,
         "settled": found.settled,
         "iterations": found.iterations,

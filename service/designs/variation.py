@@ -47,7 +47,12 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
     minimised: of `minimised_values(result)`, so that it is made once for many.
     """
-    row = _row(design)
+    import numpy as np
+
+    from ...optimise.search.assemble import table_of
+
+    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
+    row = rows_of(table.to_dict("list"))[0]
     wanted = requirements_of(design.part)
     return Variation(
         row=row,
@@ -57,15 +62,6 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
         outside=outside(design.part, row),
         **_beside(result, row, minimised),
     )
-
-
-def _row(design: StoredDesign) -> Row:
-    import numpy as np
-
-    from ...optimise.search.assemble import table_of
-
-    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
-    return rows_of(table.to_dict("list"))[0]
 
 
 def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:

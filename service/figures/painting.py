@@ -43,28 +43,23 @@ def drawing_figure(drawing: Drawing) -> Figure:
     figure = new_figure(scale * width, scale * height)
     axes = place(figure, 0.0, 0.0, scale * width, scale * height)
     show_rectangle(axes, left, bottom, right, top, share=_FILLS)
-    paint(axes, [shape for shape in drawing.shapes if not isinstance(shape, Label | Dimension)])
-    for shape in drawing.shapes:
-        if isinstance(shape, Dimension):
-            paint(axes, shape.parts)
-    labels = [
-        *drawing.shapes,
-        *(part for shape in drawing.shapes if isinstance(shape, Dimension) for part in shape.parts),
-    ]
-    for label in labels:
-        if isinstance(label, Label):
-            axes.text(
-                *label.at,
-                label.text,
-                fontsize=72.0 * scale * label.height / _CAPITALS,
-                color=label.layer.ink,
-                rotation=label.angle,
-                rotation_mode="anchor",
-                ha=_ALIGNED[label.anchor],
-                va="baseline",
-                parse_math=False,
-                zorder=9.0,
-            )
+    dimensions = [shape for shape in drawing.shapes if isinstance(shape, Dimension)]
+    for shapes in (drawing.shapes, *(shape.parts for shape in dimensions)):
+        paint(axes, shapes)
+        for label in shapes:
+            if isinstance(label, Label):
+                axes.text(
+                    *label.at,
+                    label.text,
+                    fontsize=72.0 * scale * label.height / _CAPITALS,
+                    color=label.layer.ink,
+                    rotation=label.angle,
+                    rotation_mode="anchor",
+                    ha=_ALIGNED[label.anchor],
+                    va="baseline",
+                    parse_math=False,
+                    zorder=9.0,
+                )
     return figure
 
 
@@ -84,7 +79,7 @@ def show_rectangle(axes: Axes, left: float, low: float, right: float, high: floa
 
 
 def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
-    """Draw lines, circles, outlines and wedges, later ones above earlier ones; return what was drawn."""
+    """Draw lines, circles, outlines and wedges, not texts, later ones above earlier ones; return what was drawn."""
     found: list[Artist] = []
     for order, shape in enumerate(shapes):
         style: dict[str, Any] = {
