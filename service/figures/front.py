@@ -15,9 +15,9 @@ from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..designs.stored_designs import StoredDesign
+from .comparison import robustness_figure
 from .marks import marks
 from .parallel import parallel_coordinates
-from .robustness import robustness_figure
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 from .style import save

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ...objectives.kinds import unit_text
+from ..runs.result import Cell
 
 
 def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
@@ -29,3 +30,22 @@ def with_unit(title: str, symbol: str, target: float | None = None) -> str:
     """Return an axis title with its unit, and the target that is to be met, if there is one."""
     named = f"{title}, {unit_text(symbol)}" if symbol else title
     return named if target is None else f"{named} (target {f'{target:g} {unit_text(symbol)}'.rstrip()})"
+
+
+def rounded(cell: Cell) -> str:
+    """Return a value for people, six digits of it."""
+    if cell is None:
+        return "–"
+    return cell if isinstance(cell, str) else shown(cell, 6)
+
+
+def as_stored(cell: Cell) -> str:
+    """Return a value as CSV has it, every digit; nothing for what is not defined, and for words."""
+    if cell is None or isinstance(cell, str) or math.isnan(cell):
+        return ""
+    return repr(cell)
+
+
+def measured(cell: Cell, unit: str) -> str:
+    """Return a value for people with its unit."""
+    return f"{rounded(cell)} {unit_text(unit)}".rstrip()

@@ -9,13 +9,13 @@ from importlib.metadata import PackageNotFoundError, version
 from ...objectives.proportions import STROKE
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.variation import Variation
+from ..figures.numerals import measured, rounded
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
 from .front_section import front_section
 from .job_section import job_section, search_section
 from .subject import Subject
-from .wording import rounded, with_unit
 
 _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
@@ -45,10 +45,10 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 def _summary(subject: Subject) -> Section:
     row = subject.row
     columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
-    lengths = [f"{column.title} {with_unit(row[column.key], column.unit)}" for column in columns]
+    lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(
-        f"{wanted.title} {with_unit(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives
+        f"{wanted.title} {measured(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives
     )
     rows.append(("Objectives", objectives))
     chosen = [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")]
@@ -70,7 +70,7 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
     """Return sentences on the changes to a design of the front, and on where they leave it."""
     before = subject.result.designs[subject.number - 1]
     other = [
-        f"{name} {with_unit(subject.row[of.key], of.unit)} instead of {with_unit(before[of.key], of.unit)}"
+        f"{name} {measured(subject.row[of.key], of.unit)} instead of {measured(before[of.key], of.unit)}"
         for name, of in ((name, find_column(name, list(before))) for name in DIMENSIONS)
         if rounded(subject.row[of.key]) != rounded(before[of.key])
     ]

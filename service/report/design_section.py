@@ -8,14 +8,15 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from ...model.errors import InputError
+from ...objectives.kinds import unit_text
 from ..designs.columns import Column, find_column
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.linkage_drawing import linkage_drawing
 from ..figures.front import sheet_of, sheet_of_changed
+from ..figures.numerals import as_stored, rounded
 from ..figures.painting import drawing_figure
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
-from .wording import as_stored, rounded, unit_text
 
 _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
+from ..figures.numerals import measured, rounded
 from ..topics.sensitivity.figure import tornado_figure, tornado_rows
 from ..topics.tolerances.analysis import numbers
 from ..topics.tolerances.figure import error_bands, tolerances_figure
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
-from .wording import rounded, with_unit
 
 
 def sensitivity_section(subject: Subject) -> Section:
@@ -66,7 +66,7 @@ def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str,
 
 def _length(millimetres: float, system: System) -> str:
     unit, factor = shown_in("mm", system)
-    return with_unit(millimetres * factor, unit)
+    return measured(millimetres * factor, unit)
 
 
 def _sources(found: dict[str, Any], system: System) -> Table:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 
+from ...objectives.kinds import unit_text
 from ..designs.columns import DIMENSIONS, find_column
+from ..figures.numerals import measured, rounded
 from ..figures.parallel import parallel_coordinates
 from ..figures.scatter import scatter_matrix
 from ..runs.result import Wanted
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
-from .wording import rounded, unit_text, with_unit
 
 _MANY = 400
 """Designs from which on figures of the front are drawn as points."""
@@ -61,7 +62,7 @@ def _ranges(subject: Subject) -> Table:
 
 
 def _sense(wanted: Wanted) -> str:
-    return wanted.sense if wanted.target is None else f"target {with_unit(wanted.target, wanted.unit)}"
+    return wanted.sense if wanted.target is None else f"target {measured(wanted.target, wanted.unit)}"
 
 
 def _marked(subject: Subject) -> Table:

@@ -166,7 +166,7 @@ def test_the_schema_describes_the_table_robust() -> None:
 
 
 def test_the_figure_shows_nominal_and_robust_front_and_the_cost() -> None:
-    from slidercrank.service.figures.robustness import robustness_figure
+    from slidercrank.service.figures.comparison import robustness_figure
 
     figure = robustness_figure(front("percentile", 2))
     assert figure is not None

@@ -17,6 +17,7 @@ from matplotlib.text import Text
 
 from slidercrank.optimise.problem.problem import Range
 from slidercrank.service.designs.columns import find_column
+from slidercrank.service.figures.numerals import as_stored, rounded
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
 from slidercrank.service.report.html import html_file
@@ -24,7 +25,6 @@ from slidercrank.service.report.pages import HEIGHT, WIDTH, Page, pages
 from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject, subject_of
 from slidercrank.service.report.text_lines import wrapped
-from slidercrank.service.report.wording import as_stored, rounded
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
 
