@@ -30,7 +30,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)
     screen.print(f"Given: {case.given}.", style="dim", soft_wrap=True)
-    rows = table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True, pad_edge=False)
+    rows = table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True)
     reasons: list[str] = []
     folded = 0
     for _, group in groupby(case.rows, key=lambda row: _column(row, full)):

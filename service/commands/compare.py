@@ -228,7 +228,7 @@ def _verdict(compared: Sequence[_Compared], found: Comparison) -> list[str]:
 
 def _print(screen: Console, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     first, *others = heads
-    shown = table(first, *(f">{head}" for head in others), ruled=True, padding=(0, 1, 0, 0))
+    shown = table(first, *(f">{head}" for head in others), ruled=True, padding=(0, 1, 0, 0), pad_edge=True)
     for column in shown.columns:
         column.vertical = "bottom"
     for row in rows:

@@ -153,7 +153,7 @@ def _show(
         soft_wrap=True,
     )
     heads = ("quantity", "unit", f">design {number}", ">now", ">change", ">% of range")
-    rows = table(*heads, ruled=True, padding=(0, 2, 0, 0))
+    rows = table(*heads, ruled=True, padding=(0, 2, 0, 0), pad_edge=True)
     columns = {wanted.column for wanted in result.objectives}
     for key in after:
         change = _moved(before, after, key)

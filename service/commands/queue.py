@@ -83,7 +83,7 @@ def _tell(job: Job, json: bool, what: str = "") -> None:
 
 
 def _show(screen: Console, found: list[Job]) -> None:
-    rows = table(">no.", "submitted", "job", "state", "where it stands", ruled=True)
+    rows = table(">no.", "submitted", "job", "state", "where it stands", ruled=True, pad_edge=True)
     for column in rows.columns[:-1]:
         column.no_wrap = True
     for job in found:

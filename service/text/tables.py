@@ -74,10 +74,9 @@ def table(*columns: str, ruled: bool = False, **look: Any) -> Table:
     from rich import box
     from rich.table import Table
 
-    usual: dict[str, Any] = {"box": None, "pad_edge": False, "padding": (0, 2, 0, 0)}
-    if ruled:
-        usual = {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False}
-    found = Table(**({"show_header": any(column.strip(">") for column in columns)} | usual | look))
+    usual: dict[str, Any] = {"pad_edge": False, "show_header": any(column.strip(">") for column in columns)}
+    usual |= {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False} if ruled else {"box": None}
+    found = Table(**({"padding": (0, 2, 0, 0)} | usual | look))
     for column in columns:
         right = column.startswith(">")
         found.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
@@ -148,7 +147,7 @@ def _chosen(keys: list[str]) -> list[str]:
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:
     from rich.text import Text
 
-    shown = table(ruled=True, padding=0, show_header=True)
+    shown = table(ruled=True, padding=0, pad_edge=True, show_header=True)
     shown.add_column("no.", justify="right", vertical="bottom")
     for column in columns:
         narrow = textwrap.wrap(column.title.removesuffix(", worst case"), 8, break_long_words=False)
