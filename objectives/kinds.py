@@ -25,7 +25,14 @@ class Face:
     factor: float = 1.0
 
 
-@dataclass(frozen=True, kw_only=True)
+def face(symbol: str, factor: float = 1.0) -> Face:
+    """Return the face of a unit whose columns end as its symbol says: rad/s^2 in _rad_s2."""
+    plain = symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
+    name = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
+    return Face(symbol, f"_{name}" if name else "", factor)
+
+
+@dataclass(frozen=True)
 class Kind:
     """A kind of physical value.
 
@@ -52,66 +59,31 @@ class Kind:
 
 
 _INCH = 0.0254
+_PER_INCH = 1.0 / _INCH
 _POUND = 0.45359237
 _LBF = 4.4482216152605
+# Name, SI unit, example, limit, metric face, inch face, units of a form.
 LENGTH = Kind(
-    name="a length",
-    unit="m",
-    example="80 mm",
-    limit=1e4,
-    metric=Face("mm", "_mm", 1e3),
-    inch=Face("in", "_in", 1.0 / _INCH),
-    typed=("m", "mm", "cm", "µm", "in", "foot"),
+    "a length", "m", "80 mm", 1e4, face("mm", 1e3), face("in", _PER_INCH), ("m", "mm", "cm", "µm", "in", "foot")
 )
 AREA = Kind(
-    name="an area",
-    unit="m^2",
-    example="0.25 m^2",
-    limit=1e8,
-    metric=Face("m^2", "_m2"),
-    inch=Face("in^2", "_in2", 1.0 / _INCH**2),
-    typed=("m^2", "cm^2", "mm^2", "in^2"),
+    "an area", "m^2", "0.25 m^2", 1e8, face("m^2"), face("in^2", 1.0 / _INCH**2), ("m^2", "cm^2", "mm^2", "in^2")
 )
-ANGLE = Kind(
-    name="an angle",
-    unit="rad",
-    example="0.1 deg",
-    limit=1e4,
-    metric=Face("deg", "_deg", 57.29577951308232),
-    typed=("rad", "deg"),
-)
+ANGLE = Kind("an angle", "rad", "0.1 deg", 1e4, face("deg", 57.29577951308232), None, ("rad", "deg"))
 ANGULAR_SPEED = Kind(
-    name="an angular speed",
-    unit="rad/s",
-    example="300 rpm",
-    limit=1e6,
-    metric=Face("rpm", "_rpm", 9.549296585513721),
-    typed=("rad/s", "rpm", "rev/s"),
+    "an angular speed", "rad/s", "300 rpm", 1e6, face("rpm", 9.549296585513721), None, ("rad/s", "rpm", "rev/s")
 )
 ANGULAR_ACCELERATION = Kind(
-    name="an angular acceleration",
-    unit="rad/s^2",
-    example="20 rad/s^2",
-    limit=1e9,
-    metric=Face("rad/s^2", "_rad_s2"),
-    typed=("rad/s^2", "deg/s^2"),
+    "an angular acceleration", "rad/s^2", "20 rad/s^2", 1e9, face("rad/s^2"), None, ("rad/s^2", "deg/s^2")
 )
-MASS = Kind(
-    name="a mass",
-    unit="kg",
-    example="0.8 kg",
-    limit=1e8,
-    metric=Face("kg", "_kg"),
-    inch=Face("lb", "_lb", 1.0 / _POUND),
-    typed=("kg", "g", "t", "lb"),
-)
+MASS = Kind("a mass", "kg", "0.8 kg", 1e8, face("kg"), face("lb", 1.0 / _POUND), ("kg", "g", "t", "lb"))
 INERTIA = Kind(
     name="a moment of inertia",
     unit="kg m^2",
     example="0.015 kg m^2",
     limit=1e12,
-    metric=Face("kg m^2", "_kg_m2"),
-    inch=Face("lb in^2", "_lb_in2", 1.0 / (_POUND * _INCH**2)),
+    metric=face("kg m^2"),
+    inch=face("lb in^2", 1.0 / (_POUND * _INCH**2)),
     typed=("kg m^2", "kg mm^2", "lb in^2"),
 )
 DENSITY = Kind(
@@ -119,55 +91,31 @@ DENSITY = Kind(
     unit="kg/m^3",
     example="7800 kg/m^3",
     limit=1e6,
-    metric=Face("kg/m^3", "_kg_m3"),
-    inch=Face("lb/in^3", "_lb_in3", _INCH**3 / _POUND),
+    metric=face("kg/m^3"),
+    inch=face("lb/in^3", _INCH**3 / _POUND),
     typed=("kg/m^3", "g/cm^3", "lb/in^3"),
 )
-SPEED = Kind(
-    name="a speed",
-    unit="m/s",
-    example="2.5 m/s",
-    limit=1e6,
-    metric=Face("m/s", "_m_s"),
-    inch=Face("in/s", "_in_s", 1.0 / _INCH),
-    typed=("m/s", "mm/s", "in/s"),
-)
+SPEED = Kind("a speed", "m/s", "2.5 m/s", 1e6, face("m/s"), face("in/s", _PER_INCH), ("m/s", "mm/s", "in/s"))
 ACCELERATION = Kind(
-    name="an acceleration",
-    unit="m/s^2",
-    example="9.81 m/s^2",
-    limit=1e9,
-    metric=Face("m/s^2", "_m_s2"),
-    inch=Face("in/s^2", "_in_s2", 1.0 / _INCH),
-    typed=("m/s^2", "mm/s^2", "in/s^2"),
+    "an acceleration",
+    "m/s^2",
+    "9.81 m/s^2",
+    1e9,
+    face("m/s^2"),
+    face("in/s^2", _PER_INCH),
+    ("m/s^2", "mm/s^2", "in/s^2"),
 )
-FORCE = Kind(
-    name="a force",
-    unit="N",
-    example="200 N",
-    limit=1e12,
-    metric=Face("N", "_N"),
-    inch=Face("lbf", "_lbf", 1.0 / _LBF),
-    typed=("N", "kN", "lbf"),
-)
+FORCE = Kind("a force", "N", "200 N", 1e12, face("N"), face("lbf", 1.0 / _LBF), ("N", "kN", "lbf"))
 TORQUE = Kind(
     name="a torque",
     unit="N m",
     example="25 N m",
     limit=1e15,
-    metric=Face("N m", "_Nm"),
-    inch=Face("lbf in", "_lbf_in", 1.0 / (_LBF * _INCH)),
+    metric=face("N m"),
+    inch=face("lbf in", 1.0 / (_LBF * _INCH)),
     typed=("N m", "kN m", "N mm", "lbf in", "lbf ft"),
 )
-POWER = Kind(
-    name="a power",
-    unit="W",
-    example="250 W",
-    limit=1e15,
-    metric=Face("W", "_W"),
-    inch=Face("hp", "_hp", 1.0 / (6600.0 * _LBF * _INCH)),
-    typed=("W", "kW", "hp"),
-)
+POWER = Kind("a power", "W", "250 W", 1e15, face("W"), face("hp", 1.0 / (6600.0 * _LBF * _INCH)), ("W", "kW", "hp"))
 STIFFNESS = Kind(
     name="a stiffness",
     unit="N/m",
@@ -197,37 +145,18 @@ QUADRATIC_DAMPING = Kind(
     typed=("N s^2/m^2", "N s^2/mm^2", "lbf s^2/in^2"),
 )
 PRESSURE = Kind(
-    name="a pressure",
-    unit="Pa",
-    example="207 GPa",
-    limit=1e15,
-    metric=Face("MPa", "_MPa", 1e-6),
-    inch=Face("psi", "_psi", _INCH**2 / _LBF),
-    typed=("Pa", "MPa", "GPa", "psi"),
+    "a pressure", "Pa", "207 GPa", 1e15, face("MPa", 1e-6), face("psi", _INCH**2 / _LBF), ("Pa", "MPa", "GPa", "psi")
 )
-RATIO = Kind(name="a ratio", unit="", example="3.2", limit=1e9, metric=Face("", ""))
-JERK = Kind(
-    name="a jerk",
-    unit="m/s^3",
-    example="2000 m/s^3",
-    limit=1e12,
-    metric=Face("m/s^3", "_m_s3"),
-    inch=Face("in/s^3", "_in_s3", 1.0 / _INCH),
-    typed=("m/s^3", "in/s^3"),
-)
-
-KINDS = (
-    *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, QUADRATIC_DAMPING, PRESSURE, RATIO, JERK),
-)
-TIME = Kind(name="a time", unit="s", example="30 s", limit=1e9, metric=Face("s", "_s"), typed=("s", "min"))
+RATIO = Kind("a ratio", "", "3.2", 1e9, face(""))
+JERK = Kind("a jerk", "m/s^3", "2000 m/s^3", 1e12, face("m/s^3"), face("in/s^3", _PER_INCH), ("m/s^3", "in/s^3"))
+TIME = Kind("a time", "s", "30 s", 1e9, face("s"), None, ("s", "min"))
 _PER_ANGLE = Kind(
     name="a length per angle",
     unit="m/rad",
     example="",
     limit=0.0,
     metric=Face("mm/rad", "_mm_per_rad", 1e3),
-    inch=Face("in/rad", "_in_per_rad", 1.0 / _INCH),
+    inch=Face("in/rad", "_in_per_rad", _PER_INCH),
 )
 _PER_SQUARED_ANGLE = Kind(
     name="a length per squared angle",
@@ -235,7 +164,12 @@ _PER_SQUARED_ANGLE = Kind(
     example="",
     limit=0.0,
     metric=Face("mm/rad^2", "_mm_per_rad2", 1e3),
-    inch=Face("in/rad^2", "_in_per_rad2", 1.0 / _INCH),
+    inch=Face("in/rad^2", "_in_per_rad2", _PER_INCH),
+)
+
+KINDS = (
+    *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
+    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, QUADRATIC_DAMPING, PRESSURE, RATIO, JERK),
 )
 SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
@@ -263,11 +197,6 @@ def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
 
     factor: what one SI unit is in it. kind: that of the table, if it is known; else one named after the unit.
     """
-    plain = symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
-    name = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
-    face = Face(symbol, f"_{name}" if name else "", factor)
     if kind is None:
-        return Kind(
-            name=f"a value in {symbol or 'no unit'}", unit=symbol, example=f"1 {symbol}", limit=1e30, metric=face
-        )
-    return replace(kind, metric=face, inch=None)
+        return Kind(f"a value in {symbol or 'no unit'}", symbol, f"1 {symbol}", 1e30, face(symbol, factor))
+    return replace(kind, metric=face(symbol, factor), inch=None)

@@ -6,6 +6,7 @@ These quantities exist for a target motion only; a `Problem` has them among its 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -62,33 +63,31 @@ class MotionDeviation(Quantity):
         return columns
 
 
-MOTION_DEVIATION = MotionDeviation(
-    name="motion_deviation",
-    title="motion deviation, greatest",
+_deviation = partial(
+    MotionDeviation,
     kind=LENGTH,
-    measure="greatest",
-    place=280,
     group=Group.ACCURACY,
-    sentence="The greatest distance between the slider and the points of the wanted motion.",
-    formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
     section="12. Position error",
     source="derived there",
     picture="wanted motion",
+)
+MOTION_DEVIATION = _deviation(
+    name="motion_deviation",
+    title="motion deviation, greatest",
+    measure="greatest",
+    place=280,
+    sentence="The greatest distance between the slider and the points of the wanted motion.",
+    formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
     example="0.3 mm",
 )
-MOTION_DEVIATION_RMS = MotionDeviation(
+MOTION_DEVIATION_RMS = _deviation(
     name="motion_deviation_rms",
     title="motion deviation, root mean square",
-    kind=LENGTH,
     measure="rms",
     place=290,
-    group=Group.ACCURACY,
     sentence="The distance between the slider and the points of the wanted motion, as a root mean square.",
     advice="One point that is far off counts less than in the greatest deviation.",
     formula="sqrt(mean of (x(theta_i + psi) + s - t_i)^2)",
-    section="12. Position error",
-    source="derived there",
-    picture="wanted motion",
     example="0.2 mm",
 )
 DEVIATIONS = {each.name: each for each in (MOTION_DEVIATION, MOTION_DEVIATION_RMS)}

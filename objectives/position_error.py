@@ -1,5 +1,7 @@
 """Position error: how far tolerances move the slider, greatest over the cycle or over a part of the stroke."""
 
+from functools import partial
+
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import LENGTH
@@ -8,46 +10,42 @@ from .quantity import Group
 
 _SOURCE = "R. Chetana and T. V. Vineeth Kumar, Analysis of Position Error in Offset Slider Crank Mechanism, Eq. (3)"
 
-POSITION_ERROR = CyclePeak(
+_error = partial(
+    CyclePeak,
+    kind=LENGTH,
+    group=Group.ACCURACY,
+    section="12. Position error",
+    source=_SOURCE,
+    picture="position error",
+    needs=(TOLERANCES,),
+    about_tolerances=True,
+)
+POSITION_ERROR = _error(
     name="position_error",
     title="position error, worst case",
     short="position error",
-    kind=LENGTH,
     signal=Signal.POSITION_ERROR,
     place=40,
-    group=Group.ACCURACY,
     sentence=(
         "How far the slider may be from where it should be when crank, rod, offset and crank angle are all off by "
         "their tolerances in the worst combination: the greatest value over the cycle."
     ),
     advice="It comes from the tolerances alone: without tolerances there is none.",
     formula="max over theta of the sum of |dx/di| T_i, for i = crank, rod, offset, crank angle",
-    section="12. Position error",
-    source=_SOURCE,
-    picture="position error",
     example="0.3 mm",
-    needs=(TOLERANCES,),
-    about_tolerances=True,
     offered=("objective",),
     on_sheet=True,
 )
-POSITION_ERROR_RSS = CyclePeak(
+POSITION_ERROR_RSS = _error(
     name="position_error_rss",
     title="position error, root sum square",
-    kind=LENGTH,
     signal=Signal.POSITION_ERROR_RSS,
     place=90,
-    group=Group.ACCURACY,
     sentence=(
         "The position error to be expected where deviations are independent of each other, so that they seldom "
         "add up: the root of the sum of their squares."
     ),
     advice="With the four tolerances alone it is at least half of the worst case, and never more than it.",
     formula="max over theta of sqrt(sum of (dx/di T_i)^2)",
-    section="12. Position error",
-    source=_SOURCE,
-    picture="position error",
     example="0.2 mm",
-    needs=(TOLERANCES,),
-    about_tolerances=True,
 )

@@ -1,5 +1,7 @@
 """Slider motion: greatest speed, acceleration and jerk over the cycle."""
 
+from functools import partial
+
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import ACCELERATION, JERK
@@ -7,49 +9,42 @@ from .kinds import SPEED as VELOCITY
 from .needs import MOTION, SPEED
 from .quantity import Group
 
-_SECTION = "3. Kinematics"
-
-PEAK_SLIDER_SPEED = CyclePeak(
+_peak = partial(CyclePeak, group=Group.MOTION, section="3. Kinematics")
+PEAK_SLIDER_SPEED = _peak(
     name="peak_slider_speed",
     title="peak slider speed",
     kind=VELOCITY,
     signal=Signal.SLIDER_SPEED,
     place=180,
-    group=Group.MOTION,
     sentence="The highest speed that the slider reaches within a turn, whichever way it goes.",
     advice="It grows with the stroke and in proportion to the crank speed.",
     formula="max |x' omega| with x' = -r sin(theta - phi) / cos(phi)",
-    section=_SECTION,
     picture="speed",
     needs=(SPEED,),
     on_sheet=True,
 )
-PEAK_SLIDER_ACCELERATION = CyclePeak(
+PEAK_SLIDER_ACCELERATION = _peak(
     name="peak_slider_acceleration",
     title="peak slider acceleration",
     kind=ACCELERATION,
     signal=Signal.SLIDER_ACCELERATION,
     place=190,
-    group=Group.MOTION,
     sentence="The greatest acceleration of the slider within a turn, from which its inertia force follows.",
     advice="It grows with the square of the crank speed.",
     formula="max |x'' omega^2 + x' alpha|",
-    section=_SECTION,
     picture="acceleration",
     needs=(MOTION,),
     on_sheet=True,
 )
-PEAK_SLIDER_JERK = CyclePeak(
+PEAK_SLIDER_JERK = _peak(
     name="peak_slider_jerk",
     title="peak slider jerk",
     kind=JERK,
     signal=Signal.SLIDER_JERK,
     place=195,
-    group=Group.MOTION,
     sentence="The greatest jerk of the slider within a turn: how fast its acceleration changes.",
     advice="It grows with the cube of the crank speed; a high one makes a machine shake and its joints knock.",
     formula="max |x''' omega^3 + 3 x'' omega alpha|",
-    section=_SECTION,
     picture="acceleration",
     needs=(SPEED,),
 )
