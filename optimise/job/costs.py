@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from ...model.errors import InputError
 from ...objectives import kinds
 from ..problem.costs import Cost, Costs
-from .values import AngleTolerance, Built, Checked, Fraction, Physical, PositiveLength, PositiveRatio, Radius
+from .values import (
+    AngleTolerance,
+    Built,
+    Checked,
+    Fraction,
+    Physical,
+    PositiveLength,
+    PositiveRatio,
+    Radius,
+    optional,
+    required,
+)
 
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
@@ -20,29 +31,27 @@ class _CostPart(Checked[Cost]):
     makes = Cost
     renamed: ClassVar = {"min": "least", "max": "greatest"}
 
-    cost: PositiveRatio = Field(
-        description="of the part that depends on the tolerance, where that is `at`", examples=[8.0]
-    )
-    fixed: Fraction = Field(0.0, description="the rest of the cost", examples=[5.0])
-    exponent: PositiveRatio = Field(
-        1.0, description="k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", examples=[1.0]
+    cost: PositiveRatio = required("of the part that depends on the tolerance, where that is `at`", 8.0)
+    fixed: Fraction = optional("the rest of the cost", 5.0, default=0.0)
+    exponent: PositiveRatio = optional(
+        "k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0
     )
 
 
 class LengthCostPart(_CostPart):
     """Cost of the tolerance of a length: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveLength = Field(description="the tolerance that `cost` is for", examples=["0.05 mm"])
-    min: Radius = Field(0.0, description="least tolerance that can be made", examples=["0.005 mm"])
-    max: PositiveLength | None = Field(None, description="greatest tolerance that is allowed", examples=["0.2 mm"])
+    at: PositiveLength = required("the tolerance that `cost` is for", "0.05 mm")
+    min: Radius = optional("least tolerance that can be made", "0.005 mm", default=0.0)
+    max: PositiveLength | None = optional("greatest tolerance that is allowed", "0.2 mm")
 
 
 class AngleCostPart(_CostPart):
     """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveAngle = Field(description="the tolerance that `cost` is for", examples=["0.1 deg"])
-    min: AngleTolerance = Field(0.0, description="least tolerance that can be made", examples=["0.01 deg"])
-    max: PositiveAngle | None = Field(None, description="greatest tolerance that is allowed", examples=["1 deg"])
+    at: PositiveAngle = required("the tolerance that `cost` is for", "0.1 deg")
+    min: AngleTolerance = optional("least tolerance that can be made", "0.01 deg", default=0.0)
+    max: PositiveAngle | None = optional("greatest tolerance that is allowed", "1 deg")
 
 
 class CostsPart(Built[Costs]):
@@ -50,18 +59,10 @@ class CostsPart(Built[Costs]):
 
     makes = Costs
 
-    crank: LengthCostPart | None = Field(
-        None, description="of the crank", examples=[{"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"}]
-    )
-    rod: LengthCostPart | None = Field(
-        None, description="of the rod", examples=[{"cost": 6.0, "at": "0.05 mm", "fixed": 2.0}]
-    )
-    offset: LengthCostPart | None = Field(
-        None, description="of the offset", examples=[{"cost": 4.0, "at": "0.1 mm", "exponent": 2.0}]
-    )
-    crank_angle: AngleCostPart | None = Field(
-        None, description="of the crank angle", examples=[{"cost": 10.0, "at": "0.1 deg", "max": "1 deg"}]
-    )
+    crank: LengthCostPart | None = optional("of the crank", {"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"})
+    rod: LengthCostPart | None = optional("of the rod", {"cost": 6.0, "at": "0.05 mm", "fixed": 2.0})
+    offset: LengthCostPart | None = optional("of the offset", {"cost": 4.0, "at": "0.1 mm", "exponent": 2.0})
+    crank_angle: AngleCostPart | None = optional("of the crank angle", {"cost": 10.0, "at": "0.1 deg", "max": "1 deg"})
 
     @model_validator(mode="after")
     def _some(self) -> CostsPart:

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.machine import drive as model
 from .kinds import Kinds
-from .values import AngularSpeed, Built, Checked, Inertia, PositiveAngularSpeed, PositiveRatio, PositiveTorque, Torque
+from .values import (
+    AngularSpeed,
+    Built,
+    Checked,
+    Inertia,
+    PositiveAngularSpeed,
+    PositiveRatio,
+    PositiveTorque,
+    Torque,
+    optional,
+    required,
+)
 
 
 class ConstantMotor(Built[model.Motor]):
@@ -16,7 +27,7 @@ class ConstantMotor(Built[model.Motor]):
 
     makes = model.ConstantTorque
 
-    torque: PositiveTorque = Field(description="at every speed", examples=["20 N m"])
+    torque: PositiveTorque = required("at every speed", "20 N m")
 
 
 class LineMotor(Built[model.Motor]):
@@ -24,8 +35,8 @@ class LineMotor(Built[model.Motor]):
 
     makes = model.LinearMotor
 
-    stall_torque: PositiveTorque = Field(description="at standstill", examples=["60 N m"])
-    no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["400 rpm"])
+    stall_torque: PositiveTorque = required("at standstill", "60 N m")
+    no_load_speed: PositiveAngularSpeed = required("where the torque is zero", "400 rpm")
 
 
 class RatedMotor(Checked[model.Motor]):
@@ -34,9 +45,9 @@ class RatedMotor(Checked[model.Motor]):
     makes = model.LinearMotor.through
     renamed: ClassVar = {"rated_torque": "torque", "rated_speed": "speed"}
 
-    rated_torque: PositiveTorque = Field(description="at the rated speed", examples=["14.6 N m"])
-    rated_speed: PositiveAngularSpeed = Field(description="under the rated torque", examples=["1440 rpm"])
-    no_load_speed: PositiveAngularSpeed = Field(description="where the torque is zero", examples=["1500 rpm"])
+    rated_torque: PositiveTorque = required("at the rated speed", "14.6 N m")
+    rated_speed: PositiveAngularSpeed = required("under the rated torque", "1440 rpm")
+    no_load_speed: PositiveAngularSpeed = required("where the torque is zero", "1500 rpm")
 
 
 class TableMotor(Checked[model.Motor]):
@@ -44,14 +55,14 @@ class TableMotor(Checked[model.Motor]):
 
     makes = model.TorqueTable
 
-    speeds: tuple[AngularSpeed, ...] = Field(
+    speeds: tuple[AngularSpeed, ...] = required(
+        "of the motor, increasing, the first one standstill or below",
+        ["0 rpm", "750 rpm", "1500 rpm"],
         min_length=2,
         max_length=1000,
-        description="of the motor, increasing, the first one standstill or below",
-        examples=[["0 rpm", "750 rpm", "1500 rpm"]],
     )
-    torques: tuple[Torque, ...] = Field(
-        min_length=2, max_length=1000, description="at each speed", examples=[["30 N m", "45 N m", "0 N m"]]
+    torques: tuple[Torque, ...] = required(
+        "at each speed", ["30 N m", "45 N m", "0 N m"], min_length=2, max_length=1000
     )
 
 
@@ -82,12 +93,11 @@ class DrivePart(Built[model.Drive]):
 
     makes = model.Drive
 
-    motor: AnyMotor = Field(
-        description="torque over the motor's own speed",
-        examples=[{"stall_torque": "60 N m", "no_load_speed": "400 rpm"}, {"torque": "20 N m"}],
+    motor: AnyMotor = required(
+        "torque over the motor's own speed",
+        {"stall_torque": "60 N m", "no_load_speed": "400 rpm"},
+        {"torque": "20 N m"},
     )
-    flywheel: Inertia = Field(0.0, description="inertia on the crank shaft", examples=["0.5 kg m^2"])
-    motor_inertia: Inertia = Field(
-        0.0, description="of the rotor and all that turns at motor speed", examples=["0.004 kg m^2"]
-    )
-    gear_ratio: PositiveRatio = Field(1.0, description="turns of the motor for one turn of the crank", examples=[5.0])
+    flywheel: Inertia = optional("inertia on the crank shaft", "0.5 kg m^2", default=0.0)
+    motor_inertia: Inertia = optional("of the rotor and all that turns at motor speed", "0.004 kg m^2", default=0.0)
+    gear_ratio: PositiveRatio = optional("turns of the motor for one turn of the crank", 5.0, default=1.0)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
 from ...model.errors import InputError
 from ...model.machine.clearance import Clearance, Joint, Law
 from ...model.machine.friction import Friction, Pin
-from .values import Built, Checked, Fraction, PositiveLength, Pressure
+from .values import Built, Checked, Fraction, PositiveLength, Pressure, optional, required
 
 _MOST = 2.0
 
@@ -31,8 +31,8 @@ class PinPart(Built[Pin]):
 
     makes = Pin
 
-    radius: PositiveLength = Field(description="of the pin", examples=["10 mm"])
-    coefficient: Coefficient = Field(description="of friction, on the pin's surface", examples=[0.08])
+    radius: PositiveLength = required("of the pin", "10 mm")
+    coefficient: Coefficient = required("of friction, on the pin's surface", 0.08)
 
 
 class FrictionPart(Built[Friction]):
@@ -40,16 +40,10 @@ class FrictionPart(Built[Friction]):
 
     makes = Friction
 
-    guide: Coefficient = Field(0.0, description="coefficient of the slider in its guide", examples=[0.1])
-    crank_pivot: PinPart | None = Field(
-        None, description="between frame and crank", examples=[{"radius": "15 mm", "coefficient": 0.08}]
-    )
-    crank_pin: PinPart | None = Field(
-        None, description="between crank and connecting rod", examples=[{"radius": "10 mm", "coefficient": 0.08}]
-    )
-    slider_pin: PinPart | None = Field(
-        None, description="between connecting rod and slider", examples=[{"radius": "8 mm", "coefficient": 0.08}]
-    )
+    guide: Coefficient = optional("coefficient of the slider in its guide", 0.1, default=0.0)
+    crank_pivot: PinPart | None = optional("between frame and crank", {"radius": "15 mm", "coefficient": 0.08})
+    crank_pin: PinPart | None = optional("between crank and connecting rod", {"radius": "10 mm", "coefficient": 0.08})
+    slider_pin: PinPart | None = optional("between connecting rod and slider", {"radius": "8 mm", "coefficient": 0.08})
 
 
 def _restitution(e: float) -> float:
@@ -70,20 +64,17 @@ class ClearancePart(Checked[Clearance]):
     makes = Clearance
     renamed: ClassVar = {"radial_clearance": "radius"}
 
-    joint: Joint = Field(description="which pin is loose", examples=["crank pin"])
-    radial_clearance: PositiveLength = Field(
-        description="radius of the bearing less radius of the journal: half the difference of the diameters",
-        examples=["0.2 mm"],
+    joint: Joint = required("which pin is loose", "crank pin")
+    radial_clearance: PositiveLength = required(
+        "radius of the bearing less radius of the journal: half the difference of the diameters", "0.2 mm"
     )
-    journal_radius: PositiveLength = Field(description="of the pin", examples=["10 mm"])
-    restitution: Annotated[Fraction, AfterValidator(_restitution)] = Field(
-        0.9, description="speed after an impact over speed before, above 0 and at most 1", examples=[0.9]
+    journal_radius: PositiveLength = required("of the pin", "10 mm")
+    restitution: Annotated[Fraction, AfterValidator(_restitution)] = optional(
+        "speed after an impact over speed before, above 0 and at most 1", 0.9, default=0.9
     )
-    friction: Fraction = Field(0.0, description="coefficient between journal and bearing", examples=[0.1])
-    law: Law = Field("flores", description="of the damping in a contact", examples=["flores"])
-    elastic_modulus: Pressure = Field(
-        207e9, description="of journal and bearing; steel if left out", examples=["207 GPa"]
-    )
-    poisson: Annotated[Fraction, AfterValidator(_poisson)] = Field(
-        0.3, description="Poisson's ratio of journal and bearing", examples=[0.3]
+    friction: Fraction = optional("coefficient between journal and bearing", 0.1, default=0.0)
+    law: Law = optional("of the damping in a contact", "flores", default="flores")
+    elastic_modulus: Pressure = optional("of journal and bearing; steel if left out", "207 GPa", default=207e9)
+    poisson: Annotated[Fraction, AfterValidator(_poisson)] = optional(
+        "Poisson's ratio of journal and bearing", 0.3, default=0.3
     )

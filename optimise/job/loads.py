@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import (
     BeforeValidator,
     Discriminator,
-    Field,
     Tag,
     ValidatorFunctionWrapHandler,
     WrapValidator,
@@ -23,7 +22,7 @@ from ...model.machine.loads.registry import kinds
 from . import values
 from .kinds import Kinds
 from .units import shown
-from .values import Checked
+from .values import Checked, optional
 
 
 def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
@@ -69,7 +68,7 @@ def _type(entry: model.Entry) -> Any:
 def _field(entry: model.Entry) -> Any:
     shape: Any = {"min_length": 2, "max_length": 1000} if entry.several else {}
     default = ... if entry.default is None else entry.default
-    return Field(default, description=entry.description, examples=[entry.example], **shape)
+    return optional(entry.description, entry.example, default=default, **shape)
 
 
 PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables}

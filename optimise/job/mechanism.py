@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, model_validator
 
 from ...model.errors import InputError
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
@@ -33,6 +33,8 @@ from .values import (
     PositiveLength,
     Radius,
     ToleranceOf,
+    optional,
+    required,
 )
 
 During = Literal["cycle", "outward stroke", "inward stroke"]
@@ -43,9 +45,9 @@ class SectionLink(Built[Link]):
 
     makes = Bar
 
-    width: PositiveLength = Field(description="in the plane of motion", examples=["30 mm"])
-    depth: PositiveLength = Field(description="normal to the plane", examples=["20 mm"])
-    density: Density = Field(description="of the material", examples=["7800 kg/m^3"])
+    width: PositiveLength = required("in the plane of motion", "30 mm")
+    depth: PositiveLength = required("normal to the plane", "20 mm")
+    density: Density = required("of the material", "7800 kg/m^3")
 
 
 class MassLink(Built[Link]):
@@ -53,22 +55,17 @@ class MassLink(Built[Link]):
 
     makes = RigidLink
 
-    mass: Mass = Field(description="of the link", examples=["0.5 kg"])
-    inertia: Inertia | None = Field(
-        None,
-        description="about the mass centre; mass length^2 / 12, a slender uniform rod, if left out",
-        examples=["0.0012 kg m^2"],
+    mass: Mass = required("of the link", "0.5 kg")
+    inertia: Inertia | None = optional(
+        "about the mass centre; mass length^2 / 12, a slender uniform rod, if left out", "0.0012 kg m^2"
     )
-    centre: Length | None = Field(
-        None,
-        description="distance of the mass centre from the crank pivot (crank) or from the crank "
+    centre: Length | None = optional(
+        "distance of the mass centre from the crank pivot (crank) or from the crank "
         "pin (rod), along the link; half the length if left out",
-        examples=["30 mm"],
+        "30 mm",
     )
-    centre_across: Length = Field(
-        0.0,
-        description="distance of the mass centre from the link's axis, positive to the left",
-        examples=["2 mm"],
+    centre_across: Length = optional(
+        "distance of the mass centre from the link's axis, positive to the left", "2 mm", default=0.0
     )
 
 
@@ -112,20 +109,18 @@ class CounterweightPart(Built[Counterweight]):
 
     makes = Counterweight
 
-    mass: Mass = Field(description="of the counterweight", examples=["0.4 kg"])
-    radius: Radius = Field(description="from the crank pivot to its mass centre", examples=["25 mm"])
-    angle: Angle = Field(
-        math.pi,
-        description="of its mass centre from the crank's direction; 180 deg is opposite to the pin",
-        examples=["180 deg"],
+    mass: Mass = required("of the counterweight", "0.4 kg")
+    radius: Radius = required("from the crank pivot to its mass centre", "25 mm")
+    angle: Angle = optional(
+        "of its mass centre from the crank's direction; 180 deg is opposite to the pin", "180 deg", default=math.pi
     )
-    inertia: Inertia = Field(0.0, description="about its own mass centre", examples=["0.0001 kg m^2"])
+    inertia: Inertia = optional("about its own mass centre", "0.0001 kg m^2", default=0.0)
 
 
 class SliderPart(Part):
     """The slider."""
 
-    mass: Mass = Field(description="of the slider and all that moves with it", examples=["0.8 kg"])
+    mass: Mass = required("of the slider and all that moves with it", "0.8 kg")
 
 
 def _turning(speed: float) -> float:
@@ -140,45 +135,32 @@ def _turning(speed: float) -> float:
 class MechanismPart(Part):
     """Drive and masses of the machine; lengths belong in [variables]."""
 
-    speed: Annotated[AngularSpeed, AfterValidator(_turning)] = Field(
-        description="of the crank, positive counter-clockwise, negative clockwise",
-        examples=["300 rpm"],
+    speed: Annotated[AngularSpeed, AfterValidator(_turning)] = required(
+        "of the crank, positive counter-clockwise, negative clockwise", "300 rpm"
     )
-    acceleration: AngularAcceleration = Field(
-        0.0,
-        description="of the crank, the same at every crank angle",
-        examples=["20 rad/s^2"],
+    acceleration: AngularAcceleration = optional(
+        "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
     )
-    crank: AnyLink | None = Field(
-        None,
-        description="section or mass of the crank; massless if left out",
-        examples=[{"mass": "0.2 kg"}],
+    crank: AnyLink | None = optional("section or mass of the crank; massless if left out", {"mass": "0.2 kg"})
+    rod: AnyLink | None = optional(
+        "section or mass of the connecting rod; massless if left out",
+        {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
     )
-    rod: AnyLink | None = Field(
-        None,
-        description="section or mass of the connecting rod; massless if left out",
-        examples=[{"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"}],
+    counterweight: CounterweightPart | None = optional(
+        "a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}
     )
-    counterweight: CounterweightPart | None = Field(
-        None,
-        description="a mass fixed to the crank",
-        examples=[{"mass": "0.4 kg", "radius": "25 mm"}],
-    )
-    slider: SliderPart | None = Field(
-        None, description="the slider; massless if left out", examples=[{"mass": "0.8 kg"}]
-    )
-    gravity: Gravity | None = Field(None, description="size of the gravity; none if left out", examples=["9.81 m/s^2"])
-    gravity_direction: Angle | None = Field(
-        None,
-        description="counter-clockwise from +x (the outward direction on the open branch, the inward one on the "
+    slider: SliderPart | None = optional("the slider; massless if left out", {"mass": "0.8 kg"})
+    gravity: Gravity | None = optional("size of the gravity; none if left out", "9.81 m/s^2")
+    gravity_direction: Angle | None = optional(
+        "counter-clockwise from +x (the outward direction on the open branch, the inward one on the "
         "crossed branch) to where things fall; 270 deg, across a level slider line, if left out",
-        examples=["270 deg"],
+        "270 deg",
     )
-    branch: Branch = Field(
-        "open",
-        description="open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of "
+    branch: Branch = optional(
+        "open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of "
         "-x, and outward is -x",
-        examples=["open"],
+        "open",
+        default="open",
     )
 
     @model_validator(mode="after")
@@ -236,32 +218,27 @@ class ClearancesPart(Built[Clearances]):
 
     makes = Clearances
 
-    crank_pivot: Clearance = Field(0.0, description="of the bearing of the crank in the frame", examples=["0.02 mm"])
-    crank_pin: Clearance = Field(0.0, description="of the joint of crank and rod", examples=["0.02 mm"])
-    slider_pin: Clearance = Field(0.0, description="of the joint of rod and slider", examples=["0.02 mm"])
-    guide: Clearance = Field(0.0, description="of the slider, to either side of its line", examples=["0.05 mm"])
+    crank_pivot: Clearance = optional("of the bearing of the crank in the frame", "0.02 mm", default=0.0)
+    crank_pin: Clearance = optional("of the joint of crank and rod", "0.02 mm", default=0.0)
+    slider_pin: Clearance = optional("of the joint of rod and slider", "0.02 mm", default=0.0)
+    guide: Clearance = optional("of the slider, to either side of its line", "0.05 mm", default=0.0)
 
 
 class TolerancesPart(Part):
     """Tolerances of dimensions and crank angle, and the part of the cycle over which the error counts."""
 
-    crank: LengthTolerance = Field(
-        0.0, description="of the crank, as a length or a share", examples=["0.05 mm", "0.1 %"]
+    crank: LengthTolerance = optional("of the crank, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
+    rod: LengthTolerance = optional("of the rod, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
+    offset: LengthTolerance = optional("of the offset, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
+    crank_angle: AngleTolerance = optional("of the crank angle", "0.1 deg", default=0.0)
+    clearances: ClearancesPart = optional(
+        "radial clearances of the joints", {"crank_pin": "0.02 mm"}, default=ClearancesPart()
     )
-    rod: LengthTolerance = Field(0.0, description="of the rod, as a length or a share", examples=["0.05 mm", "0.1 %"])
-    offset: LengthTolerance = Field(
-        0.0, description="of the offset, as a length or a share", examples=["0.05 mm", "0.1 %"]
-    )
-    crank_angle: AngleTolerance = Field(0.0, description="of the crank angle", examples=["0.1 deg"])
-    clearances: ClearancesPart = Field(
-        ClearancesPart(), description="radial clearances of the joints", examples=[{"crank_pin": "0.02 mm"}]
-    )
-    during: During = Field("cycle", description="the stroke in which the position error counts", examples=["cycle"])
-    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = Field(
-        (0.0, 1.0),
-        description="where the position error counts: fractions of the stroke, from the inner (0) "
-        "to the outer dead centre (1)",
-        examples=[[0.0, 0.25]],
+    during: During = optional("the stroke in which the position error counts", "cycle", default="cycle")
+    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = optional(
+        "where the position error counts: fractions of the stroke, from the inner (0) to the outer dead centre (1)",
+        [0.0, 0.25],
+        default=(0.0, 1.0),
     )
 
     def build(self) -> Tolerances:

@@ -23,7 +23,7 @@ from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart
 from .units import shown
-from .values import Built, Part
+from .values import Built, Part, optional, required
 from .variables import ChoicePart, VariablesPart, choice_with
 
 
@@ -39,29 +39,23 @@ class OptimiserPart(Built[Settings]):
 
     makes = Settings
 
-    method: Annotated[str, _MethodName()] = Field(
-        "auto",
-        description="how to search: the default finds the front of any number of objectives and polishes every design; "
+    method: Annotated[str, _MethodName()] = optional(
+        "how to search: the default finds the front of any number of objectives and polishes every design; "
         "the others deliver what they find",
-        examples=["auto"],
+        "auto",
+        default="auto",
     )
-    designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = Field(
-        100, description="how many designs to deliver at most", examples=[100]
+    designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = optional(
+        "how many designs to deliver at most", 100, default=100
     )
-    samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = Field(
-        None,
-        description="designs evaluated per round of the search; chosen by the method if left out",
-        examples=[20_000],
+    samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = optional(
+        "designs evaluated per round of the search; chosen by the method if left out", 20_000
     )
-    evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = Field(
-        None,
-        description="how many designs a method other than auto may evaluate; its own budget if left out",
-        examples=[50_000],
+    evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = optional(
+        "how many designs a method other than auto may evaluate; its own budget if left out", 50_000
     )
-    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
-        1,
-        description="of everything random: the same job with the same seed gives the same front",
-        examples=[1],
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = optional(
+        "of everything random: the same job with the same seed gives the same front", 1, default=1
     )
 
 
@@ -82,99 +76,83 @@ def _some(objectives: ObjectivesPart) -> ObjectivesPart:
 class Job(Part):
     """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
 
-    name: Annotated[str, Field(max_length=80), AfterValidator(one_line)] = Field(
-        description="of the job; names the run too", examples=["Vibrating sieve"]
+    name: Annotated[str, Field(max_length=80), AfterValidator(one_line)] = required(
+        "of the job; names the run too", "Vibrating sieve"
     )
-    description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = Field(
-        None, description="anything worth keeping with the results", examples=["Second draft"]
+    description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = optional(
+        "anything worth keeping with the results", "Second draft"
     )
-    mechanism: MechanismPart = Field(
-        description="how the machine is driven and what it weighs",
-        examples=[{"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}],
+    mechanism: MechanismPart = required(
+        "how the machine is driven and what it weighs", {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}
     )
-    load: tuple[Load, ...] = Field(
-        (),
+    load: tuple[Load, ...] = optional(
+        "loads on the slider along its line; several add up",
+        [{"force": "200 N", "opposes": "outward stroke"}],
+        default=(),
         max_length=50,
-        description="loads on the slider along its line; several add up",
-        examples=[[{"force": "200 N", "opposes": "outward stroke"}]],
     )
-    drive: DrivePart | None = Field(
-        None,
-        description="motor, gear and flywheel: for analyses in which the speed is not given but found",
-        examples=[{"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"}],
+    drive: DrivePart | None = optional(
+        "motor, gear and flywheel: for analyses in which the speed is not given but found",
+        {"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"},
     )
-    friction: FrictionPart = Field(
-        FrictionPart(),
-        description="Coulomb friction in the guide and in the three pins; none where left out",
-        examples=[{"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}],
+    friction: FrictionPart = optional(
+        "Coulomb friction in the guide and in the three pins; none where left out",
+        {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}},
+        default=FrictionPart(),
     )
-    tolerances: TolerancesPart = Field(
-        TolerancesPart(),
-        description="how far dimensions and crank angle may be off",
-        examples=[{"crank": "0.05 mm", "crank_angle": "0.1 deg"}],
+    tolerances: TolerancesPart = optional(
+        "how far dimensions and crank angle may be off",
+        {"crank": "0.05 mm", "crank_angle": "0.1 deg"},
+        default=TolerancesPart(),
     )
-    clearance: ClearancePart | None = Field(
-        None,
-        description="a joint that is loose, for the simulation of its impacts; designs are sized with ideal joints",
-        examples=[{"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"}],
+    clearance: ClearancePart | None = optional(
+        "a joint that is loose, for the simulation of its impacts; designs are sized with ideal joints",
+        {"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"},
     )
-    costs: CostsPart | None = Field(
-        None,
-        description="what tolerances cost, for their allocation",
-        examples=[{"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}}],
+    costs: CostsPart | None = optional(
+        "what tolerances cost, for their allocation",
+        {"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}},
     )
-    target_motion: TargetMotionPart | None = Field(
-        None,
-        description="a wanted slider motion, from which motion_deviation and motion_deviation_rms are counted",
-        examples=[{"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]}],
+    target_motion: TargetMotionPart | None = optional(
+        "a wanted slider motion, from which motion_deviation and motion_deviation_rms are counted",
+        {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
-    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = Field(
-        {},
-        description="functions of your own as quantities, by name",
-        examples=[{"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}}],
+    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = optional(
+        "functions of your own as quantities, by name",
+        {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},
+        default={},
     )
-    variables: VariablesPart = Field(
-        description="where the three dimensions, and any other number of the job, may lie",
-        examples=[{"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]}],
+    variables: VariablesPart = required(
+        "where the three dimensions, and any other number of the job, may lie",
+        {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]},
     )
-    choice: tuple[ChoicePart, ...] = Field(
-        (),
-        max_length=10,
-        description="choices between options that each set several numbers; every combination is tried",
-        examples=[
-            [
-                {
-                    "name": "gearmotor",
-                    "option": [
-                        {"name": "GM 40", "constraints": {"peak_torque": {"max": "40 N m"}}},
-                        {"name": "GM 90", "constraints": {"peak_torque": {"max": "90 N m"}}},
-                    ],
-                }
-            ]
+    choice: tuple[ChoicePart, ...] = optional(
+        "choices between options that each set several numbers; every combination is tried",
+        [
+            {
+                "name": "gearmotor",
+                "option": [
+                    {"name": "GM 40", "constraints": {"peak_torque": {"max": "40 N m"}}},
+                    {"name": "GM 90", "constraints": {"peak_torque": {"max": "90 N m"}}},
+                ],
+            }
         ],
+        default=(),
+        max_length=10,
     )
-    constraints: ConstraintsPart = Field(
-        ConstraintsPart(),
-        description="what every design must satisfy",
-        examples=[{"transmission_angle": {"min": "40 deg"}}],
+    constraints: ConstraintsPart = optional(
+        "what every design must satisfy", {"transmission_angle": {"min": "40 deg"}}, default=ConstraintsPart()
     )
-    objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = Field(
-        description="what is wanted: the front shows the best compromises",
-        examples=[{"time_ratio": "maximise", "peak_torque": "minimise"}],
+    objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = required(
+        "what is wanted: the front shows the best compromises", {"time_ratio": "maximise", "peak_torque": "minimise"}
     )
-    robust: RobustPart | None = Field(
-        None,
-        description="objectives and constraints as they are within the tolerances",
-        examples=[{"kind": "percentile", "share": 0.99}],
+    robust: RobustPart | None = optional(
+        "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}
     )
-    sections: SectionsPart | None = Field(
-        None,
-        description="material, pins and safety of crank and rod, for the sizing of their sections",
-        examples=[SECTIONS],
+    sections: SectionsPart | None = optional(
+        "material, pins and safety of crank and rod, for the sizing of their sections", SECTIONS
     )
-    optimiser: OptimiserPart = Field(
-        OptimiserPart(), description="how to search", examples=[{"designs": 200, "seed": 1}]
-    )
+    optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 
     def machine(self) -> Mechanism:
         """Return the machine of the job, its numbers as they are given."""

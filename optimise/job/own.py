@@ -16,7 +16,7 @@ from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, i
 from ...objectives.registry import FACTS
 from .quantities import SLOW_STROKE, Stated
 from .units import kind_for, per_si, shown
-from .values import Part, Physical
+from .values import Part, Physical, optional, required
 
 
 def _function(text: str) -> str:
@@ -51,23 +51,22 @@ MOST_OWN = 20
 class QuantityPart(Part):
     """A Python function as a quantity; its name then stands in [objectives] and [constraints] like any other."""
 
-    function: Annotated[str, Field(max_length=200), AfterValidator(_function)] = Field(
-        description="module:function; the module lies beside the job file or is installed",
-        examples=["mymodule:greatest_jerk"],
+    function: Annotated[str, Field(max_length=200), AfterValidator(_function)] = required(
+        "module:function; the module lies beside the job file or is installed", "mymodule:greatest_jerk"
     )
-    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = Field(
-        "", description='in which it is shown; the function returns SI; "" for a ratio', examples=["m/s^3"]
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = optional(
+        'in which it is shown; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
-    title: Annotated[str, Field(max_length=60), AfterValidator(one_line)] | None = Field(
-        None, description="for people; the name if left out", examples=["greatest jerk of the slider"]
+    title: Annotated[str, Field(max_length=60), AfterValidator(one_line)] | None = optional(
+        "for people; the name if left out", "greatest jerk of the slider"
     )
-    gradient: Gradient = Field(
+    gradient: Gradient = optional(
+        "how derivatives are had: complex step for a function that runs on complex numbers",
         "complex step",
-        description="how derivatives are had: complex step for a function that runs on complex numbers",
-        examples=["complex step"],
+        default="complex step",
     )
-    limit: Annotated[float, Physical(TIME, "positive")] = Field(
-        LIMIT, description="what a call, of up to 256 designs, may take", examples=["30 s"]
+    limit: Annotated[float, Physical(TIME, "positive")] = optional(
+        "what a call, of up to 256 designs, may take", "30 s", default=LIMIT
     )
 
     def build(self, name: str, folders: Iterable[str]) -> OwnQuantity:

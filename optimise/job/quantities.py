@@ -24,7 +24,7 @@ from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
 from ..problem.problem import SENSES, Constraint, Objective
 from .units import closest, shown
-from .values import Part, Physical
+from .values import Part, Physical, optional
 
 
 class Bounds(Part):
@@ -97,19 +97,15 @@ def tables(own: Mapping[str, Stated]) -> tuple[type[Part], type[Part]]:
         bounds, wish = made[kind]
         limits[name] = (
             bounds | None,
-            Field(None, description=title, examples=[{"min": example}]),
+            optional(title, {"min": example}),
         )
         wishes[name] = (
             wish | None,
-            Field(None, description=title, examples=["minimise", {"target": example}]),
+            optional(title, "minimise", {"target": example}),
         )
     limits[SLOW_STROKE] = (
         SlowStroke | None,
-        Field(
-            None,
-            description="which stroke is the slow one; the offset and the sense of rotation follow it",
-            examples=["outward"],
-        ),
+        optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward"),
     )
     constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))

@@ -14,7 +14,7 @@ from ...objectives.robust.quantity import SAMPLES, Case
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.robust import Robust, robust
-from .values import Checked
+from .values import Checked, optional
 
 
 class RobustPart(Checked[Robust]):
@@ -23,31 +23,27 @@ class RobustPart(Checked[Robust]):
     makes = Robust
     renamed: ClassVar = {"spread": "shape"}
 
-    kind: Case = Field(
+    kind: Case = optional(
+        "percentile: what a share of all machines keeps; worst case: what all within the limits keep",
         "percentile",
-        description="percentile: what a share of all machines keeps; worst case: what all within the limits keep",
-        examples=["percentile"],
+        default="percentile",
     )
-    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = Field(
-        0.99, description="of the machines, for a percentile", examples=[0.99]
+    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = optional(
+        "of the machines, for a percentile", 0.99, default=0.99
     )
-    order: Literal[1, 2] = Field(
-        2,
-        description="of a worst case. 1: linear in the errors; 2: second order and above, exact at the worst corner",
-        examples=[2],
+    order: Literal[1, 2] = optional(
+        "of a worst case. 1: linear in the errors; 2: second order and above, exact at the worst corner", 2, default=2
     )
-    spread: Shape = Field(
+    spread: Shape = optional(
+        "of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
         "normal",
-        description="of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
-        examples=["normal"],
+        default="normal",
     )
-    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = Field(
-        SAMPLES, description="machines drawn for a percentile, the same for all designs", examples=[SAMPLES]
+    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = optional(
+        "machines drawn for a percentile, the same for all designs", SAMPLES, default=SAMPLES
     )
-    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = Field(
-        None,
-        description="which objectives and constraints; if left out, all that can be",
-        examples=[[PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]],
+    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional(
+        "which objectives and constraints; if left out, all that can be", [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]
     )
 
 

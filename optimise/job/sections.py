@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from ..sizing.section_limits import Material, SectionLimits
-from .values import Checked, Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure
+from .values import Checked, Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure, optional, required
 
 EXAMPLE = {
     "material": {
@@ -28,40 +26,34 @@ class MaterialPart(Checked[Material]):
 
     makes = Material
 
-    density: Density = Field(description="of the material", examples=["7850 kg/m^3"])
-    elasticity: Pressure = Field(description="Young's modulus", examples=["207 GPa"])
-    yield_strength: Pressure = Field(description="in tension and compression", examples=["350 MPa"])
-    ultimate_strength: Pressure = Field(description="in tension", examples=["520 MPa"])
-    endurance: Pressure = Field(
-        description="fully reversed strength of the finished part, stress raisers included", examples=["150 MPa"]
-    )
-    bearing_pressure: Pressure = Field(
-        description="permissible at the pins, on their projected area", examples=["20 MPa"]
-    )
+    density: Density = required("of the material", "7850 kg/m^3")
+    elasticity: Pressure = required("Young's modulus", "207 GPa")
+    yield_strength: Pressure = required("in tension and compression", "350 MPa")
+    ultimate_strength: Pressure = required("in tension", "520 MPa")
+    endurance: Pressure = required("fully reversed strength of the finished part, stress raisers included", "150 MPa")
+    bearing_pressure: Pressure = required("permissible at the pins, on their projected area", "20 MPa")
 
 
 class PinsPart(Part):
     """Diameters of the three pins."""
 
-    crank_pivot: PositiveLength = Field(description="between frame and crank", examples=["15 mm"])
-    crank_pin: PositiveLength = Field(description="between crank and connecting rod", examples=["12 mm"])
-    slider_pin: PositiveLength = Field(description="between connecting rod and slider", examples=["10 mm"])
+    crank_pivot: PositiveLength = required("between frame and crank", "15 mm")
+    crank_pin: PositiveLength = required("between crank and connecting rod", "12 mm")
+    slider_pin: PositiveLength = required("between connecting rod and slider", "10 mm")
 
 
 class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
 
-    material: MaterialPart = Field(description="of crank and rod", examples=[EXAMPLE["material"]])
-    pins: PinsPart = Field(description="diameters", examples=[EXAMPLE["pins"]])
-    width: PositiveRange = Field(
-        (5e-3, 0.2), description="in the plane of motion: what can be made", examples=[["10 mm", "80 mm"]]
-    )
-    depth: PositiveRange = Field((3e-3, 0.1), description="normal to the plane", examples=[["5 mm", "40 mm"]])
-    static_safety: PositiveRatio = Field(2.0, description="against yield", examples=[2.0])
-    fatigue_safety: PositiveRatio = Field(1.5, description="against fatigue", examples=[1.5])
-    buckling_safety: PositiveRatio = Field(3.0, description="against Euler's load", examples=[3.0])
-    criterion: Literal["goodman", "soderberg"] = Field(
-        "goodman", description="how mean stresses count in fatigue", examples=["goodman"]
+    material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
+    pins: PinsPart = required("diameters", EXAMPLE["pins"])
+    width: PositiveRange = optional("in the plane of motion: what can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2))
+    depth: PositiveRange = optional("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
+    static_safety: PositiveRatio = optional("against yield", 2.0, default=2.0)
+    fatigue_safety: PositiveRatio = optional("against fatigue", 1.5, default=1.5)
+    buckling_safety: PositiveRatio = optional("against Euler's load", 3.0, default=3.0)
+    criterion: Literal["goodman", "soderberg"] = optional(
+        "how mean stresses count in fatigue", "goodman", default="goodman"
     )
 
     def build(self) -> tuple[Material, SectionLimits]:

@@ -14,7 +14,7 @@ from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
 from .loads import increasing
 from .units import shown
-from .values import Angle, Length, Part
+from .values import Angle, Length, Part, optional
 
 HEADER = ["crank_angle_deg", "position_mm"]
 """First line of a file of points."""
@@ -25,34 +25,26 @@ _MOST = 1000
 class TargetMotionPart(Part):
     """A wanted motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
 
-    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] | None = Field(
-        None,
+    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] | None = optional(
+        "crank angles of the points, increasing, spanning less than 360 deg",
+        ["0 deg", "90 deg", "180 deg"],
         min_length=3,
         max_length=_MOST,
-        description="crank angles of the points, increasing, spanning less than 360 deg",
-        examples=[["0 deg", "90 deg", "180 deg"]],
     )
-    positions: tuple[Length, ...] | None = Field(
-        None,
+    positions: tuple[Length, ...] | None = optional(
+        "slider position at each point, from the crank pivot outward",
+        ["240 mm", "200 mm", "160 mm"],
         min_length=3,
         max_length=_MOST,
-        description="slider position at each point, from the crank pivot outward",
-        examples=[["240 mm", "200 mm", "160 mm"]],
     )
-    file: Annotated[str, Field(max_length=200)] | None = Field(
-        None,
-        description=f"instead of the two: a CSV file beside the job file, with the columns {' and '.join(HEADER)}",
-        examples=["motion.csv"],
+    file: Annotated[str, Field(max_length=200)] | None = optional(
+        f"instead of the two: a CSV file beside the job file, with the columns {' and '.join(HEADER)}", "motion.csv"
     )
-    phase: Freedom = Field(
-        "fixed",
-        description="whether the crank may sit on its shaft at any angle: the best one counts",
-        examples=["free"],
+    phase: Freedom = optional(
+        "whether the crank may sit on its shaft at any angle: the best one counts", "free", default="fixed"
     )
-    shift: Freedom = Field(
-        "fixed",
-        description="whether positions may count from anywhere on the slider line: the best place counts",
-        examples=["free"],
+    shift: Freedom = optional(
+        "whether positions may count from anywhere on the slider line: the best place counts", "free", default="fixed"
     )
 
     @model_validator(mode="after")

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
@@ -27,6 +27,16 @@ class Part(BaseModel):
     """A table of a job file: unknown keys are refused, nothing changes after reading."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def required(description: str, *examples: object, default: Any = ..., **rules: Any) -> Any:
+    """Return an entry of a table that must be given. rules: further arguments of pydantic's `Field`."""
+    return Field(default, description=description, examples=list(examples), **rules)
+
+
+def optional(description: str, *examples: object, default: Any = None, **rules: Any) -> Any:
+    """Return an entry of a table that may be left out; then it is `default`."""
+    return required(description, *examples, default=default, **rules)
 
 
 Made = TypeVar("Made")

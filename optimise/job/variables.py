@@ -17,7 +17,7 @@ from ...model.errors import InputError
 from .file import DEEPEST
 from .quantities import ConstraintsPart
 from .units import shown
-from .values import AnyRange, Part, PositiveRange
+from .values import AnyRange, Part, PositiveRange, optional, required
 
 ROOTS = ("mechanism", "load", "friction", "tolerances")
 """Tables whose numbers may vary."""
@@ -25,7 +25,7 @@ Table = dict[str, Any]
 
 
 def _more(what: str, example: dict[str, Any]) -> Any:
-    return Field({}, description=f"numbers of {what} that may vary, by their keys there", examples=[example])
+    return optional(f"numbers of {what} that may vary, by their keys there", example, default={})
 
 
 class VariablesPart(Part):
@@ -34,12 +34,12 @@ class VariablesPart(Part):
     One value fixes a dimension.
     """
 
-    crank: PositiveRange = Field(description="crank pivot to crank pin", examples=[["20 mm", "200 mm"]])
-    rod: PositiveRange = Field(description="crank pin to slider pin", examples=[["60 mm", "600 mm"]])
-    offset: AnyRange = Field(
-        description="of the slider line from the crank pivot, along +y: positive to the left of the outward direction "
+    crank: PositiveRange = required("crank pivot to crank pin", ["20 mm", "200 mm"])
+    rod: PositiveRange = required("crank pin to slider pin", ["60 mm", "600 mm"])
+    offset: AnyRange = required(
+        "of the slider line from the crank pivot, along +y: positive to the left of the outward direction "
         "on the open branch, to its right on the crossed one",
-        examples=[["0 mm", "200 mm"]],
+        ["0 mm", "200 mm"],
     )
     mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
     load: Table = _more("a [[load]], after its place, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
@@ -69,18 +69,18 @@ class VariablesPart(Part):
 class OptionPart(Part):
     """One option of a choice."""
 
-    name: Annotated[str, Field(min_length=1, max_length=60)] = Field(
-        description="of the option, as the table of designs has it", examples=["bar 30 x 10"]
+    name: Annotated[str, Field(min_length=1, max_length=60)] = required(
+        "of the option, as the table of designs has it", "bar 30 x 10"
     )
-    values: Table = Field(
-        {},
-        description="numbers of the job that come with it, by their paths; crank, rod and offset too",
-        examples=[{"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}],
+    values: Table = optional(
+        "numbers of the job that come with it, by their paths; crank, rod and offset too",
+        {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"},
+        default={},
     )
-    constraints: ConstraintsPart = Field(
-        ConstraintsPart(),
-        description="what holds for it in addition to the constraints of the job, as in [constraints]",
-        examples=[{"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}],
+    constraints: ConstraintsPart = optional(
+        "what holds for it in addition to the constraints of the job, as in [constraints]",
+        {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}},
+        default=ConstraintsPart(),
     )
 
     @property
@@ -100,19 +100,17 @@ def _apart(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
 class ChoicePart(Part):
     """A choice between options that each set several numbers, such as sections or gearmotors of a catalogue."""
 
-    name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = Field(
-        description="of the choice; the table of designs has it as choice_<name>", examples=["rod section"]
+    name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
+        "of the choice; the table of designs has it as choice_<name>", "rod section"
     )
-    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = Field(
+    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = required(
+        "what there is to choose from",
+        [
+            {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
+            {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
+        ],
         min_length=2,
         max_length=100,
-        description="what there is to choose from",
-        examples=[
-            [
-                {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
-                {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
-            ]
-        ],
     )
 
 
