@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from dataclasses import field as _field
 from enum import Enum
@@ -154,6 +155,19 @@ class Quantity(ABC):
             if need.without == without and not need.met(mechanism):
                 return need.missing.replace("{instead}", self.instead)
         return None
+
+    def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
+        """Return rule, value and remedy where one of the machines does not define the quantity; None if all do.
+
+        Nor is it defined where it only equals another quantity.
+        """
+        reasons = (self.lacks(m, "undefined") or self.lacks(m, "equal") for m in machines)
+        return next(filter(None, reasons), None)
+
+    def zero_because(self, machines: Iterable[Mechanism]) -> str | None:
+        """Return rule, value and remedy where the quantity is zero for all designs and machines; None otherwise."""
+        reasons = [self.lacks(machine, "zero") for machine in machines]
+        return reasons[0] if all(reasons) else None
 
     @abstractmethod
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

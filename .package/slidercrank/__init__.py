@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from slidercrank.model.linkage.inverse import crank_from_stroke
     from slidercrank.model.linkage.linkage import Linkage
     from slidercrank.model.machine.mechanism import Mechanism
+    from slidercrank.objectives.tables.evaluate import evaluate
     from slidercrank.optimise.adapters.jax import jax_function
     from slidercrank.optimise.adapters.openmdao import openmdao_component
     from slidercrank.optimise.adapters.optuna import optuna_objective
@@ -86,7 +87,6 @@ if TYPE_CHECKING:
     from slidercrank.optimise.job import job_schema, load_job
     from slidercrank.optimise.job.tables import problem
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
-    from slidercrank.optimise.problem.design_values import evaluate
     from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
     from slidercrank.optimise.questions.like import like_design as like
     from slidercrank.optimise.questions.quantities import quantities
@@ -111,7 +111,7 @@ else:
         "optimise.job": ("job_schema", "load_job"),
         "optimise.job.tables": ("problem",),
         "optimise.problem.design_analysis": ("Analysis", "analyse"),
-        "optimise.problem.design_values": ("evaluate",),
+        "objectives.tables.evaluate": ("evaluate",),
         "optimise.problem.problem": ("Constraint", "Objective", "Problem"),
         "optimise.questions.like": ("like",),
         "optimise.questions.quantities": ("quantities",),

@@ -1,11 +1,12 @@
-"""Quantities of very many designs as one array, with their derivatives by the design's numbers."""
+"""Quantities of very many designs by name as one array, with their derivatives by the design's numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
@@ -17,26 +18,65 @@ from ...model.signals.watch import stroke_dependent
 from ..cycle_peak import CyclePeak
 from ..own.quantity import OwnQuantity
 from ..quantity import Array, Quantity, Values
+from ..registry import quantity
 
 _NEAR = 0.02
 """Share of the greatest torque within which that of a dead centre calls for the exact search: the peak may be its kink,
 or lie between it and the next sample. Of 600,000 random machines with loads that change there it missed none."""
 
 
-def evaluate_quantities(
-    mechanism: Mechanism, quantities: Sequence[Quantity], designs: object, *, gradients: bool
-) -> tuple[Array, Array | None]:
-    """Return values (..., q), SI, and the Jacobian (..., q, 3 + k) of designs (..., 3 + k).
+@overload
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: Literal[False] = False,
+    own: Sequence[Quantity] = (),
+) -> Array: ...
+@overload
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: Literal[True],
+    own: Sequence[Quantity] = (),
+) -> tuple[Array, Array]: ...
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: bool = False,
+    own: Sequence[Quantity] = (),
+) -> Array | tuple[Array, Array]:
+    """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
-    Without `gradients` the Jacobian is None. Columns of a design: crank, rod, offset, m, and the values of the
-    machine's k varying numbers, SI. Rows of designs that do not turn fully, or that are not finite, are NaN; a
-    quantity is infinite where friction locks the linkage. Peaks come from the vectorised search of `screening`, and
-    from the exact one of `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie
-    of two peaks the slope is that of one of them.
-    Raises `InputError` for arrays of another width, and for the gradient of a quantity that has none.
+    A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
+    before the last: one design (3 + k,) gives (q,). quantities: names as in job files. own: quantities that may be
+    named besides those of the product.
+
+    The row of a design that does not turn fully, or that has NaN in it, is NaN. Where friction locks the linkage, what
+    follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the exact one of
+    `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks the slope is
+    that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a quantity that the
+    machine does not define (a position error without tolerances), and for the gradient of a function that has none.
+
+    >>> from slidercrank import Mechanism, evaluate
+    >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
+    array([[0.082 , 1.1334],
+           [   nan,    nan]])
     """
+    if isinstance(quantities, str):
+        raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
+    chosen = [quantity(name, own) for name in quantities]
+    for item in chosen:
+        reason = item.undefined_because([mechanism])
+        if reason:
+            raise InputError(f"{item.name}: {reason}")
     rows, shape = _rows(mechanism, designs)
-    lacking = [item.name for item in quantities if isinstance(item, OwnQuantity) and item.gradient == "none"]
+    lacking = [item.name for item in chosen if isinstance(item, OwnQuantity) and item.gradient == "none"]
     if gradients and lacking:
         raise InputError(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
@@ -45,16 +85,16 @@ def evaluate_quantities(
         turns = (rows[:, 1] > rows[:, 0] + np.abs(rows[:, 2])) & (rows[:, 0] > 0.0)
     turns &= np.isfinite(rows).all(axis=1)
     whole = bool(turns.all())
-    found = _found(mechanism, quantities, rows if whole else rows[turns], gradients)
-    values = np.full((len(rows), len(quantities)), np.nan)
+    found = _found(mechanism, chosen, rows if whole else rows[turns], gradients)
+    values = np.full((len(rows), len(chosen)), np.nan)
     jacobian = np.full((*values.shape, rows.shape[1]), np.nan) if gradients else None
     where: slice | NDArray[np.bool_] = slice(None) if whole else turns
-    for column, item in enumerate(found):
-        values[where, column] = item.values
-        if jacobian is not None and item.gradients is not None:
-            jacobian[where, column] = item.gradients
-    values = values.reshape(*shape, len(quantities))
-    return values, None if jacobian is None else jacobian.reshape(*values.shape, rows.shape[1])
+    for column, part in enumerate(found):
+        values[where, column] = part.values
+        if jacobian is not None and part.gradients is not None:
+            jacobian[where, column] = part.gradients
+    values = values.reshape(*shape, len(chosen))
+    return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
 
 
 def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]]:

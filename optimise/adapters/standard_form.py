@@ -15,7 +15,7 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.gradients import without_gradient
 from ..problem.problem import Constraint, Objective, Problem
 from ..search.elimination import Sheet, sheets
-from ..search.evaluation import FEASIBLE, constraints_of
+from ..search.evaluation import FEASIBLE, constraints_of, minimised
 
 if TYPE_CHECKING:
     from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
@@ -88,23 +88,18 @@ class StandardForm:
         """
         points, x = np.asarray(x, dtype=np.float64), self.designs(x)
         names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._asked)]))
-        slopes = np.zeros((*x.shape[:-1], len(names), 0))
-        if gradients:
-            values, slopes = self.problem.evaluate(x, names, gradients=True)
-        else:
-            values = self.problem.evaluate(x, names)
+        values, slopes = (
+            self.problem.evaluate(x, names, gradients=True)
+            if gradients
+            else (self.problem.evaluate(x, names), np.zeros((*x.shape[:-1], len(names), 0)))
+        )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
         f = [_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
-        g, h = _turning(x, self._asked, slopes.shape[-1]), []
+        g, h = _turning(x, self._asked, slopes.shape[-1]), list[Row]()
         for asked in self._asked:
             value, slope = at[asked.quantity]
-            if asked.equality:
-                h.append(_scaled(value, slope, asked.lower, 1.0))
-                continue
-            if asked.upper is not None:
-                g.append(_scaled(value, slope, asked.upper, 1.0))
-            if asked.lower is not None:
-                g.append(_scaled(value, slope, asked.lower, -1.0))
+            for word, bound in reversed(asked.sides):
+                (h if word == "equals" else g).append(_scaled(value, slope, bound, -1.0 if word == "min" else 1.0))
         if self._sheet is not None:
             g += _ranges(x, self._sheet, slopes.shape[-1])
             f, g, h = (_without_spurious(rows, x, self.problem, self._sheet) for rows in (f, g, h))
@@ -112,9 +107,8 @@ class StandardForm:
                 chain = self._sheet.jacobian(points.reshape(-1, len(self.names)))
                 chain = chain.reshape(*points.shape[:-1], *chain.shape[1:])
                 f, g, h = ([(v, (d[..., None, :] @ chain)[..., 0, :]) for v, d in rows] for rows in (f, g, h))
-                slopes = slopes[..., : len(self.names)] if slopes.shape[-1] else slopes
-        shape, width = x.shape[:-1], slopes.shape[-1]
-        (F, dF), (G, dG), (H, dH) = (_joined(rows, shape, width) for rows in (f, g, h))
+        width = len(self.names) if gradients else 0
+        (F, dF), (G, dG), (H, dH) = (_joined(rows, x.shape[:-1], width) for rows in (f, g, h))
         return Arrays(F, G, H, dF, dG, dH)
 
     def scipy(self, objective: str | None = None, *, keep_feasible: bool = False) -> ScipyForm:
@@ -161,13 +155,12 @@ class StandardForm:
                 raise InputError("no design of the ranges meets the equalities; got none of 4,096; widen the ranges")
             return np.asarray(grid[np.argmin(worst)])
         middle = 0.5 * (self.lower + self.upper)
-        far = 0.5 * (self.lower[2] + self.upper[2])
         near = min(max(0.0, self.lower[2]), self.upper[2])
         for share in np.linspace(0.0, 1.0, 33):
             start = middle.copy()
             start[0] += share * (self.lower[0] - start[0])
             start[1] += share * (self.upper[1] - start[1])
-            start[2] = far + share * (near - far)
+            start[2] += share * (near - start[2])
             if self.arrays(start).G[:2].max() <= 0.0:
                 return start
         raise InputError(
@@ -212,7 +205,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
     else:
         names, lower, upper = sheet.free, np.zeros(len(sheet.free)), np.ones(len(sheet.free))
         asked = tuple(c for c in asked if c.quantity not in sheet.eliminated)
-    bounded = [name for c in asked if not c.equality for name in _sides(c)]
+    bounded = [c.quantity for c in asked if not c.equality for _ in c.sides]
     computed = [] if sheet is None else [name for name in _computed(sheet) for _ in range(2)]
     return StandardForm(
         problem,
@@ -259,16 +252,10 @@ def _ranges(x: Array, sheet: Sheet, width: int) -> list[Row]:
 def _without_spurious(rows: list[Row], x: Array, problem: Problem, sheet: Sheet) -> list[Row]:
     """Return rows that are infinite where an eliminated equality does not hold: its formula gave another root."""
     wanted = [c for c in problem.constraints if c.quantity in sheet.eliminated]
-    if not wanted:
-        return rows
     values = problem.evaluate(x, [c.quantity for c in wanted])
     target = np.array([c.lower for c in wanted], dtype=np.float64)
     holds = (np.abs(values - target) <= FEASIBLE * np.maximum(np.abs(target), 1e-9)).all(axis=-1)
     return [(np.where(holds, value, np.inf), slope) for value, slope in rows]
-
-
-def _sides(constraint: Constraint) -> list[str]:
-    return [constraint.quantity] * sum(bound is not None for bound in (constraint.upper, constraint.lower))
 
 
 def _share(asked: tuple[Constraint, ...]) -> float:
@@ -292,16 +279,15 @@ def _turning(x: Array, asked: tuple[Constraint, ...], width: int) -> list[Row]:
 
 
 def _minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
+    found = minimised(objective, value)
     if objective.sense == "maximise":
-        value, slope = -value, -slope
+        slope = -slope
     elif objective.target is not None:
-        off = value - objective.target
-        value, slope = np.abs(off), np.sign(off)[..., None] * slope
-    return np.where(np.isnan(value), np.inf, value), slope
+        slope = np.sign(value - objective.target)[..., None] * slope
+    return np.where(np.isnan(found), np.inf, found), slope
 
 
-def _scaled(value: Array, slope: Array, bound: float | None, sign: float) -> tuple[Array, Array]:
-    assert bound is not None
+def _scaled(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
     scale = sign / (abs(bound) or 1.0)
     found = scale * (value - bound)
     return np.where(np.isnan(found), np.inf, found), scale * slope

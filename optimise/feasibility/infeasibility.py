@@ -17,7 +17,7 @@ from ..search.evaluation import FEASIBLE, Evaluator, Rows, constraints_of
 from ..search.recorded import polished
 from ..search.sampling import apart, first_samples
 from .best import Best
-from .relaxation import Relaxation, missed, relaxations, sides
+from .relaxation import Relaxation, missed, relaxations
 
 _SAMPLES = 16384
 _RANKED = 2048
@@ -131,8 +131,8 @@ def _together(problem: Problem, variant: int, design: Array) -> str:
     found = []
     for constraint in constraints_of(part):
         value = float(part.quantity(constraint.quantity).evaluate(part.mechanism, design[None]).values[0])
-        for relation, _, bound in sides(constraint):
-            item = missed(part, constraint, relation, bound, value)
+        for word, bound in constraint.sides:
+            item = missed(part, constraint, word, bound, value)
             if item is not None:
                 found.append(replace(item, alone=constraint.equality).instead())
     chosen = "".join(

@@ -7,13 +7,19 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from ..front.stationarity import Array
-from ..problem.problem import Constraint, Problem, Sense
+from ..problem.problem import Constraint, Problem, Sense, Word
 from ..search.evaluation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe
 
 _LOWEST = 0.02
 """Of a floor: what is kept of it where it is let go. Nearer to locking nothing is worth telling."""
+_SIDES: dict[Word, tuple[str, Sense]] = {
+    "min": ("at least", "maximise"),
+    "max": ("at most", "minimise"),
+    "equals": ("exactly", "target"),
+}
+"""Relation that a bound asks for, and how to come nearest to it."""
 
 
 @dataclass(frozen=True)
@@ -67,27 +73,16 @@ class Relaxation:
         return f"{self.asked:.10g} {self.unit}".rstrip()
 
 
-def sides(constraint: Constraint) -> list[tuple[str, Sense, float]]:
-    """Return the sides of a constraint: relation, how to come nearest to it, bound (SI)."""
-    if constraint.equality and constraint.lower is not None:
-        return [("exactly", "target", constraint.lower)]
-    found: list[tuple[str, Sense, float]] = []
-    if constraint.lower is not None:
-        found.append(("at least", "maximise", constraint.lower))
-    if constraint.upper is not None:
-        found.append(("at most", "minimise", constraint.upper))
-    return found
-
-
-def missed(problem: Problem, constraint: Constraint, relation: str, bound: float, value: float) -> Relaxation | None:
+def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, value: float) -> Relaxation | None:
     """Return a missed side of a constraint with its reachable value (SI); None if the value meets it."""
     slack = FEASIBLE * (abs(bound) or 1.0)
-    off = {"at least": bound - value, "at most": value - bound, "exactly": abs(value - bound)}[relation]
+    off = {"min": bound - value, "max": value - bound, "equals": abs(value - bound)}[word]
     if off <= slack:
         return None
     of = problem.quantity(constraint.quantity)
     factor, symbol = of.unit.factor, of.unit.symbol
     standing = all(item.quantity != constraint.quantity for item in problem.constraints)
+    relation, _ = _SIDES[word]
     return Relaxation(of.name, relation, bound * factor, value * factor, symbol, of.title, standing=standing)
 
 
@@ -99,33 +94,34 @@ def relaxations(
     Where a side can be had after all, the design (3 + v,) that has it with all else kept is given instead. best: gives
     the best of a problem with one objective, None where nothing meets its requirements.
     """
-    for relation, sense, bound in sides(constraint):
-        free = _without(problem, constraint, relation)
+    for word, bound in constraint.sides:
+        _, sense = _SIDES[word]
+        free = _without(problem, constraint, word)
         # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
         unbounded = problem.quantity(constraint.quantity).in_line == math.inf
         sought: Sense = "target" if unbounded else sense
         reached = best(wanting(free, constraint.quantity, sought, bound if sought == "target" else None))
         if reached is None:
             continue
-        item = missed(problem, constraint, relation, bound, reached.value)
+        item = missed(problem, constraint, word, bound, reached.value)
         if item is None:
             yield reached.design
             continue
         if sense == "target":
             rounded = item.number / problem.quantity(constraint.quantity).unit.factor
             again = best(wanting(free, constraint.quantity, "target", rounded))
-            alone = again is None or missed(problem, constraint, relation, rounded, again.value) is not None
+            alone = again is None or missed(problem, constraint, word, rounded, again.value) is not None
             item = replace(item, alone=alone)
         yield item
 
 
-def _without(problem: Problem, constraint: Constraint, relation: str) -> Problem:
+def _without(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     """Return the problem with one side of a constraint let go.
 
     Of a floor a little is kept: the one that a job without it has would hide what can be had below that.
     """
-    lower = constraint.lower if relation == "at most" else None
-    upper = constraint.upper if relation == "at least" else None
+    lower = constraint.lower if word == "max" else None
+    upper = constraint.upper if word == "min" else None
     floor = problem.quantity(constraint.quantity).floor
     if lower is None and constraint.lower is not None and floor is not None:
         lower = _LOWEST * constraint.lower

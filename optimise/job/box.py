@@ -207,11 +207,7 @@ def _shown(name: str, value: float) -> str:
 
 
 def _bounds(constraint: Constraint) -> str:
-    name, lower, upper = constraint.quantity, constraint.lower, constraint.upper
-    if constraint.equality and lower is not None:
-        return f"equals {_shown(name, lower)}"
-    ends = (("min", lower), ("max", upper))
-    return " and ".join(f"{word} {_shown(name, end)}" for word, end in ends if end is not None)
+    return " and ".join(f"{word} {_shown(constraint.quantity, bound)}" for word, bound in constraint.sides)
 
 
 def _extremes(box: Box) -> str:

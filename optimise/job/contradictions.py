@@ -32,11 +32,8 @@ def require_consistent(problem: Problem) -> None:
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
     """Yield key, quantity, word and value of every bound and target."""
     for constraint in problem.constraints:
-        name, lower, upper = constraint.quantity, constraint.lower, constraint.upper
-        words = (("equals", lower),) if constraint.equality else (("min", lower), ("max", upper))
-        for word, value in words:
-            if value is not None:
-                yield f"constraints.{name}", name, word, value
+        for word, value in constraint.sides:
+            yield f"constraints.{constraint.quantity}", constraint.quantity, word, value
     for objective in problem.objectives:
         if objective.target is not None:
             yield f"objectives.{objective.quantity}", objective.quantity, "target", objective.target

@@ -18,7 +18,6 @@ from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
-from .causes import undefined_because, zero_because
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -150,7 +149,7 @@ def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] 
     chosen = (*QUANTITIES.values(), *own)
     row = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset), *sizes[3:]]])
     for item in chosen:
-        reason = undefined_because(item, [mechanism]) or zero_because(item, [mechanism])
+        reason = item.undefined_because([mechanism]) or item.zero_because([mechanism])
         if reason:
             undefined[item.name] = reason
         else:

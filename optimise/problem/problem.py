@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from numbers import Integral, Real
@@ -19,10 +19,9 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
-from .causes import undefined_because
+from ...objectives.tables.evaluate import evaluate
 from .costs import Costs
 from .design_analysis import Analysis, analyse
-from .design_values import evaluate
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {
@@ -33,6 +32,9 @@ SENSES: dict[str, Sense] = {
     "target": "target",
 }
 """The sense of every word for it, in either spelling."""
+Word = Literal["min", "max", "equals"]
+"""Words of a constraint's bounds."""
+_IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -85,6 +87,14 @@ class Constraint:
     def equality(self) -> bool:
         """Whether one value is asked for."""
         return self.lower is not None and self.lower == self.upper
+
+    @property
+    def sides(self) -> list[tuple[Word, float]]:
+        """The bounds that there are, by their words in a job."""
+        if self.equality and self.lower is not None:
+            return [("equals", self.lower)]
+        both: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
+        return [(word, bound) for word, bound in both if bound is not None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,7 +209,7 @@ class Problem:
         keys = [("objectives", name) for name in names]
         keys += [("constraints", constraint.quantity) for constraint in (*self.constraints, *limits)]
         for table, name in keys:
-            reason = undefined_because(self.quantity(name), machines)
+            reason = self.quantity(name).undefined_because(machines)
             if reason:
                 raise InputError(f"{table}.{name}: {reason}")
         for name in names:
@@ -256,7 +266,7 @@ class Problem:
 
         The Jacobian is (n, q, 3 + k). quantities: names; the objectives if None. Values are those of the quantities,
         not yet turned into what is minimised. Rows of designs that do not turn fully are NaN. See
-        `design_values.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
+        `tables.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
         """
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
@@ -300,7 +310,7 @@ class Problem:
             crank=chosen.crank,
             rod=chosen.rod,
             offset=chosen.offset,
-            constraints=_both(self.constraints, chosen.limits),
+            constraints=merged((*self.constraints, *chosen.limits)),
             slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
             choices=(),
             variants=(),
@@ -312,12 +322,9 @@ class Problem:
 
 
 def _in_words(of: Quantity, constraint: Constraint) -> str:
-    ends = [
-        f"{word} {of.unit.factor * bound:.6g} {of.unit.symbol}".rstrip()
-        for word, bound in (("at least", constraint.lower), ("at most", constraint.upper))
-        if bound is not None
-    ]
-    return f"{of.title}: {ends[0].removeprefix('at least ') if constraint.equality else ', '.join(ends)}"
+    unit = of.unit
+    ends = [f"{_IN_WORDS[word]}{unit.factor * bound:.6g} {unit.symbol}".rstrip() for word, bound in constraint.sides]
+    return f"{of.title}: {', '.join(ends)}"
 
 
 def choice_field(name: str) -> str:
@@ -334,18 +341,15 @@ def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | Non
     return stroke if more is None else more
 
 
-def _both(constraints: tuple[Constraint, ...], more: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
-    """Return constraints that hold where all of these do. Raises `InputError` if two exclude each other."""
-    found = {constraint.quantity: constraint for constraint in constraints}
-    for constraint in more:
-        own = found.get(constraint.quantity)
-        if own is not None:
-            lower = [bound for bound in (own.lower, constraint.lower) if bound is not None]
-            upper = [bound for bound in (own.upper, constraint.upper) if bound is not None]
-            constraint = Constraint(
-                quantity=own.quantity, lower=max(lower, default=None), upper=min(upper, default=None)
-            )
-        found[constraint.quantity] = constraint
+def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
+    """Return constraints, those on one quantity as one that holds where all do. Raises `InputError` if none can."""
+    found: dict[str, Constraint] = {}
+    for constraint in constraints:
+        name = constraint.quantity
+        same = (found.get(name, constraint), constraint)
+        lower = max((item.lower for item in same if item.lower is not None), default=None)
+        upper = min((item.upper for item in same if item.upper is not None), default=None)
+        found[name] = Constraint(quantity=name, lower=lower, upper=upper)
     return tuple(found.values())
 
 

@@ -10,7 +10,7 @@ from ...model.tolerance.spreads import Shape
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_options
 from .gradients import constraints_anywhere
-from .problem import Constraint, Objective, Problem
+from .problem import Constraint, Objective, Problem, merged
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,11 +159,4 @@ def _robust_constraints(
 
 def _nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
     """Return constraints on the quantities themselves, the two sides of one joined again."""
-    found: dict[str, Constraint] = {}
-    for constraint in constraints:
-        name = inner.get(constraint.quantity, constraint.quantity)
-        before = found.get(name)
-        lower = constraint.lower if constraint.lower is not None or before is None else before.lower
-        upper = constraint.upper if constraint.upper is not None or before is None else before.upper
-        found[name] = Constraint(quantity=name, lower=lower, upper=upper)
-    return tuple(found.values())
+    return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

@@ -16,7 +16,6 @@ from ...objectives.registry import QUANTITIES
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.units import to_si
 from ...optimise.job.values import Choices, RangeOf
-from ...optimise.problem.causes import undefined_because
 from ...optimise.problem.problem import Constraint, Objective, Problem, Range
 from ...optimise.search.elimination import require_slow_side
 
@@ -44,7 +43,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
         objectives=(Objective(quantity="stroke", sense="minimise"),),
     )
     found = _constraints(tables.get("constraints"), with_machine=with_machine)
-    constraints = tuple(c for c in found if not undefined_because(problem.quantity(c.quantity), [machine]))
+    constraints = tuple(c for c in found if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
         problem = replace(problem, mechanism=Mechanism(speed=machine.speed, branch=machine.branch))
     return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))

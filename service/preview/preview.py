@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ...model.errors import InputError
-from ...optimise.feasibility.relaxation import missed, sides
+from ...optimise.feasibility.relaxation import missed
 from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
 from ...optimise.job.box import beyond_both
@@ -114,10 +114,10 @@ def said(problem: Problem, found: Possible) -> list[str]:
 def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
     """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
     found = []
-    for relation, _, bound in sides(constraint):
+    for word, bound in constraint.sides:
         nearest = min(max(bound, ends[0]), ends[1])
-        beyond = {"at least": bound > nearest, "at most": bound < nearest, "exactly": True}[relation]
-        item = missed(problem, constraint, relation, bound, nearest) if beyond else None
+        beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
+        item = missed(problem, constraint, word, bound, nearest) if beyond else None
         if item is not None:
             found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
     return found

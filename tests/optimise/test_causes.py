@@ -19,7 +19,6 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.causes import undefined_because
 from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Variant
 from slidercrank.optimise.problem.zero_objectives import idle_rules, require_ranking
 from slidercrank.optimise.solve import solve
@@ -136,7 +135,7 @@ def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> 
     for causes in ((), ("speed",), ("speed", "masses"), ("speed", "heavy crank"), ("gravity", "masses"), CAUSES):
         given = machine(*causes)
         for name in QUANTITIES:
-            if undefined_because(QUANTITIES[name], (given,)):
+            if QUANTITIES[name].undefined_because((given,)):
                 continue
             told = idle_rules(problem(given, "stroke", Constraint(quantity=name, upper=1e9)))
             why = refusal(given, name).removeprefix(f"objectives.{name}: ")
