@@ -16,57 +16,112 @@ much the quadratic part moves the quantile (P. Glasserman, "Monte Carlo Methods 
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array
 from .points import star
 
+_FAINT = 1e-15  # weights below are rounding
 _LEAST = 2.0**-40  # a scrambled point at zero would lie at minus infinity of a normal distribution
 
 
-@lru_cache(maxsize=32)
-def sample(columns: tuple[int, ...], shape: Shape, samples: int, seed: int) -> Array:
-    """Return deviations (samples, 3) in units of the limits: scrambled Sobol points, spread; zero in other columns."""
-    from scipy.stats import qmc
+@dataclass(frozen=True)
+class Sample:
+    """Machines of which a percentile is taken, the same for all designs.
 
-    # Sobol points fill evenly in powers of two only.
-    power = (samples - 1).bit_length()
-    points = qmc.Sobol(len(columns), scramble=True, rng=np.random.default_rng(seed)).random_base2(power)
-    found = np.zeros((len(points), 3))
-    found[:, list(columns)] = spread(shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
-    found.setflags(write=False)
-    return found
+    columns: of the uncertain dimensions. shape, samples, seed: of the deviations. share: of the machines below it.
+    """
+
+    columns: tuple[int, ...]
+    shape: Shape
+    samples: int
+    seed: int
+    share: float
+
+    @cached_property
+    def deviations(self) -> Array:
+        """Deviations (samples, 3) in units of the limits: scrambled Sobol points, spread; zero in other columns."""
+        from scipy.stats import qmc
+
+        # Sobol points fill evenly in powers of two only.
+        power = (self.samples - 1).bit_length()
+        points = qmc.Sobol(len(self.columns), scramble=True, rng=np.random.default_rng(self.seed)).random_base2(power)
+        found = np.zeros((len(points), 3))
+        found[:, list(self.columns)] = spread(self.shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
+        return found
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weight of each order statistic, ascending, in the quantile, (samples,)."""
+        from scipy.special import betainc
+
+        count = len(self.deviations)
+        edges = np.linspace(0.0, 1.0, count + 1)
+        found = np.diff(betainc((count + 1) * self.share, (count + 1) * (1.0 - self.share), edges))
+        return np.asarray(found / found.sum())
+
+    @cached_property
+    def interpolation(self) -> Array:
+        """Matrix from values at the star to the sample: (points, samples)."""
+        return np.ascontiguousarray((_basis(self.deviations, self.columns) @ self._fit).T)
+
+    @cached_property
+    def linear(self) -> Array:
+        """Matrix from values at the star to slopes along the uncertain dimensions: (d, points)."""
+        return self._fit[1 : 1 + len(self.columns)]
+
+    @cached_property
+    def _fit(self) -> Array:
+        return np.asarray(np.linalg.pinv(_basis(star(list(self.columns)), self.columns)), dtype=np.float64)
+
+    def of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
+        """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
+        order, rank = self._ranked(machines)
+        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
+        slope = _each("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
+        return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
+
+    def of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
+        """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
+        absent = ~np.isfinite(values[:, 0])[:, :, None]
+        drawn = _each("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation)
+        drawn = np.where(absent, -np.inf, drawn)
+        piece = np.argmax(drawn, axis=1)
+        machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
+        order, rank = self._ranked(machines)
+        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
+        which = np.take_along_axis(piece, order, axis=1)
+        slope = np.zeros((len(values), slopes.shape[3]))
+        weighed = self.interpolation.T[order]
+        for p in range(values.shape[2]):
+            share_of = _each("ns,nsq->nq", rank * (which == p), weighed)
+            slope += _each("nq,nqd->nd", share_of, slopes[:, :, p])
+        if self.shape != "normal":
+            return found, slope
+        rows = np.arange(len(values))
+        top = np.argmax(values[:, 0], axis=1)
+        control = _each("nq,dq->nd", values[rows, :, top], self.linear)
+        deviations = self.deviations[:, list(self.columns)]
+        order, rank = self._ranked(_each("nd,ds->ns", control, deviations.T))
+        shift = _each("s,nsd->nd", rank, deviations[order])
+        exact, exact_slope = linear_quantile(control, self.share)
+        by_control = _each("nd,dq->nq", exact_slope - shift, self.linear)
+        found = found + exact - _each("nd,nd->n", shift, control)
+        return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
+
+    def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
+        """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
+        used = np.flatnonzero(self.weights > _FAINT)
+        return np.argsort(machines, axis=1, kind="stable")[:, used], self.weights[used]
 
 
-@lru_cache(maxsize=32)
-def weights(share: float, samples: int) -> Array:
-    """Return the weight of each order statistic, ascending, in the quantile of a share, (samples,)."""
-    from scipy.special import betainc
-
-    edges = np.linspace(0.0, 1.0, samples + 1)
-    found = np.diff(betainc((samples + 1) * share, (samples + 1) * (1.0 - share), edges))
-    found /= found.sum()
-    found.setflags(write=False)
-    return found
-
-
-@lru_cache(maxsize=32)
-def interpolation(columns: tuple[int, ...], shape: Shape, samples: int, seed: int) -> Array:
-    """Return the matrix from values at the star to the sample: (points, samples)."""
-    found = np.ascontiguousarray((_basis(sample(columns, shape, samples, seed), columns) @ _fit(columns)).T)
-    found.setflags(write=False)
-    return found
-
-
-@lru_cache(maxsize=32)
-def linear(columns: tuple[int, ...]) -> Array:
-    """Return the matrix from values at the star to slopes along the uncertain dimensions: (d, points)."""
-    found = np.asarray(_fit(columns)[1 : 1 + len(columns)])
-    found.setflags(write=False)
-    return found
+sample = lru_cache(maxsize=32)(Sample)
+"""The sample of these columns, deviations and share, kept for the next designs."""
 
 
 def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
@@ -79,13 +134,17 @@ def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
     return sigmas * size, sigmas * slope
 
 
-def _fit(columns: tuple[int, ...]) -> Array:
-    return np.asarray(np.linalg.pinv(_basis(star(list(columns)), columns)), dtype=np.float64)
-
-
 def _basis(points: Array, columns: tuple[int, ...]) -> Array:
     """Return the monomials up to the second degree at points (q, 3), (q, m)."""
     one = np.ones(len(points))
     linear = [points[:, a] for a in columns]
     pairs = [points[:, a] * points[:, b] for i, a in enumerate(columns) for b in columns[i:]]
     return np.stack([one, *linear, *pairs], axis=1)
+
+
+def _each(sums: str, *factors: Array) -> Array:
+    """Return sums of products, those of a design the same to the last bit whatever stands beside it.
+
+    BLAS sums otherwise for other numbers of rows, einsum for other strides.
+    """
+    return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))

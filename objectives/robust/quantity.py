@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from dataclasses import field as _field
 from typing import Literal
@@ -16,7 +17,7 @@ from ...model.tolerance.spreads import Shape, spread
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
 from .points import Around, around, corners, followed, limits_of, star, uncertain
-from .quantile import interpolation, linear, linear_quantile, sample, weights
+from .quantile import sample
 from .within import within
 
 Side = Literal["high", "low"]
@@ -29,7 +30,6 @@ _MOST = 65536
 _KEPT = 8  # pieces of a worst case that may tie
 _APART = 100.0  # rad, between the labels of different corners
 _STEP = 0.05  # of the limits, see `_linear`
-_FAINT = 1e-15  # weights below are rounding
 _BLOCK = 1 << 22  # numbers of a sample held at once
 
 
@@ -213,75 +213,30 @@ class RobustQuantity(Quantity):
         lost = np.flatnonzero((greatest < top).any(axis=1))
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
         slopes[lost, :, 0] = steepest[lost]
-        kinked = self._kinked(mechanism, dimensions, columns)
+        share = self.share if self.side == "high" else 1.0 - self.share
+        drawn = sample(columns, self.shape, self.samples, self.seed, share)
+        # What depends on the size of an offset has a kink at zero, which machines of the sample may have.
+        reach = np.abs(drawn.deviations[:, 2]).max()
+        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < reach * limits_of(mechanism, dimensions)[:, 2])
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
-        matrix = interpolation(columns, self.shape, self.samples, self.seed)
-        rows = np.flatnonzero(good)
-        step = max(1, _BLOCK // (matrix.shape[1] * values.shape[2]))
-        for begin in range(0, len(rows), step):
-            some = rows[begin : begin + step]
-            quantiles[some], gradients[some] = self._of_sample(values[some], slopes[some], columns, matrix)
-        rows = np.flatnonzero(kinked)
-        step = max(1, _BLOCK // (32 * matrix.shape[1]))
-        for begin in range(0, len(rows), step):
-            some = rows[begin : begin + step]
-            quantiles[some], gradients[some] = self._of_machines(mechanism, dimensions[some], columns)
+        for some in _blocks(good, len(drawn.deviations) * values.shape[2]):
+            quantiles[some], gradients[some] = drawn.of_star(values[some], slopes[some])
+        for some in _blocks(kinked, 32 * len(drawn.deviations)):
+            here = around(self.inner, mechanism, dimensions[some], drawn.deviations)
+            machines, steep = here.highest(here.gradients)
+            if self.side == "low":
+                machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
+            quantiles[some], gradients[some] = drawn.of_machines(machines, steep)
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
-    def _kinked(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Return whose offset may be zero within the sample: what depends on its size has a kink there."""
-        reach = np.abs(sample(columns, self.shape, self.samples, self.seed)[:, 2]).max()
-        limits = limits_of(mechanism, dimensions)
-        return np.asarray((2 in columns) & (np.abs(dimensions[:, 2]) < reach * limits[:, 2]))
 
-    def _of_machines(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> tuple[Array, Array]:
-        """Return quantiles (n,) and gradients (n, width) from every machine of the sample, evaluated exactly."""
-        here = around(self.inner, mechanism, dimensions, sample(columns, self.shape, self.samples, self.seed))
-        machines, slopes = here.highest(here.gradients)
-        if self.side == "low":
-            machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
-        order, rank = self._ranked(machines)
-        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
-        slope = _each("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
-        return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
-
-    def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
-        """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
-        share = self.share if self.side == "high" else 1.0 - self.share
-        rank = weights(share, machines.shape[1])
-        used = np.flatnonzero(rank > _FAINT)
-        return np.argsort(machines, axis=1, kind="stable")[:, used], rank[used]
-
-    def _of_sample(self, values: Array, slopes: Array, columns: tuple[int, ...], matrix: Array) -> tuple[Array, Array]:
-        """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
-        absent = ~np.isfinite(values[:, 0])[:, :, None]
-        drawn = _each("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), matrix)
-        drawn = np.where(absent, -np.inf, drawn)
-        piece = np.argmax(drawn, axis=1)
-        machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
-        order, rank = self._ranked(machines)
-        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
-        which = np.take_along_axis(piece, order, axis=1)
-        slope = np.zeros((len(values), slopes.shape[3]))
-        weighed = matrix.T[order]
-        for p in range(values.shape[2]):
-            share_of = _each("ns,nsq->nq", rank * (which == p), weighed)
-            slope += _each("nq,nqd->nd", share_of, slopes[:, :, p])
-        if self.shape != "normal":
-            return found, slope
-        rows = np.arange(len(values))
-        top = np.argmax(values[:, 0], axis=1)
-        ends = linear(columns)
-        control = _each("nq,dq->nd", values[rows, :, top], ends)
-        deviations = sample(columns, self.shape, self.samples, self.seed)[:, list(columns)]
-        order, rank = self._ranked(_each("nd,ds->ns", control, deviations.T))
-        shift = _each("s,nsd->nd", rank, deviations[order])
-        exact, exact_slope = linear_quantile(control, self.share if self.side == "high" else 1.0 - self.share)
-        by_control = _each("nd,dq->nq", exact_slope - shift, ends)
-        found = found + exact - _each("nd,nd->n", shift, control)
-        return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
+def _blocks(rows: NDArray[np.bool_], size: int) -> Iterator[NDArray[np.int64]]:
+    """Yield the places of rows in blocks that may be held at once. size: numbers that each takes."""
+    places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
+    for begin in range(0, len(places), step):
+        yield places[begin : begin + step]
 
 
 def _together(
@@ -297,14 +252,6 @@ def _together(
         values[rows, : own.shape[1]], labels[rows, : own.shape[1]] = own, own_labels
         slopes[rows, : own.shape[1]] = own_slopes
     return values, slopes, labels
-
-
-def _each(sums: str, *factors: Array) -> Array:
-    """Return sums of products, those of a design the same to the last bit whatever stands beside it.
-
-    BLAS sums otherwise for other numbers of rows, einsum for other strides.
-    """
-    return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))
 
 
 def require_options(case: str, order: int, share: float, samples: int, shape: str) -> None:
