@@ -65,6 +65,15 @@ class Pieces:
     labels: Array
     least: bool = False
 
+    def at(self, places: NDArray[np.int64]) -> Pieces:
+        """Return the pieces at some places (n, m) of each design."""
+        return Pieces(
+            np.take_along_axis(self.values, places, axis=1),
+            np.take_along_axis(self.gradients, places[:, :, None], axis=1),
+            np.take_along_axis(self.labels, places, axis=1),
+            self.least,
+        )
+
 
 def _fact(default: Any) -> Any:
     """Return a fact that is told, not computed with: quantities that differ in it alone compute the same."""

@@ -199,10 +199,7 @@ class OwnQuantity(Quantity):
         again = same & (np.arange(values.shape[1]) != top)
         values = np.where(again, -np.inf, values)
         gradients = np.where(again[:, :, None], 0.0, gradients)
-        order = np.argsort(-values, axis=1, kind="stable")
-        values, labels = np.take_along_axis(values, order, axis=1), np.take_along_axis(labels, order, axis=1)
-        gradients = np.take_along_axis(gradients, order[:, :, None], axis=1)
-        return Pieces(values, gradients, labels)
+        return Pieces(values, gradients, labels).at(np.argsort(-values, axis=1, kind="stable"))
 
     def _plain(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         values = self._ask(mechanism, dimensions, None).values.max(axis=1)[:, None]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from dataclasses import field as _field
 from typing import Literal
 
@@ -100,7 +100,9 @@ class RobustQuantity(Quantity):
         columns = uncertain(mechanism)
         if not columns:
             found = self.inner.pieces(mechanism, dimensions)
-            return found if self.side == "high" else _lowest(found)
+            if self.side == "high":
+                return found
+            return replace(found, least=True).at(np.argmax(found.values, axis=1)[:, None])  # the one piece that it is
         if self.case == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
         low = self.side == "low"
@@ -110,14 +112,9 @@ class RobustQuantity(Quantity):
             for rows, exact in ((spans, self._exact), (~spans, self._linear))
             if rows.any() or (len(rows) == 0 and exact == self._exact)
         ]
-        values, slopes, labels = _together(len(dimensions), parts, absent=np.inf if low else -np.inf)
-        kept = np.argsort(values if low else -values, axis=1, kind="stable")[:, :_KEPT]
-        return Pieces(
-            np.take_along_axis(values, kept, axis=1),
-            np.take_along_axis(slopes, kept[:, :, None], axis=1),
-            np.take_along_axis(labels, kept, axis=1),
-            least=low,
-        )
+        merged = _together(len(dimensions), parts, absent=np.inf if low else -np.inf)
+        found = Pieces(*merged, least=low)
+        return found.at(np.argsort(found.values if low else -found.values, axis=1, kind="stable")[:, :_KEPT])
 
     def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
         """Return the first-order estimate (n,) from values and gradients of the quantity itself.
@@ -274,14 +271,3 @@ def require_options(case: str, order: int, share: float, samples: int, shape: st
 def _inside(dimensions: Array, limits: Array) -> NDArray[np.bool_]:
     crank, rod, offset = dimensions.T[:3]
     return np.asarray((crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1)))
-
-
-def _lowest(found: Pieces) -> Pieces:
-    """Return a greatest-of as the one piece that it is."""
-    first = np.argmax(found.values, axis=1)[:, None]
-    return Pieces(
-        np.take_along_axis(found.values, first, axis=1),
-        np.take_along_axis(found.gradients, first[:, :, None], axis=1),
-        np.take_along_axis(found.labels, first, axis=1),
-        least=True,
-    )

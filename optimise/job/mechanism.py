@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, model_validator
 
 from ...model.errors import InputError
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
-from ...model.machine.mechanism import Branch, Clearances, Mechanism, Tolerances, Window
-from .drive import DrivePart
-from .joints import ClearancePart, FrictionPart
-from .loads import Load
+from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
 from .units import shown
 from .values import (
     Angle,
@@ -172,31 +169,9 @@ class MechanismPart(Part):
             )
         return self
 
-    def build(
-        self,
-        loads: tuple[Load, ...],
-        tolerances: TolerancesPart,
-        *,
-        friction: FrictionPart,
-        clearance: ClearancePart | None = None,
-        drive: DrivePart | None = None,
-    ) -> Mechanism:
-        """Return the machine as the model has it."""
-        parts: dict[str, Any] = {"crank": self.crank, "rod": self.rod, "counterweight": self.counterweight}
-        parts |= {"drive": drive, "clearance": clearance}
-        return Mechanism(
-            speed=self.speed,
-            acceleration=self.acceleration,
-            slider_mass=0.0 if self.slider is None else self.slider.mass,
-            gravity=self._gravity(),
-            loads=tuple(load.build() for load in loads),
-            tolerances=tolerances.build(),
-            friction=friction.build(),
-            branch=self.branch,
-            **{name: part.build() for name, part in parts.items() if part is not None},
-        )
-
-    def _gravity(self) -> tuple[float, float]:
+    @property
+    def gravity_vector(self) -> tuple[float, float]:
+        """Gravity along and across the slider line, m/s^2."""
         size = self.gravity or 0.0
         angle = 1.5 * math.pi if self.gravity_direction is None else self.gravity_direction
         # Rounding of pi would leave 1e-16 of gravity along an axis that it is normal to.

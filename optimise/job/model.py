@@ -156,8 +156,19 @@ class Job(Part):
 
     def machine(self) -> Mechanism:
         """Return the machine of the job, its numbers as they are given."""
-        return self.mechanism.build(
-            self.load, self.tolerances, friction=self.friction, clearance=self.clearance, drive=self.drive
+        own = self.mechanism
+        parts: dict[str, Any] = {"crank": own.crank, "rod": own.rod, "counterweight": own.counterweight}
+        parts |= {"drive": self.drive, "clearance": self.clearance}
+        return Mechanism(
+            speed=own.speed,
+            acceleration=own.acceleration,
+            slider_mass=0.0 if own.slider is None else own.slider.mass,
+            gravity=own.gravity_vector,
+            loads=tuple(load.build() for load in self.load),
+            tolerances=self.tolerances.build(),
+            friction=self.friction.build(),
+            branch=own.branch,
+            **{name: part.build() for name, part in parts.items() if part is not None},
         )
 
 

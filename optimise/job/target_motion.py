@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Annotated, Any
 
-from pydantic import Field, WrapValidator, model_validator
+from pydantic import Field, WrapValidator
 
 from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
 from .loads import increasing
 from .units import shown
-from .values import Angle, Length, Part, optional
+from .values import Angle, Checked, Length, Part, optional
 
 HEADER = ["crank_angle_deg", "position_mm"]
 """First line of a file of points."""
@@ -22,8 +22,10 @@ _LARGEST = 1_000_000  # bytes
 _MOST = 1000
 
 
-class TargetMotionPart(Part):
+class TargetMotionPart(Checked[TargetMotion]):
     """A wanted motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
+
+    makes = TargetMotion
 
     crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] | None = optional(
         "crank angles of the points, increasing, spanning less than 360 deg",
@@ -47,23 +49,16 @@ class TargetMotionPart(Part):
         "whether positions may count from anywhere on the slider line: the best place counts", "free", default="fixed"
     )
 
-    @model_validator(mode="after")
-    def _possible(self) -> TargetMotionPart:
+    def build(self) -> TargetMotion:
+        """Return the target motion as the model has it."""
         if self.file is not None:
             raise InputError(
                 f"a file is read beside a job file only, and instead of points; got file {shown(self.file)}; "
                 "give crank_angles and positions, or the file alone in a job file"
             )
-        self.build()
-        return self
-
-    def build(self) -> TargetMotion:
-        """Return the target motion as the model has it."""
         if self.crank_angles is None or self.positions is None:
             raise InputError("a target motion needs crank_angles and positions, or a file; got neither; add them")
-        return TargetMotion(
-            crank_angles=self.crank_angles, positions=self.positions, phase=self.phase, shift=self.shift
-        )
+        return super().build()
 
 
 def require_target(target: TargetMotionPart | None, objectives: Part, constraints: Part) -> None:

@@ -28,13 +28,7 @@ Sign = Literal["any", "positive", "zero or more"]
 
 _OTHERS = (
     TIME,
-    Kind(
-        name="a frequency, not saying of turns or of radians",
-        unit="s^-1",
-        example="",
-        limit=0.0,
-        metric=Face("1/s", ""),
-    ),
+    Kind("a frequency, not saying of turns or of radians", "s^-1", "", 0.0, Face("1/s", "")),
 )
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
