@@ -108,10 +108,11 @@ def _sought(
         return np.where(kept, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * reach / size
 
     # Unknowns: the point and, of a minimax, the bound that no piece exceeds.
-    bounds: Any = [(-1.0, 1.0)] * len(columns) + ([(None, None)] if low else [])
-    options: Any = {"maxiter": _STEPS, "ftol": _EXACT}
+    begin = start[columns]
+    bounds: Any = [(-1.0, 1.0)] * len(columns)
+    limits_met: Any = ()
+    value, slope = (lambda z: -float(pieces(z)[0][0])), (lambda z: -pieces(z)[1][0, columns])
     if low:
-        top = float(pieces(start[columns])[0].max())
 
         def room(z: Array) -> Array:
             values = pieces(z[:-1])[0]
@@ -122,25 +123,11 @@ def _sought(
             known = np.isfinite(values)[:, None]
             return np.concatenate([np.where(known, -slopes[:, columns], 0.0), np.where(known, 1.0, 0.0)], axis=1)
 
-        limits_met: Any = [{"type": "ineq", "fun": room, "jac": room_slopes}]
-        result = search(
-            lambda z: float(z[-1]),
-            np.append(start[columns], top),
-            jac=lambda z: np.append(np.zeros(len(columns)), 1.0),
-            bounds=bounds,
-            constraints=limits_met,
-            method="SLSQP",
-            options=options,
-        )
-    else:
-        result = search(
-            lambda z: -float(pieces(z)[0][0]),
-            start[columns],
-            jac=lambda z: -pieces(z)[1][0, columns],
-            bounds=bounds,
-            method="SLSQP",
-            options=options,
-        )
+        limits_met = [{"type": "ineq", "fun": room, "jac": room_slopes}]
+        begin, bounds = np.append(begin, float(pieces(begin)[0].max())), [*bounds, (None, None)]
+        value, slope = (lambda z: float(z[-1])), (lambda _: np.append(np.zeros(len(columns)), 1.0))
+    options: Any = {"maxiter": _STEPS, "ftol": _EXACT}
+    result = search(value, begin, jac=slope, bounds=bounds, constraints=limits_met, method="SLSQP", options=options)
     found = start.copy()
     if np.isfinite(result.x).all():
         found[columns] = np.clip(result.x[: len(columns)], -1.0, 1.0)

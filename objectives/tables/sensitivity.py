@@ -15,7 +15,7 @@ from ...model.kinematics import geometry
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.sources import limits
-from ..kinds import ANGLE, LENGTH, Face, Kind
+from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 
@@ -27,7 +27,7 @@ _BESIDE_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than r
 
 
 @dataclass(frozen=True)
-class _DeadCentre:
+class _Centre:
     """A position or a crank angle of a dead centre; `formula` is that of the open branch."""
 
     name: str
@@ -49,10 +49,10 @@ class _DeadCentre:
 
 
 _DEAD_CENTRES = (
-    _DeadCentre("inner_dead_centre_position", "inner dead centre, position", LENGTH, geometry.inner_dead_centre),
-    _DeadCentre("outer_dead_centre_position", "outer dead centre, position", LENGTH, geometry.outer_dead_centre),
-    _DeadCentre("inner_dead_centre", "inner dead centre, crank angle", ANGLE, geometry.inner_crank_angle),
-    _DeadCentre("outer_dead_centre", "outer dead centre, crank angle", ANGLE, geometry.outer_crank_angle),
+    _Centre("inner_dead_centre_position", "inner dead centre, position", LENGTH, geometry.inner_dead_centre),
+    _Centre("outer_dead_centre_position", "outer dead centre, position", LENGTH, geometry.outer_dead_centre),
+    _Centre("inner_dead_centre", "inner dead centre, crank angle", ANGLE, geometry.inner_crank_angle),
+    _Centre("outer_dead_centre", "outer dead centre, crank angle", ANGLE, geometry.outer_crank_angle),
 )
 
 
@@ -80,12 +80,11 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
         value, below, above = _one_sided(quantity, mechanism, design)
         if quantity.lacks(mechanism, "undefined"):
             value = math.nan
-        rows.append(_row(quantity.name, quantity.title, quantity.unit, value, (below, above), design, tolerances, True))
+        rows.append(_row(quantity, value, (below, above), design, tolerances, True))
     for centre in _DEAD_CENTRES:
         value, slopes = centre.on(linkage)
         both = np.array(slopes), np.array(slopes)
-        relative = centre.kind is not ANGLE
-        rows.append(_row(centre.name, centre.title, centre.kind.metric, value, both, design, tolerances, relative))
+        rows.append(_row(centre, value, both, design, tolerances, centre.kind is not ANGLE))
     return pd.DataFrame(rows)
 
 
@@ -139,16 +138,16 @@ def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: f
 
 
 def _row(
-    name: str,
-    title: str,
-    unit: Face,
+    of: Quantity | _Centre,
     value: float,
     sides: tuple[Array, Array],
     design: Array,
     tolerances: Array,
+    *,
     relative: bool,
 ) -> dict[str, Any]:
-    row: dict[str, Any] = {"quantity": name, "title": title, "unit": unit.symbol, "value": unit.factor * value}
+    unit = of.kind.metric
+    row: dict[str, Any] = {"quantity": of.name, "title": of.title, "unit": unit.symbol, "value": unit.factor * value}
     known = math.isfinite(value)
     for n, dimension in enumerate(DIMENSIONS):
         defined = relative and known and value != 0.0 and design[n] != 0.0

@@ -135,15 +135,10 @@ def _together(problem: Problem, variant: int, design: Array) -> str:
             item = missed(part, constraint, word, bound, value)
             if item is not None:
                 found.append(replace(item, alone=constraint.equality).instead())
-    chosen = "".join(
-        f"{name} {label}, " for name, label in zip(problem.choices, _labels(problem, variant), strict=True)
-    )
+    labels = problem.variants[variant].labels if problem.variants else ()
+    chosen = "".join(f"{name} {label}, " for name, label in zip(problem.choices, labels, strict=True))
     sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
     return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
-
-
-def _labels(problem: Problem, variant: int) -> tuple[str, ...]:
-    return problem.variants[variant].labels if problem.variants else ()
 
 
 def _greatest(evaluator: Evaluator, u: Array) -> Array:

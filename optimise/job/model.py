@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, create_model
+from pydantic import AfterValidator, Field
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
@@ -23,7 +23,7 @@ from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart
 from .units import shown
-from .values import Built, Part, optional, required
+from .values import Built, Part, optional, required, retyped
 from .variables import ChoicePart, VariablesPart, choice_with
 
 
@@ -178,9 +178,5 @@ def job_with(declared: Declared) -> type[Job]:
         return Job
     constraints, objectives = tables(declared.tables)
     choice: Any = choice_with(constraints)
-    fields: dict[str, Any] = {
-        "choice": (tuple[choice, ...], Job.model_fields["choice"]),
-        "constraints": (constraints, Job.model_fields["constraints"]),
-        "objectives": (Annotated[objectives, AfterValidator(_some)], Job.model_fields["objectives"]),
-    }
-    return cast(type[Job], create_model("Job", __base__=Job, **fields))
+    wishes: Any = Annotated[objectives, AfterValidator(_some)]
+    return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, Typ
 from pydantic import (
     BeforeValidator,
     Discriminator,
-    Field,
     ModelWrapValidatorHandler,
     Tag,
     create_model,
@@ -24,7 +23,7 @@ from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
 from ..problem.problem import SENSES, Constraint, Objective
 from .units import closest, shown
-from .values import Part, Physical, optional
+from .values import Part, Physical, optional, required
 
 
 class Bounds(Part):
@@ -95,18 +94,10 @@ def tables(own: Mapping[str, Stated]) -> tuple[type[Part], type[Part]]:
         if kind not in made:
             made[kind] = _forms(kind)
         bounds, wish = made[kind]
-        limits[name] = (
-            bounds | None,
-            optional(title, {"min": example}),
-        )
-        wishes[name] = (
-            wish | None,
-            optional(title, "minimise", {"target": example}),
-        )
-    limits[SLOW_STROKE] = (
-        SlowStroke | None,
-        optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward"),
-    )
+        limits[name] = (bounds | None, optional(title, {"min": example}))
+        wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
+    slow = optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward")
+    limits[SLOW_STROKE] = (SlowStroke | None, slow)
     constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))
     return constraints, objectives
@@ -117,17 +108,11 @@ def _forms(kind: Kind) -> tuple[Any, Any]:
     value = Annotated[float, Physical(kind)]
     name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
-    limits = {
-        "min": (value | None, Field(None, description="least", examples=example)),
-        "max": (value | None, Field(None, description="greatest", examples=example)),
-        "equals": (value | None, Field(None, description="exact value", examples=example)),
-    }
-    bounds = create_model(f"{name}Bounds", __base__=Bounds, **cast(Any, limits))
-    target = create_model(
-        f"{name}Target",
-        __base__=Target,
-        **cast(Any, {"target": (value, Field(description="to come near to", examples=example))}),
-    )
+    help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
+    limits: Any = {word: (value | None, optional(text, *example)) for word, text in help_of.items()}
+    bounds = create_model(f"{name}Bounds", __base__=Bounds, **limits)
+    wanted: Any = {"target": (value, required("to come near to", *example))}
+    target = create_model(f"{name}Target", __base__=Target, **wanted)
     words = Literal["minimise", "maximise", "minimize", "maximize"]
     wish = Annotated[
         Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],

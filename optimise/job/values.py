@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, create_model, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
@@ -40,6 +40,7 @@ def optional(description: str, *examples: object, default: Any = None, **rules: 
 
 
 Made = TypeVar("Made")
+Table = TypeVar("Table", bound=Part)
 
 
 class Built(Part, Generic[Made]):
@@ -65,6 +66,12 @@ class Checked(Built[Made], Generic[Made]):
     def _possible(self) -> Self:
         self.build()
         return self
+
+
+def retyped(part: type[Table], **types: Any) -> type[Table]:
+    """Return a table with some of its entries of other types."""
+    fields: Any = {name: (other, part.model_fields[name]) for name, other in types.items()}
+    return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
 
 
 class _Read:

@@ -11,13 +11,13 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, create_model, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
 from .file import DEEPEST
 from .quantities import ConstraintsPart
 from .units import shown
-from .values import AnyRange, Part, PositiveRange, optional, required
+from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
 ROOTS = ("mechanism", "load", "friction", "tolerances")
 """Tables whose numbers may vary."""
@@ -116,11 +116,8 @@ class ChoicePart(Part):
 
 def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     """Return the choice whose options may constrain quantities of a job's own too."""
-    fields: dict[str, Any] = {"constraints": (constraints, OptionPart.model_fields["constraints"])}
-    option = create_model("OptionPart", __base__=OptionPart, **fields)
-    options: Any = Annotated[tuple[option, ...], AfterValidator(_apart)]
-    fields = {"option": (options, ChoicePart.model_fields["option"])}
-    return create_model("ChoicePart", __base__=ChoicePart, **fields)
+    option: Any = retyped(OptionPart, constraints=constraints)
+    return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_apart)])
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
