@@ -138,13 +138,7 @@ def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: f
 
 
 def _row(
-    of: Quantity | _Centre,
-    value: float,
-    sides: tuple[Array, Array],
-    design: Array,
-    tolerances: Array,
-    *,
-    relative: bool,
+    of: Quantity | _Centre, value: float, sides: tuple[Array, Array], design: Array, tolerances: Array, relative: bool
 ) -> dict[str, Any]:
     unit = of.kind.metric
     row: dict[str, Any] = {"quantity": of.name, "title": of.title, "unit": unit.symbol, "value": unit.factor * value}
