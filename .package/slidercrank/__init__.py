@@ -87,7 +87,8 @@ if TYPE_CHECKING:
     from slidercrank.optimise.job import job_schema, load_job
     from slidercrank.optimise.job.tables import problem
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
-    from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+    from slidercrank.optimise.problem.problem import Problem
+    from slidercrank.optimise.problem.requirements import Constraint, Objective
     from slidercrank.optimise.questions.like import like_design as like
     from slidercrank.optimise.questions.quantities import quantities
     from slidercrank.optimise.solve import solve
@@ -112,7 +113,8 @@ else:
         "optimise.job.tables": ("problem",),
         "optimise.problem.design_analysis": ("Analysis", "analyse"),
         "objectives.tables.evaluate": ("evaluate",),
-        "optimise.problem.problem": ("Constraint", "Objective", "Problem"),
+        "optimise.problem.problem": ("Problem",),
+        "optimise.problem.requirements": ("Constraint", "Objective"),
         "optimise.questions.like": ("like",),
         "optimise.questions.quantities": ("quantities",),
         "optimise.solve": ("solve",),

@@ -13,7 +13,8 @@ from ...model.errors import InputError
 from ...objectives.quantity import Array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.gradients import without_gradient
-from ..problem.problem import Constraint, Objective, Problem
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Objective
 from ..search.elimination import Sheet, sheets
 from ..search.evaluation import FEASIBLE, constraints_of, minimised
 

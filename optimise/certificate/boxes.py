@@ -15,7 +15,8 @@ from ...model.kinematics.closed_forms import closed_form
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.problem import Constraint, Objective, Problem, Range
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Objective, Range
 from ..search.candidates import Table
 from ..search.elimination import UNKNOWNS
 from ..search.evaluation import Evaluator, constraints_of

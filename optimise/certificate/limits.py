@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem.problem import Constraint
+from ..problem.requirements import Constraint
 from ..search.evaluation import FEASIBLE
 from .enclosure import INFLATION, Array, Enclosure
 

@@ -10,7 +10,8 @@ from ...objectives.registry import QUANTITIES
 from ..engine.engine import Engine
 from ..front.stationarity import Array
 from ..methods.auto.auto import AUTO, searched_by
-from ..problem.problem import Constraint, Objective, Problem, Sense, Settings, Variant
+from ..problem.problem import Problem, Settings, Variant
+from ..problem.requirements import Constraint, Objective, Sense
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
 from ..search.evaluation import Evaluator

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from ..front.stationarity import Array
-from ..problem.problem import Constraint, Problem, Sense, Word
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Sense, Word
 from ..search.evaluation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe

@@ -15,7 +15,8 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
-from ..problem.problem import Objective, Problem
+from ..problem.problem import Problem
+from ..problem.requirements import Objective
 from .constant import spread
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .picture import figure, svg

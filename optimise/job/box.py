@@ -13,7 +13,8 @@ from ...objectives.reach import CLEAR, Ranges
 from ...objectives.registry import QUANTITIES
 from ...objectives.time_ratio import TIME_RATIO, ratio_of
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.problem import Constraint, Problem, Range
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Range
 
 if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 from ...model.errors import InputError, JobError
 from ...objectives.time_ratio import TIME_RATIO
-from ..problem.problem import Problem, Range
+from ..problem.problem import Problem
+from ..problem.requirements import Range
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side
 from .box import greatest_within, require_reachable

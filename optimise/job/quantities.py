@@ -21,7 +21,7 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import SlowStroke
 from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
-from ..problem.problem import SENSES, Constraint, Objective
+from ..problem.requirements import SENSES, Constraint, Objective
 from .units import closest, shown
 from .values import Part, Physical, optional, required
 

@@ -20,7 +20,8 @@ from ...model.linkage.linkage import SlowStroke
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
-from ..problem.problem import Constraint, Range, Variant
+from ..problem.problem import Variant
+from ..problem.requirements import Constraint, Range
 from .messages import explain
 from .model import Job
 from .quantities import constraints_of, slow_stroke_of

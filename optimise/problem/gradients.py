@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...objectives.own.quantity import OwnQuantity
-from .problem import Constraint, Problem
+from .problem import Problem
+from .requirements import Constraint
 
 
 def without_gradient(problem: Problem) -> list[str]:

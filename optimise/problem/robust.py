@@ -10,7 +10,8 @@ from ...model.tolerance.spreads import Shape
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_options
 from .gradients import constraints_anywhere
-from .problem import Constraint, Objective, Problem, merged
+from .problem import Problem
+from .requirements import Constraint, Objective, merged
 
 
 @dataclass(frozen=True, kw_only=True)

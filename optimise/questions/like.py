@@ -22,7 +22,8 @@ from ..front.front import ParetoFront
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY, Array
 from ..methods.registry import require_gradients
-from ..problem.problem import Constraint, Problem, Range, Settings
+from ..problem.problem import Problem, Settings
+from ..problem.requirements import Constraint, Range
 from ..search.assemble import assemble, empty
 from ..search.candidates import Finished
 from ..search.elimination import UNKNOWNS, sheets

@@ -22,7 +22,8 @@ from ...model.kinematics import geometry
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.problem import Constraint, Problem, Range
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Range
 
 Array = NDArray[np.float64]
 UNKNOWNS = ("crank", "rod", "offset")

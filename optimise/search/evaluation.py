@@ -14,7 +14,8 @@ from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
-from ..problem.problem import Constraint, Objective, Problem, Range
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Objective, Range
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly

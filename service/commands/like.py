@@ -23,7 +23,8 @@ from .run_choice import run_of
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
-    from ...optimise.problem.problem import Constraint, Problem
+    from ...optimise.problem.problem import Problem
+    from ...optimise.problem.requirements import Constraint
 
 _EXAMPLE = '--where "transmission_angle >= 45 deg"'
 Ends = tuple[float | None, float | None]
@@ -84,7 +85,7 @@ def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
 
 def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
-    from ...optimise.problem.problem import Constraint
+    from ...optimise.problem.requirements import Constraint
     from ...optimise.questions.like import common
     from ..designs.requirements import names_of
 

@@ -8,7 +8,7 @@ from ...model.errors import InputError
 
 if TYPE_CHECKING:
     from ...optimise.front.stationarity import Array
-    from ...optimise.problem.problem import Constraint
+    from ...optimise.problem.requirements import Constraint
     from .stored_designs import StoredDesign
 
 _LENGTHS = ("crank", "rod", "offset")

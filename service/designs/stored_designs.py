@@ -13,7 +13,8 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import Varying
 from ...objectives.tables.varying_column import varying_column
-from ...optimise.problem.problem import Problem, Range, Variant, choice_field
+from ...optimise.problem.problem import Problem, Variant, choice_field
+from ...optimise.problem.requirements import Range
 from ..runs.result import Cell, Exact, Result, Row
 
 if TYPE_CHECKING:

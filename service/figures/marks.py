@@ -12,7 +12,7 @@ from ...objectives.kinds import System, shown_in
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
-from ...optimise.problem.problem import Objective
+from ...optimise.problem.requirements import Objective
 from .numerals import with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 

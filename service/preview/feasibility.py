@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from ...model.machine.mechanism import Mechanism
 from ...objectives.registry import QUANTITIES
-from ...optimise.problem.problem import Constraint, Objective, Problem
+from ...optimise.problem.problem import Problem
+from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.search.elimination import UNKNOWNS, Sheet, sheets
 from ...optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of
 from ...optimise.search.polish import polish

@@ -16,7 +16,8 @@ from ...objectives.registry import QUANTITIES
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.units import to_si
 from ...optimise.job.values import Choices, RangeOf
-from ...optimise.problem.problem import Constraint, Objective, Problem, Range
+from ...optimise.problem.problem import Problem
+from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.search.elimination import require_slow_side
 
 _MOST_POINTS = 100

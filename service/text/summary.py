@@ -12,7 +12,8 @@ from ...model.machine.varying import Varying
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...optimise.problem.costs import Cost
-from ...optimise.problem.problem import Constraint, Objective, Problem, Range
+from ...optimise.problem.problem import Problem
+from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.elimination import UNKNOWNS, sheets

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.optimise.problem.problem import Objective, Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Objective
 
 Array = NDArray[np.float64]
 Table = dict[str, Any]

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem.problem import Constraint, Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Constraint
 
 Array = NDArray[np.float64]
 

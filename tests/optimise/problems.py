@@ -12,7 +12,8 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Sense, Settings
+from slidercrank.optimise.problem.problem import Problem, Settings
+from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 from slidercrank.optimise.solve import solve
 
 JOBS = ("feeder", "sieve", "support")

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from slidercrank.optimise.problem.problem import Problem, Sense
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.search.elimination import UNKNOWNS, Sheet, sheets
 from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from slidercrank.optimise.solve import solve

@@ -13,7 +13,8 @@ from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
-from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import (
     FEASIBLE,

@@ -8,7 +8,7 @@ import pytest
 from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.problem.problem import Sense
+from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, problem
 

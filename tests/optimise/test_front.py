@@ -13,7 +13,8 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.problem.problem import Problem, Sense
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.questions.like import like_design
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array

@@ -24,7 +24,8 @@ from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
 from slidercrank.optimise.job.stated import problem_of
-from slidercrank.optimise.problem.problem import Constraint, Objective, Range, Settings
+from slidercrank.optimise.problem.problem import Settings
+from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 
 RUNS = Path(__file__).parents[2] / "runs"
 SHIPPED = ["feeder", "sieve", "support"]

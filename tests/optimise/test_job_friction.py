@@ -17,7 +17,8 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.stated import problem_of
-from slidercrank.optimise.problem.problem import Constraint, Objective, Problem
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator, constraints_of
 from slidercrank.service.text.summary import summarise

@@ -13,7 +13,8 @@ from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.tables.varying_column import varying_column
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.problem import Constraint, Problem, Range
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Constraint, Range
 
 JOB = """
 name = "Variables"

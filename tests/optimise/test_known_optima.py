@@ -11,7 +11,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.optimise.problem.problem import Problem, Sense
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array, footprint, stroke, time_ratio, transmission_angle
 from tests.optimise.problems import Bounds, degrees, problem

@@ -13,7 +13,8 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import scaling
-from slidercrank.optimise.problem.problem import Constraint, Sense, Settings
+from slidercrank.optimise.problem.problem import Settings
+from slidercrank.optimise.problem.requirements import Constraint, Sense
 from slidercrank.optimise.questions.like import Ends, distance, extended, like_design
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem

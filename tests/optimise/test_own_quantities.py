@@ -17,7 +17,7 @@ from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.job import files_beside, load_job, parse_job
-from slidercrank.optimise.problem.problem import Constraint, Objective
+from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.questions.like import like_design
 from slidercrank.optimise.solve import solve
 

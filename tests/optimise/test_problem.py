@@ -14,7 +14,8 @@ from slidercrank.objectives.average_torque import RMS_TORQUE
 from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
 from slidercrank.optimise.front.picking import closeness
-from slidercrank.optimise.problem.problem import Constraint, Objective, Range, Settings, Variant
+from slidercrank.optimise.problem.problem import Settings, Variant
+from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import problem
 

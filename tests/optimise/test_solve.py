@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
-from slidercrank.optimise.problem.problem import Sense
+from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
 
 from .problems import MACHINE, RUNS, Bounds, degrees, problem, shipped_front

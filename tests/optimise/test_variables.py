@@ -17,7 +17,8 @@ from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume, nondominated
-from slidercrank.optimise.problem.problem import Constraint, Problem, Range, Variant
+from slidercrank.optimise.problem.problem import Problem, Variant
+from slidercrank.optimise.problem.requirements import Constraint, Range
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

@@ -16,7 +16,8 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
-from slidercrank.optimise.problem.problem import Constraint, Objective, Problem, Range, Sense
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 
 FOUR = ("time_ratio", "peak_torque", "transmission_angle", "position_error")
 _SENSES: dict[str, Sense] = {"time_ratio": "maximise", "transmission_angle": "maximise"}

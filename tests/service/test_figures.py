@@ -20,7 +20,7 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.problem.problem import Objective
+from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.curves import Curves, cycle_curves
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.marks import marks

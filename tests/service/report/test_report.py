@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from matplotlib.text import Text
 
-from slidercrank.optimise.problem.problem import Range
+from slidercrank.optimise.problem.requirements import Range
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.figures.numerals import as_stored, rounded
 from slidercrank.service.report.design_report import design_report

@@ -1,0 +1,140 @@
+"""What is asked of designs: ranges of dimensions, constraints and objectives. SI, immutable, validated."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from numbers import Real
+from typing import Literal
+
+from ...model.errors import InputError
+from ...objectives.peak_torque import PEAK_TORQUE
+from ...objectives.registry import QUANTITIES
+
+Sense = Literal["minimise", "maximise", "target"]
+SENSES: dict[str, Sense] = {
+    "minimise": "minimise",
+    "minimize": "minimise",
+    "maximise": "maximise",
+    "maximize": "maximise",
+    "target": "target",
+}
+"""The sense of every word for it, in either spelling."""
+Word = Literal["min", "max", "equals"]
+"""Words of a constraint's bounds."""
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Range of a dimension, m; equal bounds fix it."""
+
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not (_finite(self.lower) and _finite(self.upper) and self.lower <= self.upper):
+            raise InputError(
+                f"a range needs lower <= upper, both finite; got {_shown(self.lower)} to {_shown(self.upper)}"
+            )
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the range is one value."""
+        return self.lower == self.upper
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraint:
+    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds ask a value."""
+
+    quantity: str
+    lower: float | None = None
+    upper: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_name(self.quantity)
+        if self.lower is None and self.upper is None:
+            raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
+        for bound in (self.lower, self.upper):
+            if bound is not None and not _finite(bound):
+                raise InputError(f"the constraint on {self.quantity} must be finite; got {_shown(bound)}")
+        if self.lower is not None and self.upper is not None and self.lower > self.upper:
+            raise InputError(
+                f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
+            )
+
+    @property
+    def equality(self) -> bool:
+        """Whether one value is asked for."""
+        return self.lower is not None and self.lower == self.upper
+
+    @property
+    def sides(self) -> list[tuple[Word, float]]:
+        """The bounds that there are, by their words in a job."""
+        if self.equality and self.lower is not None:
+            return [("equals", self.lower)]
+        both: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
+        return [(word, bound) for word, bound in both if bound is not None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objective:
+    """A quantity to minimise, to maximise, or to bring to a target (in its SI unit).
+
+    sense: "minimize" and "maximize" become "minimise" and "maximise". Raises `InputError` for any other word, and for a
+    name that no quantity can have; whether there is a quantity of the name the `Problem` knows, which may have its own.
+    """
+
+    quantity: str
+    sense: Sense
+    target: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_name(self.quantity)
+        object.__setattr__(self, "sense", _sense(self.quantity, self.sense))
+        if (self.sense == "target") != (self.target is not None):
+            raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
+        if self.target is not None and not _finite(self.target):
+            raise InputError(f"the target of {self.quantity} must be finite; got {_shown(self.target)}")
+
+
+def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
+    """Return constraints, those on one quantity as one that holds where all do. Raises `InputError` if none can."""
+    found: dict[str, Constraint] = {}
+    for constraint in constraints:
+        name = constraint.quantity
+        same = (found.get(name, constraint), constraint)
+        lower = max((item.lower for item in same if item.lower is not None), default=None)
+        upper = min((item.upper for item in same if item.upper is not None), default=None)
+        found[name] = Constraint(quantity=name, lower=lower, upper=upper)
+    return tuple(found.values())
+
+
+def _require_name(name: object) -> None:
+    """Refuse a name that no quantity can have."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise InputError(
+            f"a quantity is named by small letters, digits and underscores, such as {PEAK_TORQUE.name!r}; got "
+            f"{name!r}; choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
+        )
+
+
+def _sense(name: str, sense: object) -> Sense:
+    """Return a sense in the one spelling. Raises `InputError` for what is none."""
+    if not isinstance(sense, str) or sense not in SENSES:
+        raise InputError(
+            f"the sense of the objective {name} must be {', '.join(map(repr, SENSES))}; got {sense!r}; "
+            "choose one of these"
+        )
+    return SENSES[sense]
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, Real) else repr(value)
