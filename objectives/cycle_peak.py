@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import find_peaks
-from ..model.signals.screening import screen, screens
+from ..model.signals.screening import ANGLES, screen, screens
 from ..model.signals.signals import Signal
 from .quantity import Array, Pieces, Quantity, Values
 
@@ -34,17 +34,26 @@ class CyclePeak(Quantity):
         return Pieces(found.values, found.gradients, found.angles)
 
 
+def screened(
+    quantities: Iterable[Quantity],
+    mechanism: Mechanism,
+    dimensions: Array,
+    *,
+    gradients: bool = False,
+    angles: int = ANGLES,
+) -> dict[str, Values]:
+    """Return those quantities by name that vectorised screening takes, for designs (n, 3 + k)."""
+    peaks = (item for item in quantities if isinstance(item, CyclePeak))
+    quick = {peak.name: peak.signal for peak in peaks if screens(mechanism, peak.signal, during=peak.during)}
+    if not quick:
+        return {}
+    found = screen(mechanism, tuple(quick.values()), dimensions, gradients=gradients, angles=angles)
+    return {name: Values(item.values, item.gradients) for name, item in zip(quick, found, strict=True)}
+
+
 def screen_peaks(
     quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
 ) -> tuple[Values, ...]:
     """Return several quantities for designs (n, 3 + k) by vectorised screening: exact but for peaks on a kink."""
-    quick = [quantity for quantity in quantities if screens(mechanism, quantity.signal, during=quantity.during)]
-    signals = tuple(quantity.signal for quantity in quick)
-    screened = screen(mechanism, signals, dimensions, gradients=gradients) if quick else ()
-    found = {quantity.name: Values(item.values, item.gradients) for quantity, item in zip(quick, screened, strict=True)}
-    return tuple(
-        found[quantity.name]
-        if quantity.name in found
-        else quantity.evaluate(mechanism, dimensions, gradients=gradients)
-        for quantity in quantities
-    )
+    found = screened(quantities, mechanism, dimensions, gradients=gradients)
+    return tuple(found.get(q.name) or q.evaluate(mechanism, dimensions, gradients=gradients) for q in quantities)

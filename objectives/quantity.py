@@ -155,6 +155,11 @@ class Quantity(ABC):
             return self.example
         return self.kind.example if self.kind.unit else float(self.kind.example)
 
+    @property
+    def has_gradient(self) -> bool:
+        """Whether it has derivatives by the dimensions."""
+        return True
+
     def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
         """Return rule, value and remedy for the first unmet need of a machine; None if there is none.
 

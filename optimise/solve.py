@@ -20,7 +20,6 @@ from .front.stationarity import Array
 from .methods.auto.auto import deliver, searched_by
 from .methods.auto.so_far import so_far
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
-from .problem.gradients import without_gradient
 from .problem.problem import Problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
@@ -91,7 +90,7 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
     front = searched_by(method, problem, evaluators, run)
     if front is not None:
         return front
-    if without_gradient(problem):
+    if problem.without_gradient():
         return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine)
     if len(diagnosis.feasible) and not method.polishes and free:

@@ -89,6 +89,11 @@ class OwnQuantity(Quantity):
         if not 0.0 < self.limit < float("inf"):
             raise InputError(f"the time limit must be more than zero and finite; got {self.limit:g} s")
 
+    @property
+    def has_gradient(self) -> bool:
+        """Whether its job says how its derivatives are had."""
+        return self.gradient != "none"
+
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3); see `Quantity`."""
         if gradients:

@@ -42,11 +42,12 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     inner, outer = linkage.dead_centre_angles
     torque = find_peaks(mechanism, Signal.TORQUE, dimensions, kept=1)
     averages = average_torque(mechanism, dimensions)
+    varying = [varying_column(item) for item in mechanism.varying]
     columns: dict[str, object] = {
         "crank_mm": 1e3 * dimensions[:, 0],
         "rod_mm": 1e3 * dimensions[:, 1],
         "offset_mm": 1e3 * dimensions[:, 2],
-        **_varying(mechanism, dimensions),
+        **{key: unit.factor * dimensions[:, 3 + place] for place, (key, unit) in enumerate(varying)},
         STROKE.field: 1e3 * linkage.stroke,
         TIME_RATIO.field: linkage.time_ratio,
         "slow_stroke": linkage.slow_stroke(direction=mechanism.direction),
@@ -68,11 +69,3 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)
     return pd.DataFrame(columns)
-
-
-def _varying(mechanism: Mechanism, designs: Array) -> dict[str, Array]:
-    columns = {}
-    for place, item in enumerate(mechanism.varying):
-        key, unit = varying_column(item)
-        columns[key] = unit.factor * designs[:, 3 + place]
-    return columns

@@ -12,11 +12,9 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.dead_centres import torque_at_dead_centres
 from ...model.signals.peaks import ANGLES
-from ...model.signals.screening import screen, screens
 from ...model.signals.signals import Signal
 from ...model.signals.watch import stroke_dependent
-from ..cycle_peak import CyclePeak
-from ..own.quantity import OwnQuantity
+from ..cycle_peak import CyclePeak, screened
 from ..quantity import Array, Quantity, Values
 from ..registry import quantity
 
@@ -76,7 +74,7 @@ def evaluate(
         if reason:
             raise InputError(f"{item.name}: {reason}")
     rows, shape = _rows(mechanism, designs)
-    lacking = [item.name for item in chosen if isinstance(item, OwnQuantity) and item.gradient == "none"]
+    lacking = [item.name for item in chosen if not item.has_gradient]
     if gradients and lacking:
         raise InputError(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
@@ -118,23 +116,17 @@ def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]
 
 
 def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool) -> list[Values]:
-    quick = [q for q in quantities if isinstance(q, CyclePeak) and screens(mechanism, q.signal, during=q.during)]
-    found: dict[str, Values] = {}
-    if quick:
-        signals = tuple(dict.fromkeys(quantity.signal for quantity in quick))
-        screened = dict(
-            zip(signals, screen(mechanism, signals, designs, gradients=gradients, angles=ANGLES), strict=True)
-        )
-        for quantity in quick:
-            item = screened[quantity.signal]
-            found[quantity.name] = Values(item.values, item.gradients)
-            kinks = quantity.signal is Signal.TORQUE and stroke_dependent(mechanism)
-            missed = ~np.isfinite(item.values)
-            if kinks:
-                missed |= np.abs(torque_at_dead_centres(mechanism, designs)).max(axis=1) >= item.values * (1.0 - _NEAR)
-            if missed.any():
-                exact = quantity.evaluate(mechanism, designs[missed], gradients=gradients)
-                item.values[missed] = exact.values
-                if item.gradients is not None:
-                    item.gradients[missed] = exact.gradients
+    found = screened(quantities, mechanism, designs, gradients=gradients, angles=ANGLES)
+    for of in quantities:
+        if of.name not in found:
+            continue
+        item = found[of.name]
+        missed = ~np.isfinite(item.values)
+        if isinstance(of, CyclePeak) and of.signal is Signal.TORQUE and stroke_dependent(mechanism):
+            missed |= np.abs(torque_at_dead_centres(mechanism, designs)).max(axis=1) >= item.values * (1.0 - _NEAR)
+        if missed.any():
+            exact = of.evaluate(mechanism, designs[missed], gradients=gradients)
+            item.values[missed] = exact.values
+            if item.gradients is not None:
+                item.gradients[missed] = exact.gradients
     return [found.get(q.name) or q.evaluate(mechanism, designs, gradients=gradients) for q in quantities]

@@ -31,7 +31,8 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         raise InputError(
             'designs need double precision; got JAX in single; call jax.config.update("jax_enable_x64", True) first'
         )
-    width, names = 3 + len(problem.mechanism.varying), _names(problem, quantities)
+    width = 3 + len(problem.mechanism.varying)
+    names = [o.quantity for o in problem.objectives] if quantities is None else list(quantities)
     problem.evaluate(np.zeros((1, width)), names)  # refuses what it must before anything is traced
 
     def outside(x: jax.Array) -> jax.Array:
@@ -53,7 +54,3 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
     )
     function: JaxFunction = found
     return function
-
-
-def _names(problem: Problem, quantities: Sequence[str] | None) -> list[str]:
-    return [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from ...model.errors import InputError
 from ...objectives.quantity import Array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.gradients import without_gradient
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective
 from ..search.elimination import Sheet, sheets
@@ -122,7 +121,7 @@ class StandardForm:
         from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
         column = self._column(objective)
-        lacking = without_gradient(self.problem)
+        lacking = self.problem.without_gradient()
         if lacking:
             raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
         constraints: list[LinearConstraint | NonlinearConstraint] = []

@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
-from ..problem.gradients import constraints_anywhere, without_gradient
 from .method import FAMILIES, Method
 
 if TYPE_CHECKING:
@@ -80,7 +79,7 @@ def require_gradients(problem: Problem, what: str | None = None) -> None:
 
     what: needs gradients in place of the method, as the subject of a sentence.
     """
-    lacking = without_gradient(problem)
+    lacking = problem.without_gradient()
     if not lacking:
         return
     method = method_of(problem)
@@ -92,7 +91,7 @@ def require_gradients(problem: Problem, what: str | None = None) -> None:
             f"{what or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} "
             f'with gradient = "none"; {instead}set gradient = "finite differences"'
         )
-    for constraint in constraints_anywhere(problem):
+    for constraint in problem.every_constraint:
         if constraint.equality and constraint.quantity in lacking:
             raise InputError(
                 f"{constraint.quantity} can be held at one value only with its gradient; got equals, and gradient = "

@@ -118,10 +118,9 @@ class Problem:
         if not self.objectives:
             raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
-        limits = (limit for variant in self.variants for limit in variant.limits)
         machines = [variant.mechanism for variant in self.variants] or [self.mechanism]
         keys = [("objectives", name) for name in names]
-        keys += [("constraints", constraint.quantity) for constraint in (*self.constraints, *limits)]
+        keys += [("constraints", constraint.quantity) for constraint in self.every_constraint]
         for table, name in keys:
             reason = self.quantity(name).undefined_because(machines)
             if reason:
@@ -202,6 +201,16 @@ class Problem:
                 f"a design of a problem with choices ({', '.join(self.choices)}) is one of an option; got the problem "
                 f"of all {len(self.variants)}; take one of problem.parts()"
             )
+
+    @property
+    def every_constraint(self) -> tuple[Constraint, ...]:
+        """The constraints and those that come with choices."""
+        return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
+
+    def without_gradient(self) -> list[str]:
+        """Return what objectives and constraints name, those of choices too, and what has no gradient."""
+        asked = {item.quantity for item in (*self.objectives, *self.every_constraint)}
+        return [item.name for item in self.own if item.name in asked and not item.has_gradient]
 
     def slow_side(self) -> float | None:
         """Sign of the offset (+1 or -1) that gives the slow stroke asked for; None where none is asked.

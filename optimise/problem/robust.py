@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 
 from ...model.errors import InputError
 from ...model.tolerance.spreads import Shape
-from ...objectives.own.quantity import OwnQuantity
 from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_options
-from .gradients import constraints_anywhere
 from .problem import Problem
 from .requirements import Constraint, Objective, merged
 
@@ -45,7 +43,7 @@ def robust(problem: Problem, plan: Robust) -> Problem:
     """
     wanted = _chosen(problem, plan)
     sides: dict[str, set[Side]] = {name: set() for name in wanted}
-    for constraint in constraints_anywhere(problem):
+    for constraint in problem.every_constraint:
         if constraint.quantity in sides and not constraint.equality:
             sides[constraint.quantity] |= {"low"} if constraint.lower is not None else set()
             sides[constraint.quantity] |= {"high"} if constraint.upper is not None else set()
@@ -99,9 +97,9 @@ def nominal(problem: Problem) -> Problem:
 
 def _chosen(problem: Problem, plan: Robust) -> list[str]:
     """Return the names of what is to be robust."""
-    bounded = [c.quantity for c in constraints_anywhere(problem) if not c.equality]
+    bounded = [c.quantity for c in problem.every_constraint if not c.equality]
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
-    held = {c.quantity for c in constraints_anywhere(problem) if c.equality}
+    held = {c.quantity for c in problem.every_constraint if c.equality}
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
     chosen = (
         [name for name in able if not problem.quantity(name).about_tolerances]
@@ -123,8 +121,7 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
             raise InputError(
                 f"robust quantities must be objectives or constraints; got {name!r}; choose from {', '.join(able)}"
             )
-        own = problem.quantity(name)
-        if isinstance(own, OwnQuantity) and own.gradient == "none":
+        if not problem.quantity(name).has_gradient:
             raise InputError(
                 f'a robust quantity needs a gradient; got {name} with gradient = "none"; set gradient = "finite '
                 'differences", or leave it out of robust'

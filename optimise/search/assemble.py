@@ -13,7 +13,6 @@ from ..front.constant import is_constant
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.stationarity import STATIONARY, Array, multipliers
-from ..problem.gradients import without_gradient
 from ..problem.problem import Problem, choice_field
 from .candidates import Finished
 from .evaluation import Evaluator, constraints_of, sides
@@ -49,7 +48,7 @@ def assemble(
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
-    if without_gradient(problem):  # nothing is known of slopes: neither whether a design is optimal nor its rates
+    if problem.without_gradient():  # nothing is known of slopes: neither whether a design is optimal nor its rates
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]

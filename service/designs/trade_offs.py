@@ -28,14 +28,13 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     import numpy as np
 
     from ...optimise.front.hypervolume import scaling
-    from ...optimise.problem.gradients import without_gradient
     from ...optimise.search.elimination import sheets
     from ...optimise.search.evaluation import Evaluator
     from ...optimise.search.polish import polish
 
     if len(front.objectives) < 2:
         raise InputError("objectives are traded where there are several; got one; add another one to the job")
-    lacking = without_gradient(design.part)
+    lacking = design.part.without_gradient()
     if lacking:
         raise InputError(
             f'trade-off rates need the gradient of every quantity; got {", ".join(lacking)} with gradient = "none"; '
