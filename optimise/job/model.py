@@ -26,6 +26,16 @@ from .units import shown
 from .values import Built, Part, optional, required, retyped
 from .variables import ChoicePart, VariablesPart, choice_with
 
+EXAMPLE = {
+    "option": [
+        {"name": "GM 40", "constraints": {"peak_torque": {"max": "40 N m"}}},
+        {"name": "GM 90", "constraints": {"peak_torque": {"max": "90 N m"}}},
+    ],
+    "constraints": {"transmission_angle": {"min": "40 deg"}},
+    "objectives": {"time_ratio": "maximise", "peak_torque": "minimise"},
+}
+"""Of the tables that name quantities."""
+
 
 class _MethodName:
     """The name of a method, as an enumeration of all methods there are."""
@@ -128,23 +138,15 @@ class Job(Part):
     )
     choice: tuple[ChoicePart, ...] = optional(
         "choices between options that each set several numbers; every combination is tried",
-        [
-            {
-                "name": "gearmotor",
-                "option": [
-                    {"name": "GM 40", "constraints": {"peak_torque": {"max": "40 N m"}}},
-                    {"name": "GM 90", "constraints": {"peak_torque": {"max": "90 N m"}}},
-                ],
-            }
-        ],
+        [{"name": "gearmotor", "option": EXAMPLE["option"]}],
         default=(),
         max_length=10,
     )
     constraints: ConstraintsPart = optional(
-        "what every design must satisfy", {"transmission_angle": {"min": "40 deg"}}, default=ConstraintsPart()
+        "what every design must satisfy", EXAMPLE["constraints"], default=ConstraintsPart()
     )
     objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = required(
-        "what is wanted: the front shows the best compromises", {"time_ratio": "maximise", "peak_torque": "minimise"}
+        "what is wanted: the front shows the best compromises", EXAMPLE["objectives"]
     )
     robust: RobustPart | None = optional(
         "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}

@@ -22,6 +22,8 @@ from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 ROOTS = ("mechanism", "load", "friction", "tolerances")
 """Tables whose numbers may vary."""
 Table = dict[str, Any]
+EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
+"""Of what an option may ask for."""
 
 
 def _more(what: str, example: dict[str, Any]) -> Any:
@@ -79,7 +81,7 @@ class OptionPart(Part):
     )
     constraints: ConstraintsPart = optional(
         "what holds for it in addition to the constraints of the job, as in [constraints]",
-        {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}},
+        EXAMPLE,
         default=ConstraintsPart(),
     )
 

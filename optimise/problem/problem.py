@@ -209,7 +209,7 @@ class Problem:
 
     def without_gradient(self) -> list[str]:
         """Return what objectives and constraints name, those of choices too, and what has no gradient."""
-        asked = {item.quantity for item in (*self.objectives, *self.every_constraint)}
+        asked = {item.quantity for item in self.objectives} | {item.quantity for item in self.every_constraint}
         return [item.name for item in self.own if item.name in asked and not item.has_gradient]
 
     def slow_side(self) -> float | None:
