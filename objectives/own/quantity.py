@@ -137,8 +137,7 @@ class OwnQuantity(Quantity):
 
     def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         session = self._session
-        if session.call is None:
-            session.call = self._call()
+        session.call = session.call or self._call()
         try:
             return session.call(mechanism, dimensions, column)
         except Refused as error:
@@ -269,17 +268,16 @@ def bounded(quantity: Quantity, longest: float) -> Quantity:
 
 def close_own(quantity: Quantity) -> None:
     """End the processes of own functions that a quantity, or one that it is made of, has started."""
+    inner = getattr(quantity, "inner", None)
     if isinstance(quantity, OwnQuantity):
         quantity.close()
-    inner = getattr(quantity, "inner", None)
-    if inner is not None:
+    elif inner is not None:
         close_own(inner)
 
 
 def runs_own(quantity: Quantity) -> bool:
     """Whether a quantity, or one that it is made of, is a function of the user's own."""
-    inner = getattr(quantity, "inner", None)
-    return isinstance(quantity, OwnQuantity) or (inner is not None and runs_own(inner))
+    return isinstance(quantity, OwnQuantity) or (hasattr(quantity, "inner") and runs_own(quantity.inner))
 
 
 def own_quantities() -> dict[str, Any]:

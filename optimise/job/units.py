@@ -146,7 +146,8 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any") -> float:
     """
     rule = f"must be {kind.name}"
     plain = f", or as a plain number in {kind.unit}" if kind.unit else ""
-    write = f"write it like {_literal(kind)}{plain}"
+    example = f'"{kind.example}"' if kind.unit else kind.example
+    write = f"write it like {example}{plain}"
     if isinstance(value, str):
         exact = _read(value, kind, rule, write)
     elif isinstance(value, int | float) and not isinstance(value, bool):
@@ -194,10 +195,6 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     by_fold = {candidate.casefold(): candidate for candidate in words}
     near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
     return by_fold[near[0]] if near else None
-
-
-def _literal(kind: Kind) -> str:
-    return f'"{kind.example}"' if kind.unit else kind.example
 
 
 def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
