@@ -13,7 +13,8 @@ from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
 from ...optimise.job.box import beyond_both
 from ...optimise.job.file import require_few
-from ...optimise.problem.problem import Constraint, Problem
+from ...optimise.problem.problem import Problem
+from ...optimise.problem.requirements import Constraint
 from .feasibility import Ends, Possible, possible
 from .partial_job import geometry, left_out
 
