@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _SLACK = 1.0 + 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
 _CELLS = 10_000
-_AND_OTHERS = " and the other rules on the dimensions"
+_AND_OTHERS = " and the other requirements on the dimensions"
 _ANY = Range(lower=0.0, upper=1.0)
 
 

@@ -78,7 +78,7 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
     if changed.outside:
         found.append(f"out of the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}")
     if changed.broken:
-        found.append("breaks rules of the job: see below")
+        found.append("misses requirements of the job: see below")
     better = len(changed.dominated_by)
     if better:
         found.append(f"{better} design{'s' if better > 1 else ''} of the front at least as good in every objective")

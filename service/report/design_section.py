@@ -22,7 +22,7 @@ _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 
 
 def design_section(subject: Subject) -> Section:
-    """Return drawing, rules, stationarity and trade-offs of the design."""
+    """Return drawing, requirements, stationarity and trade-offs of the design."""
     return Section(
         subject.label.capitalize(),
         (
@@ -75,7 +75,7 @@ def _columns(subject: Subject) -> list[Column]:
 def _rules(subject: Subject) -> list[Block]:
     slacks = [column for column in _columns(subject) if column.key.startswith("slack_")]
     if not slacks:
-        return [Paragraph("The job sets no rules besides the ranges of the dimensions.", "note")]
+        return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
     rows, met = [], True
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
@@ -86,11 +86,11 @@ def _rules(subject: Subject) -> list[Block]:
         title = column.title.removeprefix("slack of ")
         distance = "0" if active else rounded(slack)
         rows.append((title, rounded(value), distance, unit_text(column.unit), state))
-    verdict = "All rules are met." if met else "Not all rules are met: see below."
+    verdict = "All requirements are met." if met else "Not all requirements are met: see below."
     return [
         Paragraph(verdict, "good" if met else "bad"),
         Table(
-            "Rules: the slack is the distance to the nearer bound",
+            "Requirements: the slack is the distance to the nearer bound",
             ("quantity", "value", "slack", "unit", "state"),
             tuple(rows),
             (0.42, 0.16, 0.16, 0.11, 0.15),
@@ -112,9 +112,8 @@ def _optimality(subject: Subject) -> list[Block]:
     if subject.changed is not None:
         blocks.append(Paragraph("Not a design of the front: whether it could be better was not searched for.", "note"))
     if status == "stationary":
-        text = (
-            f"Stationary: no small change betters every objective while the rules hold (residual {rounded(residual)})."
-        )
+        kept = "while the requirements hold"
+        text = f"Stationary: no small change betters every objective {kept} (residual {rounded(residual)})."
         blocks.append(Paragraph(text, "good"))
     elif status is not None:
         text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."

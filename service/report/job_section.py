@@ -17,7 +17,7 @@ def job_section(subject: Subject) -> Section:
         ("Tolerances", words["tolerances"]),
         ("Costs", words["costs"]),
         ("May vary", words["variables"]),
-        ("Rules", words["rules"]),
+        ("Requirements", words["rules"]),
         ("Objectives", words["objectives"]),
         ("Freedom", [freedom_in_words(words)]),
     )

@@ -199,13 +199,13 @@ def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
 
 
 def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
-    """Print whether a design meets each rule of its job, those that it breaks first."""
+    """Print whether a design meets each requirement of its job, those that it misses first."""
     if not rules:
         return
     broken = [rule for rule in rules if not rule.met]
     screen.print()
     if not broken:
-        screen.print("It meets every range and rule of the job.", soft_wrap=True)
+        screen.print("It meets every range and requirement of the job.", soft_wrap=True)
     for rule in broken:
         value = "has no value" if rule.value is None else f"is {_of(rule.value, rule)}"
         by = "" if rule.missed_by is None else f", by {_of(rule.missed_by, rule)}"

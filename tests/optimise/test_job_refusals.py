@@ -135,7 +135,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         STROKE,
         'stroke = { equals = "600 mm" }',
-        ["constraints.stroke", "the other rules", "at most 360.57 mm", "equals 600 mm", "raise"],
+        ["constraints.stroke", "the other requirements", "at most 360.57 mm", "equals 600 mm", "raise"],
     ),
     (STROKE, 'stroke = { max = "150 mm" }', ["constraints.stroke", "at least 160 mm", "max 150 mm", "2 crank"]),
     (STROKE, "rod_to_offset = { equals = 0.9 }", ["constraints.rod_to_offset", "above 1", "0.9"]),
@@ -146,7 +146,11 @@ BAD: list[tuple[str, str, list[str]]] = [
     ),
     (STROKE, "rod_to_crank = { min = 8 }", ["constraints.rod_to_crank", "at most 7.5", "min 8", "rod"]),
     (STROKE, "time_ratio = { min = 0.8 }", ["constraints.time_ratio", "1 or more", "min 0.8", "inverse"]),
-    (STROKE, "time_ratio = { min = 3.5 }", ["constraints.time_ratio", "the other rules", "at most 1.2862", "min 3.5"]),
+    (
+        STROKE,
+        "time_ratio = { min = 3.5 }",
+        ["constraints.time_ratio", "the other requirements", "at most 1.2862", "min 3.5"],
+    ),
     (
         STROKE,
         "time_ratio = { min = 1.5 }",

@@ -93,14 +93,16 @@ def alternatives(job: Job, message: str) -> Iterator[Job]:
     both, possible = BOTH.search(message), POSSIBLE.search(message)
     if both:
         kept = (
-            rules if "other rules" in message else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
+            rules
+            if "other requirements" in message
+            else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
         )
         for name, number in (("time_ratio", both[1]), ("transmission_angle", both[2])):
             yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number)
     elif possible:
         name = possible[1]
         narrowed = {"rod_to_offset": rules["rod_to_offset"]} if "and constraints.rod_to_offset" in message else {}
-        kept = rules if "other rules" in message else {name: rules[name], **narrowed}
+        kept = rules if "other requirements" in message else {name: rules[name], **narrowed}
         yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), possible[2])
     else:
         for title, relation, number in HAD.findall(message):

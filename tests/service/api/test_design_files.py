@@ -180,7 +180,7 @@ def test_files_of_changed_lengths_have_their_numbers(
     assert list(stored) == list(design)
     for key, value in design.items():
         assert (float(stored[key]) == value) if isinstance(value, float) else stored[key] == "", key
-    assert "Not all rules are met" in page
+    assert "Not all requirements are met" in page
     assert f"crank {lengths['crank_mm']:.6g} mm instead of" in page
     for name, digits in (("designs/3/linkage.svg", 7), ("designs/3/motion.html", 6)):
         assert f"crank {lengths['crank_mm']:.{digits}g} mm" in files_of_changed[name].text, name

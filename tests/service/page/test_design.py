@@ -205,7 +205,7 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     table = page.get_by_role("table", name="Objectives before and after the change")
     expect(table).to_be_visible()
-    expect(page.locator(".verdict")).to_contain_text("Breaks a rule: stroke")
+    expect(page.locator(".verdict")).to_contain_text("Misses a requirement: stroke")
     expect(page.locator(".front-map .changed")).to_be_visible()
     lengths = {name: row[name] for name in ("rod_mm", "offset_mm")} | {"crank_mm": float(row["crank_mm"] or 0) * 0.98}
     answer = httpx.post(f"{service}{solved.path}/designs/3/what-if", json=lengths).json()["design"]

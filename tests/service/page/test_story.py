@@ -51,7 +51,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
     page.get_by_role("checkbox", name="The other lengths follow").uncheck()
     changed = str(round(float(row["rod_mm"] or 0.0) * 1.02, 6))
     page.get_by_label("Rod", exact=True).fill(changed)
-    expect(page.locator(".verdict")).to_contain_text("Breaks a rule: stroke")
+    expect(page.locator(".verdict")).to_contain_text("Misses a requirement: stroke")
     page.get_by_role("button", name="Reset").click()
 
     drawing = ezdxf.readfile(taken_away(page, "DXF", tmp_path))  # type: ignore[attr-defined]

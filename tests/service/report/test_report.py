@@ -133,7 +133,7 @@ def test_it_says_what_was_asked_how_it_was_found_and_how_good_it_is() -> None:
         "epsilon proven, for this front alone: 0.0123",
         "numpy 1.2.3",
         "1970-01-01 00:00 UTC",
-        "All rules are met.",
+        "All requirements are met.",
         "Stationary: no small change betters every objective",
         "Worst case, exact",
         "random machines".capitalize(),
@@ -145,7 +145,7 @@ def test_a_rule_that_is_not_met_is_said() -> None:
     rows = [{**row, "slack_least_transmission_angle_deg": -1.0} for row in subject().result.designs]
     broken = replace(subject(), result=replace(subject().result, designs=rows))
     said = texts(design_report(broken))
-    assert "Not all rules are met: see below." in said
+    assert "Not all requirements are met: see below." in said
     assert "not met" in said
 
 

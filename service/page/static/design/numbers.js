@@ -76,14 +76,14 @@ function limits(designs, requirements, slow, names) {
     return h("tr", {}, h("th", { scope: "row" }, helpLink(column, names), h("span", { class: "quiet asked" }, ` ${wanted(asked)}`)),
       designs.map(({ row, name }) => [cell(row[asked.column], column, { name }), h("td", {}, met(row, asked))]));
   });
-  const head = h("tr", {}, h("th", { scope: "col" }, "Rule"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
-  return h("section", { class: "panel group" }, h("h3", {}, "Rules of the job"),
+  const head = h("tr", {}, h("th", { scope: "col" }, "Requirement"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
+  return h("section", { class: "panel group" }, h("h3", {}, "Requirements of the job"),
     requirements.length || slow
-      ? scrolled("Rules of the job", h("table", {}, h("caption", { class: "hidden" }, "Rules of the job"), h("thead", {}, head), h("tbody", {}, ofStroke, rows)))
+      ? scrolled("Requirements of the job", h("table", {}, h("caption", { class: "hidden" }, "Requirements of the job"), h("thead", {}, head), h("tbody", {}, ofStroke, rows)))
       : h("p", { class: "quiet" }, "The job sets none."));
 }
 
-/** Return what a rule asks, in words. @param {Api.Requirement} requirement */
+/** Return what a requirement asks, in words. @param {Api.Requirement} requirement */
 export function wanted({ lower, upper, unit }) {
   if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;

@@ -203,9 +203,9 @@ function comparison(objectives, before, after) {
 function sentences(answer, requirements, job) {
   const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
   const found = broken.map((column) => {
-    if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Breaks a rule: neither stroke is the slow one." : `Breaks a rule: the slow stroke is the ${design.slow_stroke} one.`);
+    if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Misses a requirement: neither stroke is the slow one." : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`);
     const asked = requirements.find((one) => one.column === column);
-    return asked ? h("p", { class: "bad" }, `Breaks a rule: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
+    return asked ? h("p", { class: "bad" }, `Misses a requirement: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
   });
   if (count) {
     const shown = better.slice(0, 3).map((number, n) => [n ? ", " : "", h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`)]);

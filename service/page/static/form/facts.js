@@ -34,7 +34,7 @@ export function showFacts(place, { allowed, example, understood }) {
 /** @param {Api.Understood} understood */
 function understanding(understood) {
   /** @type {[string, string[]][]} */
-  const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Rules", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
+  const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Requirements", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
   return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, line)))]);
 }
 

@@ -21,7 +21,7 @@ export function sections(form) {
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
-      h("h3", {}, "Rules of proportion"),
+      h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
     section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
