@@ -93,6 +93,7 @@ LOADED = Need(_loaded, _LOADS)
 PIVOT_LOADED = Need(_pivot_loaded, _LOADS)
 WORK = Need(
     works_over_a_turn,
-    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no viscous load and "
-    "no load that differs between the strokes; use {instead}, or add what the machine works against",
+    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no load that "
+    "always resists (viscous, drag) and none that differs between the strokes; use {instead}, or add what the machine "
+    "works against",
 )

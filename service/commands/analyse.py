@@ -203,6 +203,8 @@ def _load(job: Path | None, put: list[str]) -> Problem | None:
         if put:
             raise InputError("--set changes a number of a job; got none; give a JOB")
         return None
+    if not job.suffix and not job.is_file():
+        raise InputError(f"a job is a file that is there; got {job}; a run stands in its place with --design N")
     from ...optimise.job import load_job
 
     values: dict[str, str | float] = {}
