@@ -11,22 +11,22 @@ _REMEDY = "text with a unit belongs into the tables of a job"
 
 
 def require_numbers(
-    owner: object, rule: str, *names: str, least: float = -math.inf, above: float = -math.inf, unit: str = ""
+    owner: object, *names: str, what: str = "", least: float = -math.inf, above: float = -math.inf, unit: str = ""
 ) -> None:
     """Refuse fields of an object that are no finite numbers, below `least` or not above `above`; None passes.
 
-    rule: what the number is, with {name} where the name of the field belongs. unit: written behind the number.
+    what: the number in words, with {} where the name of the field belongs. unit: written behind the number.
     """
     for name in names:
         value = getattr(owner, name)
-        what = rule.format(name=name)
+        number = (what or f"{{}} of a {type(owner).__name__}").format(name)
         try:
             right = value is None or (math.isfinite(value) and value >= least and value > above)
         except TypeError:
-            raise InputError(f"{what} must be a number, SI; got {value!r}; {_REMEDY}") from None
+            raise InputError(f"{number} must be a number, SI; got {value!r}; {_REMEDY}") from None
         if not right:
             sign = "positive and " if above == 0.0 else "zero or more and " if least == 0.0 else ""
-            raise InputError(f"{what} must be {sign}finite; got {value:g}{unit and f' {unit}'}")
+            raise InputError(f"{number} must be {sign}finite; got {value:g}{unit and f' {unit}'}")
 
 
 def require_all_finite(what: str, values: Iterable[float], where: str = "") -> None:

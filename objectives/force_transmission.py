@@ -10,6 +10,7 @@ from ..model.machine.dissipation import linkage_loaded, pushed
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
+from .domain import Domain
 from .kinds import RATIO
 from .needs import Need
 from .quantity import Array, Group, Pieces, Quantity, Values
@@ -72,6 +73,13 @@ FORCE_TRANSMISSION = ForceTransmission(
     picture="slider pin force",
     example=0.5,
     better="high",
+    domain=Domain(
+        lower=0.0,
+        upper=1.0,
+        open=False,
+        rule="force transmission lies between 0 and 1",
+        remedy="0.5 to 0.9 are usual",
+    ),
     needs=(
         Need(
             _pulled,

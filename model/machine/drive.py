@@ -26,7 +26,7 @@ class ConstantTorque:
     torque: float
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "torque")
+        require_numbers(self, "torque")
 
     def at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s."""
@@ -51,7 +51,7 @@ class LinearMotor:
     no_load_speed: float
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "stall_torque", "no_load_speed", above=0.0)
+        require_numbers(self, "stall_torque", "no_load_speed", above=0.0)
 
     @classmethod
     def through(cls, *, torque: float, speed: float, no_load_speed: float) -> LinearMotor:
@@ -137,8 +137,8 @@ class Drive:
     def __post_init__(self) -> None:
         if not isinstance(self.motor, Motor):
             raise InputError(f"motor must be a ConstantTorque, LinearMotor or TorqueTable; got {self.motor!r}")
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "flywheel", "motor_inertia", least=0.0)
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "gear_ratio", above=0.0)
+        require_numbers(self, "flywheel", "motor_inertia", least=0.0)
+        require_numbers(self, "gear_ratio", above=0.0)
 
     @property
     def inertia(self) -> float:

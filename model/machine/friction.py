@@ -21,7 +21,7 @@ class Pin:
     coefficient: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name} of a pin", "radius", "coefficient", least=0.0)
+        require_numbers(self, "radius", "coefficient", what="the {} of a pin", least=0.0)
 
     @property
     def circle(self) -> float:
@@ -48,7 +48,7 @@ class Friction:
     slider_pin: Pin = Pin()
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name}'s coefficient of friction", "guide", least=0.0)
+        require_numbers(self, "guide", what="the {}'s coefficient of friction", least=0.0)
 
     @property
     def acts(self) -> bool:

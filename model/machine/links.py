@@ -26,7 +26,7 @@ class Bar:
     density: float
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name} of a bar", "width", "depth", "density", above=0.0)
+        require_numbers(self, "width", "depth", "density", what="the {} of a bar", above=0.0)
 
     def mass(self, length: float) -> float:
         """Return the mass, kg, for a centre distance, m."""
@@ -66,8 +66,8 @@ class RigidLink:
     inertia: float | None = None
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name} of a link", "mass", "inertia", least=0.0)
-        require_numbers(self, "the {name} of a link", "centre", "centre_across")
+        require_numbers(self, "mass", "inertia", what="the {} of a link", least=0.0)
+        require_numbers(self, "centre", "centre_across", what="the {} of a link")
 
 
 Link = Bar | RigidLink
@@ -87,5 +87,5 @@ class Counterweight:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name} of the counterweight", "mass", "radius", "inertia", least=0.0)
-        require_numbers(self, "the {name} of the counterweight", "angle")
+        require_numbers(self, "mass", "radius", "inertia", what="the {} of the counterweight", least=0.0)
+        require_numbers(self, "angle", what="the {} of the counterweight")

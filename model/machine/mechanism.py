@@ -26,7 +26,7 @@ class Tolerance:
     fraction: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "the {name} part of a tolerance", "absolute", "fraction", least=0.0)
+        require_numbers(self, "absolute", "fraction", what="the {} part of a tolerance", least=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +64,7 @@ class Clearances:
 
     def __post_init__(self) -> None:
         names = ("crank_pivot", "crank_pin", "slider_pin", "guide")
-        require_numbers(self, "the {name} clearance", *names, least=0.0, unit="m")
+        require_numbers(self, *names, what="the {} clearance", least=0.0, unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,8 +117,8 @@ class Mechanism:
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
-        require_numbers(self, "{name}", "speed", "acceleration")
-        require_numbers(self, "the slider mass", "slider_mass", least=0.0, unit="kg")
+        require_numbers(self, "speed", "acceleration", what="{}")
+        require_numbers(self, "slider_mass", what="the slider mass", least=0.0, unit="kg")
         require_all_finite("gravity", self.gravity)
         require_word("branch", self.branch, Branch)
         loads: object = self.loads

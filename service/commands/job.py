@@ -30,7 +30,9 @@ def check(
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
     parts: dict[str, list[str]] = {
-        **{name: summary[name] for name in ("given", "tolerances", "costs", "variables", "rules", "objectives")},
+        **{name: summary[name] for name in ("given", "tolerances", "costs", "variables")},
+        "requirements": summary["rules"],
+        "objectives": summary["objectives"],
         "freedom": [freedom_in_words(summary)],
         "search": [summary["search"]],
         "warning": summary["warnings"],
@@ -38,7 +40,7 @@ def check(
     }
     for title, lines in parts.items():
         for index, line in enumerate(lines):
-            screen.print(f"  {title if index == 0 else '':<12}{line}", soft_wrap=True)
+            screen.print(f"  {title if index == 0 else '':<14}{line}", soft_wrap=True)
 
 
 def schema() -> None:

@@ -156,6 +156,7 @@ BAD: list[tuple[str, str, list[str]]] = [
         "time_ratio = { min = 1.5 }",
         ["constraints.time_ratio", "at most 1.2862;", "min 1.5", "transmission_angle to 27.4576 deg", "40 deg"],
     ),
+    (STROKE, "force_transmission = { min = 1.4 }", ["constraints.force_transmission", "between 0 and 1", "min 1.4"]),
     (ANGLE, 'transmission_angle = { min = "95 deg" }', ["constraints.transmission_angle", "95 deg", "0 and 90 deg"]),
     (ANGLE, "transmission_angle = { min = 40 }", ["constraints.transmission_angle", "plain number is in rad"]),
     (

@@ -30,7 +30,7 @@ class Drag(Load):
     slots: ClassVar = {"drag": (2, "N s^2/m^2")}
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "drag")
+        require_numbers(self, "drag")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the coefficient after factors of one."""

@@ -25,7 +25,7 @@ class Spring(Load):
     slots: ClassVar = {"stiffness": (2, "N/m"), "free_position": (3, "m")}
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "stiffness", "free_position")
+        require_numbers(self, "stiffness", "free_position")
         require_word("datum", self.datum, Datum)
 
     def numbers(self) -> tuple[float, float, float, float]:

@@ -25,7 +25,7 @@ class StrokeForce(Load):
     slots: ClassVar = {"outward": (0, "N"), "inward": (1, "N")}
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "outward", "inward")
+        require_numbers(self, "outward", "inward")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the forces in the two strokes."""

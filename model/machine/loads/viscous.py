@@ -21,7 +21,7 @@ class Viscous(Load):
     slots: ClassVar = {"coefficient": (2, "N s/m")}
 
     def __post_init__(self) -> None:
-        require_numbers(self, f"{{name}} of a {type(self).__name__}", "coefficient")
+        require_numbers(self, "coefficient")
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return the coefficient after factors of one."""
