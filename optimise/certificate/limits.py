@@ -21,7 +21,7 @@ class Limits:
         self.k = k
 
     def add(self, value: Enclosure) -> None:
-        """Require a number (n, p), each of its p parts, to be defined somewhere in the box and at most `FEASIBLE`."""
+        """Require each part of a number (n, p) to be defined somewhere in the box and at most `FEASIBLE`."""
         if value.empty is not None:
             self.alive &= ~value.empty.any(axis=1)
         self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)

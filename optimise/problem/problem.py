@@ -208,7 +208,7 @@ class Problem:
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
 
     def without_gradient(self) -> list[str]:
-        """Return what objectives and constraints name, those of choices too, and what has no gradient."""
+        """Return the names in objectives and constraints, those of choices too, that have no gradient."""
         asked = {item.quantity for item in self.objectives} | {item.quantity for item in self.every_constraint}
         return [item.name for item in self.own if item.name in asked and not item.has_gradient]
 

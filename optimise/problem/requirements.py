@@ -1,4 +1,4 @@
-"""What is asked of designs: ranges of dimensions, constraints and objectives. SI, immutable, validated."""
+"""Requirements and wishes of a problem: ranges of dimensions, constraints and objectives. SI, immutable, validated."""
 
 from __future__ import annotations
 

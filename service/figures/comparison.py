@@ -1,4 +1,4 @@
-"""Several fronts in one scatter matrix, a marker of its own for each: of runs, or the robust and the nominal one."""
+"""Several fronts in one scatter matrix, each with its marker: of runs, or robust and nominal."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ def legend_beside(axes: Axes, *, stacked: int = 0) -> None:
 def legend_at(
     figure: Figure, x: float, y: float, handles: Sequence[Artist], labels: Sequence[str], *, spacing: float = 0.5
 ) -> None:
-    """Name the marks of a figure in a legend whose upper left corner is at a place, inches from the lower left."""
+    """Add a legend to a figure, its upper left corner at (x, y), inches from the lower left."""
     width, height = figure.get_size_inches()
     place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (x / width, y / height), "borderaxespad": 0.0}
     looks: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handletextpad": 0.4, "borderpad": 0.0}

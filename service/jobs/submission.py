@@ -1,4 +1,4 @@
-"""A job on its way into the store and out of it: read and checked, with the functions that it names as quantities.
+"""A job on its way into the store and out of it: read, and checked with its functions.
 
 These functions run where a job is solved, so whoever starts the workers allows them, by `serve` and `worker
 --allow-quantity`. The API refuses others at once; `submit` cannot know which workers there are, and leaves it to them.

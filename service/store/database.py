@@ -184,7 +184,7 @@ class Database:
 
 
 def _identity(file: Path) -> tuple[int, int] | None:
-    """Return what a file keeps when it is written, and another one in its place has not; None if it is not there."""
+    """Return device and inode of a file, which writing keeps; None if it is not there."""
     try:
         found = file.stat()
     except OSError:
