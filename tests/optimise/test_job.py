@@ -274,7 +274,8 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
-    value = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "stroke": 0.05}.get(name, 4.0)
+    within = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "force_transmission": 0.5}
+    value = (within | {"stroke": 0.05}).get(name, 4.0)
     job = small(
         constraints={name: {"min": value}},
         objectives={name: "minimise"},

@@ -162,7 +162,7 @@ def test_a_job_without_costs_has_no_allocation(job: Path, command: Command) -> N
 
 def test_check_says_what_the_tolerances_cost(job: Path, command: Command) -> None:
     shown = command("check", job).stdout
-    assert "costs       crank 5 + 8 (0.05 mm / tolerance)" in shown
+    assert "costs         crank 5 + 8 (0.05 mm / tolerance)" in shown
     assert "rod 6 (0.1 mm / tolerance), at most 0.04 mm" in shown
     assert "crank angle 10 (0.1 deg / tolerance)^2" in shown
 
