@@ -30,9 +30,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.segments import find_pieces, load_on_slider, with_formulas
-from ..kernel.arithmetic import inlined, kernel
+from ..kernel.arithmetic import inlined
+from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
 from ..machine.design import design_at
+from ..machine.raw import Loads
 
 STATES = 7
 """Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""
@@ -183,28 +185,28 @@ def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, lo
 
 
 @kernel
-def rates(time: float, y: Any, rate: float, outward: bool, s: System, block: Any, loads: Any) -> Any:
-    """Return the time derivative of the state (7,). rate: as in `touch`. outward: whether it is the outward stroke."""
+def _rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads, out: Row) -> None:
     gap, gap_t = complex(y[0], y[1]), complex(y[2], y[3])
     p = locate(time, gap, gap_t, s)
     load = load_along_x(time, p, outward, s, block, loads)
     c = touch(gap, gap_t, p.rod_t, rate, s)
     gap_tt, _, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
-    out = np.empty(7)
     out[0], out[1] = gap_t.real, gap_t.imag
     out[2], out[3] = gap_tt.real, gap_tt.imag
     out[4], out[5], out[6] = torque * s.speed, load * p.x_t, c.lost
+
+
+def rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads) -> Row:
+    """Return the time derivative of the state (7,). rate: as in `touch`. outward: whether it is the outward stroke."""
+    out = np.empty(STATES)
+    _rates(time, y, rate, outward, s, block, loads, out)
     return out
 
 
 @kernel
-def observe(times: Any, y: Any, rate: Any, outward: Any, s: System, block: Any, loads: Any) -> Any:
-    """Return the reported quantities of states (7, n), as (10, n).
-
-    Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,
-    potential and elastic energy.
-    """
-    out = np.empty((10, times.shape[0]))
+def _observe(
+    times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads, out: Table
+) -> None:
     for i in range(times.shape[0]):
         gap, gap_t = complex(y[0, i], y[1, i]), complex(y[2, i], y[3, i])
         p = locate(times[i], gap, gap_t, s)
@@ -219,4 +221,14 @@ def observe(times: Any, y: Any, rate: Any, outward: Any, s: System, block: Any, 
         kinetic += (s.m_rod_crank * p.rod * p.crank.conjugate()).real * u * w
         moment = s.m_xx * complex(p.x, s.e) + s.first_rod * p.rod + s.first_crank * p.crank
         out[7, i], out[8, i], out[9, i] = kinetic, -(s.gravity.conjugate() * moment).real, c.elastic
+
+
+def observe(times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads) -> Table:
+    """Return the reported quantities of states (7, n), as (10, n).
+
+    Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,
+    potential and elastic energy.
+    """
+    out = np.empty((10, len(times)))
+    _observe(times, y, rate, outward, s, block, loads, out)
     return out

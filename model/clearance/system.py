@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..kernel.arithmetic import kernel
+from ..kernel.kernel import Table, kernel
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
 from ..machine.design import DESIGN, derive, design_at
@@ -18,10 +16,8 @@ from .equations import System
 
 
 @kernel
-def _derived(raw: Any, loads: Any) -> Any:
-    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
-    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
-    return block
+def _derived(raw: Table, loads: Loads, block: Table) -> None:
+    derive(raw, loads.kind, loads.datum, block)
 
 
 def build(
@@ -50,7 +46,8 @@ def build(
     # Loads take the slider's velocity as velocity per radian times speed; unit speed lets them have it directly.
     raw[Raw.SPEED] = 1.0
     loads = load_structure(mechanism)
-    block = _derived(raw, loads)
+    block = np.empty((DESIGN + 2 * len(loads.kind), 1))
+    _derived(raw[:, None], loads, block)
     d = design_at(block, 0)
     crank_first = complex(d.crank_along, d.crank_across)
     rod_first = l * complex(d.rod_along, d.rod_across)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,12 +12,12 @@ from ..dynamics.contact import cut_contacts, rubs, sides_of
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
 from ..errors import InputError
-from ..kernel.arithmetic import kernel
+from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.design import DESIGN, Design, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import load_structure, raw_vector
+from ..machine.raw import Loads, load_structure, raw_vector
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
@@ -59,11 +58,18 @@ class Cycle:
 
 @kernel
 def _curves(
-    raw: Any, loads: Any, watch: Any, angles: Any, speeds: Any, accelerations: Any, out: Any, rubbing: Any
-) -> Any:
+    raw: Table,
+    loads: Loads,
+    watch: Watch,
+    angles: Row,
+    speeds: Row,
+    accelerations: Row,
+    out: Table,
+    rubbing: bool | None,
+) -> None:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    derive(raw, loads.kind, loads.datum, block)
     for i in range(angles.shape[0]):
         theta = angles[i]
         block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
@@ -120,15 +126,15 @@ def cycle(
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     out = np.empty((_COLUMNS, len(angles)))
     watch = Watch(0, 0.0, 1.0, False)
-    _curves(raw, load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
+    _curves(raw[:, None], load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
 @kernel
-def _breakpoints(raw: Any, loads: Any, watch: Any, out: Any, rubbing: Any) -> Any:
+def _breakpoints(raw: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool | None) -> int:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    derive(raw.reshape((raw.shape[0], 1)), loads.kind, loads.datum, block)
+    derive(raw, loads.kind, loads.datum, block)
     d = design_at(block, 0)
     cuts = work_space(loads.at.shape[0])
     count = cut_cycle(d, block, 0, loads, watch, cuts)
@@ -153,5 +159,5 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
             "lengthen the rod, or reduce the offset or the friction"
         )
     out = np.empty(ROOM + 2 * len(loads.at))
-    count = _breakpoints(raw, loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
+    count = _breakpoints(raw[:, None], loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
     return out[:count]

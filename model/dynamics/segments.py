@@ -11,9 +11,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kernel.arithmetic import analytic, inlined
+from ..kernel.kernel import Integers, Row
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
 from ..machine.design import DESIGN, Design
@@ -49,10 +49,10 @@ class Watch(NamedTuple):
 class Cuts(NamedTuple):
     """Work space of one design's breakpoints: angle, what it is, its number (knot or fraction) and its load."""
 
-    angle: NDArray[np.float64]
-    code: NDArray[np.int64]
-    number: NDArray[np.float64]
-    load: NDArray[np.int64]
+    angle: Row
+    code: Integers
+    number: Row
+    load: Integers
 
 
 @analytic

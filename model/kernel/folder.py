@@ -1,17 +1,13 @@
 """The folder of compiled kernels.
 
-It belongs to one state of the sources that are compiled: its name has their digest, so that no kernel in it is ever
-stale. numba alone would compare a kernel with the file that it stands in, not with the formulas compiled into it. None
-is kept beside the sources: there they would outlive the software, and keep its empty folders importable.
+None is kept beside the sources: there they would outlive the software, and keep its empty folders importable.
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import logging
 import os
-import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -21,9 +17,6 @@ from typing import NamedTuple
 
 _log = logging.getLogger(__name__)
 
-_SOURCES = Path(__file__).parents[1]  # what is compiled into a kernel of another file stands in this package
-_EARLIER = 2
-"""States of the sources whose kernels stay, so that going back to one of them compiles nothing."""
 _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 
 
@@ -56,18 +49,12 @@ def choose_folder() -> Chosen:
 
     Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
     """
-    digest = hashlib.sha256()
-    for file in sorted(_SOURCES.rglob("*.py")):
-        digest.update(f"{file.relative_to(_SOURCES)}\0".encode() + file.read_bytes() + b"\0")
-    installation = hashlib.sha256(os.fsencode(_SOURCES)).hexdigest()[:12]
     refused: list[str] = []
     for place in _places():
-        folder = place / f"{installation}-{digest.hexdigest()[:16]}"
+        folder = place / "kernels"
         new = not folder.is_dir()
         reason = _refusal(folder)
         if reason is None:
-            if new:
-                _forget(installation, folder)
             return Chosen(folder, new, "; ".join(refused))
         refused.append(f"{place} {reason}")
     return Chosen(None, False, "; ".join(refused))
@@ -112,11 +99,3 @@ def _refusal(folder: Path) -> str | None:
 def _private(place: Path) -> bool:
     found = place.lstat()
     return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
-
-
-def _forget(installation: str, folder: Path) -> None:
-    """Delete the folders of an installation's earlier sources but the last few."""
-    with contextlib.suppress(OSError):
-        found = [other for other in folder.parent.glob(f"{installation}-*") if other != folder]
-        for other in sorted(found, key=lambda other: other.stat().st_mtime)[:-_EARLIER]:
-            shutil.rmtree(other, ignore_errors=True)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel.arithmetic import STEP, analytic, inverse, kernel, magnitude
+from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
 from ..kernel.batches import in_chunks
+from ..kernel.kernel import Row, Table, kernel
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
 from .in_line import in_line
 
@@ -55,7 +56,7 @@ def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
 
 
 @kernel
-def _evaluate(kind: Any, designs: Any, values: Any, gradients: Any) -> Any:
+def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
     for n in range(designs.shape[0]):
         r, l, e = designs[n, 0], designs[n, 1], designs[n, 2]
         values[n] = closed_form(kind, r, l, e)

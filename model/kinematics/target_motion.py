@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..kernel.arithmetic import inlined, kernel
+from ..kernel.arithmetic import inlined
 from ..kernel.batches import in_chunks, turning
+from ..kernel.kernel import Row, Table, kernel
 from .position import motion
 
 Array = NDArray[np.float64]
@@ -245,7 +246,7 @@ def _least_square(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: A
 
 
 @kernel
-def _fit(designs: Any, b: Any, angles: Any, at: Any, rms: Any, turns: Any, shifts: Any, out: Any) -> Any:
+def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool, shifts: bool, out: Table) -> None:
     d, cells, points = np.empty(at.shape[0]), np.empty((3, 4 * _PHASES)), (np.sin(angles), np.cos(angles), at)
     for row in range(designs.shape[0]):
         r, l, e = designs[row, 0], designs[row, 1], designs[row, 2]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
 from .loads.registry import code_of
 from .mechanism import Mechanism
@@ -46,12 +47,12 @@ class Loads(NamedTuple):
     the inward stroke. start: (k + 1,), where a load's table begins. at, force: its knots.
     """
 
-    kind: NDArray[np.int64]
-    datum: NDArray[np.int64]
-    factor: NDArray[np.float64]
-    start: NDArray[np.int64]
-    at: NDArray[np.float64]
-    force: NDArray[np.float64]
+    kind: Integers
+    datum: Integers
+    factor: Table
+    start: Integers
+    at: Row
+    force: Row
 
 
 def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:

@@ -23,14 +23,16 @@ from numpy.typing import NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives, joint_forces
-from ..dynamics.segments import crowded, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
-from ..kernel.arithmetic import STEP, inlined, kernel, root
+from ..dynamics.segments import Watch, crowded, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
+from ..kernel.arithmetic import STEP, inlined, root
 from ..kernel.batches import in_chunks, turning
+from ..kernel.kernel import Integers, Row, Table, kernel
 from ..kinematics.position import motion_of
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
+from ..machine.raw import Loads
 from .signals import Signal, signal
 from .watch import inputs_of, watch_of
 
@@ -104,21 +106,21 @@ def _rough(values: Any, tail: Any, allowed: Any) -> bool:
 
 @kernel
 def _average(
-    kind: Any,
-    raw: Any,
-    variables: Any,
-    designs: Any,
-    gaps: Any,
-    loads: Any,
-    watch: Any,
-    rule: Any,
-    wanted: Any,
-    mean: Any,
-    rms: Any,
-    mean_slope: Any,
-    rms_slope: Any,
-    rubbing: Any,
-) -> Any:
+    kind: int,
+    raw: Row,
+    variables: Integers,
+    designs: Table,
+    gaps: Row,
+    loads: Loads,
+    watch: Watch,
+    rule: tuple[Row, Row, Table],
+    wanted: bool,
+    mean: Row,
+    rms: Row,
+    mean_slope: Table,
+    rms_slope: Table,
+    rubbing: bool | None,
+) -> None:
     nodes, weights, tail = rule
     rows = DESIGN + 2 * loads.kind.shape[0]
     cuts = work_space(loads.at.shape[0])

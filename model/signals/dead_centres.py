@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.torque import forces
-from ..kernel.arithmetic import kernel
 from ..kernel.batches import in_chunks, turning
+from ..kernel.kernel import Integers, Row, Table, kernel
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
@@ -22,7 +21,9 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def _torques(raw: Any, columns: Any, designs: Any, load_kind: Any, load_datum: Any, crossed: Any, out: Any) -> None:
+def _torques(
+    raw: Row, columns: Integers, designs: Table, load_kind: Integers, load_datum: Integers, crossed: bool, out: Table
+) -> None:
     own, block = np.empty((raw.shape[0], 1)), np.empty((DESIGN + 2 * load_kind.shape[0], 1))
     own[:, 0] = raw
     for n in range(designs.shape[0]):

@@ -6,7 +6,6 @@ Where loads or friction are piecewise the piece is that at the real crank angle 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +14,11 @@ from ..dynamics.contact import rubs, sides_of
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import Forces
-from ..kernel.arithmetic import kernel
 from ..kernel.batches import in_chunks
+from ..kernel.kernel import ComplexCube, ComplexTable, Row, kernel
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import load_structure, raw_vector
+from ..machine.raw import Loads, load_structure, raw_vector
 from .signals import design_motion
 
 Complex = NDArray[np.complex128]
@@ -28,7 +27,9 @@ _WIDE = len(Forces._fields) + 1
 
 
 @kernel
-def _follow(raw: Any, designs: Any, loads: Any, angles: Any, out: Any, rubbing: Any) -> Any:
+def _follow(
+    raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool | None
+) -> None:
     watch = Watch(0, 0.0, 1.0, False)
     rows = DESIGN + 2 * loads.kind.shape[0]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])

@@ -17,12 +17,24 @@ from numpy.typing import NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives
-from ..dynamics.segments import crowded, crowding, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
-from ..kernel.arithmetic import STEP, inlined, kernel
+from ..dynamics.segments import (
+    Watch,
+    crowded,
+    crowding,
+    cut_cycle,
+    enter,
+    load_on_slider,
+    uncrowded,
+    within,
+    work_space,
+)
+from ..kernel.arithmetic import STEP, inlined
 from ..kernel.batches import in_chunks, turning
+from ..kernel.kernel import Cube, Integers, Row, Table, kernel
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
+from ..machine.raw import Loads
 from .signals import Signal, design_motion, signal
 from .watch import inputs_of, watch_of
 
@@ -171,18 +183,18 @@ def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: A
 
 @kernel
 def _find(
-    kind: Any,
-    raw: Any,
-    variables: Any,
-    designs: Any,
-    loads: Any,
-    watch: Any,
-    angles: Any,
-    values: Any,
-    where: Any,
-    gradients: Any,
-    rubbing: Any,
-) -> Any:
+    kind: int | tuple[int],
+    raw: Row,
+    variables: Integers,
+    designs: Table,
+    loads: Loads,
+    watch: Watch,
+    angles: int,
+    values: Table,
+    where: Table,
+    gradients: Cube,
+    rubbing: bool | None,
+) -> None:
     rows = DESIGN + 2 * loads.kind.shape[0]
     knots = loads.at.shape[0]
     cuts = work_space(knots)

@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from ..dynamics.segments import crowding
 from ..dynamics.torque import smooth_load
-from ..kernel.arithmetic import STEP, analytic, inlined, inverse, kernel, root
+from ..kernel.arithmetic import STEP, analytic, inlined, inverse, root
 from ..kernel.batches import in_chunks, turning
+from ..kernel.kernel import Cube, Integers, Row, Table, kernel
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
@@ -189,18 +190,18 @@ def _refine(
 
 @kernel
 def _screen(
-    kinds: Any,
-    raw: Any,
-    columns: Any,
-    designs: Any,
-    load_kind: Any,
-    load_datum: Any,
-    angles: Any,
-    crowd: Any,
-    first: Any,
-    values: Any,
-    where: Any,
-    gradients: Any,
+    kinds: Integers,
+    raw: Row,
+    columns: Integers,
+    designs: Table,
+    load_kind: Integers,
+    load_datum: Integers,
+    angles: int,
+    crowd: bool,
+    first: int,
+    values: Table,
+    where: Table,
+    gradients: Cube,
 ) -> None:
     n, signals = designs.shape[0], kinds.shape[0]
     rows = DESIGN + 2 * load_kind.shape[0]

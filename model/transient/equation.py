@@ -22,16 +22,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.segments import Cuts, cut_cycle, enter, load_on_slider, with_formulas, within
+from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
-from ..kernel.arithmetic import kernel
+from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.design import DESIGN, derive, design_at
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
-from ..machine.raw import LOAD_SLOTS, Raw, load_structure, raw_vector
+from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
@@ -72,23 +72,23 @@ class Terms:
 
 
 @kernel
-def _derive(raw: Any, loads: Any, block: Any) -> Any:
+def _derive(raw: Table, loads: Loads, block: Table) -> None:
     derive(raw, loads.kind, loads.datum, block)
 
 
 @kernel
-def _cut(block: Any, loads: Any, watch: Any, cuts: Any) -> Any:
+def _cut(block: Table, loads: Loads, watch: Watch, cuts: Cuts) -> int:
     return cut_cycle(design_at(block, 1), block, 1, loads, watch, cuts)
 
 
 @kernel
-def _enter(block: Any, loads: Any, watch: Any, inside: Any, piece: Any, shift: Any) -> Any:
+def _enter(block: Table, loads: Loads, watch: Watch, inside: float, piece: Integers, shift: Row) -> bool:
     _, outward = enter(design_at(block, 1), block, 1, inside, loads, watch, piece, shift)
     return outward
 
 
 @kernel
-def _terms(block: Any, loads: Any, outward: Any, piece: Any, shift: Any, angles: Any, out: Any) -> Any:
+def _terms(block: Table, loads: Loads, outward: bool, piece: Integers, shift: Row, angles: Row, out: Table) -> None:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
     square = design_at(block, 4)
     for i in range(angles.shape[0]):

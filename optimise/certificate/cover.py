@@ -7,13 +7,11 @@ assessment of multiobjective optimizers", IEEE Trans. Evol. Comput. 7(2), 2003, 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.kernel.arithmetic import kernel
 from ...model.kernel.batches import in_chunks
+from ...model.kernel.kernel import Flags, Integers, Row, Table, kernel
 from ..front.hypervolume import hypervolume, nondominated
 from .enclosure import Array
 
@@ -21,7 +19,7 @@ _EXACT = 4000  # points in three and more dimensions of which the hypervolume ta
 
 
 @kernel
-def _excess(points: Any, designs: Any, first: Any, enough: Any, out: Any) -> None:
+def _excess(points: Table, designs: Table, first: Integers, enough: float, out: Row) -> None:
     for i in range(points.shape[0]):
         best = out[i]
         for q in range(first[i], designs.shape[0]):
@@ -62,7 +60,7 @@ def excess(
 
 
 @kernel
-def _choose(points: Any, values: Any, epsilon: Any, chosen: Any) -> None:
+def _choose(points: Table, values: Table, epsilon: float, chosen: Flags) -> None:
     count = 0
     order = np.empty(points.shape[0], np.int64)
     for i in range(points.shape[0]):

@@ -1,0 +1,102 @@
+"""Digest of everything that decides about the machine code of a kernel.
+
+That is what the kernel and the formulas compiled into it do, not how their sources look: a comment or another formula
+changes no digest.
+"""
+
+from __future__ import annotations
+
+import enum
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from .arithmetic import CHOICES
+
+_PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
+
+
+def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
+    """Return the digest of a kernel for arguments like the examples."""
+    found = hashlib.sha256(_surroundings())
+    found.update(_of(examples).encode())
+    seen: set[int] = set()
+    waiting: list[Any] = [function]
+    while waiting:
+        value = waiting.pop()
+        if id(value) not in seen:
+            seen.add(id(value))
+            text, more = _parts(value)
+            found.update(text)
+            waiting.extend(more)
+    return found.hexdigest()[:24]
+
+
+@cache
+def _surroundings() -> bytes:
+    """Return what all kernels depend on: processor, versions, numba's own settings, and how formulas are compiled."""
+    import llvmlite.binding as llvm
+
+    settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _PLACES)
+    host = llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    own = [Path(__file__).with_name(name).read_bytes() for name in ("compiler.py", "machine_code.py")]
+    return repr(
+        (host, sys.version_info[:2], np.__version__, version("numba"), version("llvmlite"), settings, own)
+    ).encode()
+
+
+_PLACES = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT")
+
+
+def _parts(function: Any) -> tuple[bytes, list[Any]]:
+    """Return what a function is by itself, and the functions that it calls."""
+    chosen = next((choice for choice in CHOICES if choice.formula is function), None)
+    if chosen is not None:
+        return b"choice", [chosen.together, chosen.alone]
+    calls: list[Any] = []
+    text = [function.__qualname__, _of(function.__defaults__)]
+    codes = list(_codes(function.__code__))
+    for code in codes:
+        text += [code.co_code.hex(), repr((code.co_varnames, code.co_names, code.co_freevars))]
+        text += [_of(constant) for constant in code.co_consts if not isinstance(constant, CodeType)]
+    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    names = dict.fromkeys(name for code in codes for name in code.co_names)
+    for value in (*cells, *(function.__globals__[name] for name in names if name in function.__globals__)):
+        if isinstance(value, FunctionType):
+            calls.append(value)
+            text.append(value.__qualname__)
+        else:
+            text.append(_of(value))
+    return "\n".join(text).encode(), calls
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
+
+
+def _of(value: Any) -> str:
+    """Return a text that tells a value of a formula, or the type of an example, from others."""
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype.str}{value.shape}{value.tobytes().hex()}"
+    if isinstance(value, tuple):
+        return f"{type(value).__qualname__}({','.join(map(_of, value))})"
+    if isinstance(value, enum.EnumType):
+        return f"{value.__qualname__}{list(value.__members__.items())}"
+    if isinstance(value, ModuleType):
+        return value.__name__
+    if isinstance(value, type):
+        return f"{value.__qualname__}{getattr(value, '_fields', '')}"
+    if isinstance(value, (*_PLAIN, BuiltinFunctionType, np.generic, np.ufunc, enum.Enum)):
+        return repr(value)
+    raise TypeError(f"a formula must use numbers, tuples, classes, modules and formulas; got {value!r}; name it anew")

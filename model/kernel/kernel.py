@@ -1,0 +1,187 @@
+"""Functions compiled to machine code, with arguments of the types that they declare."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from itertools import product
+from threading import Lock
+from types import NoneType, UnionType
+from typing import Annotated, Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .disk import Wanted, machine_code
+from .machine_code import load
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+Row = Annotated[NDArray[np.float64], 1]
+"""Numbers (n,) of a kernel's arguments."""
+Table = Annotated[NDArray[np.float64], 2]
+Cube = Annotated[NDArray[np.float64], 3]
+ComplexTable = Annotated[NDArray[np.complex128], 2]
+ComplexCube = Annotated[NDArray[np.complex128], 3]
+Integers = Annotated[NDArray[np.int64], 1]
+Flags = Annotated[NDArray[np.bool_], 1]
+
+KERNELS: list[Kernel] = []
+"""All kernels of the modules imported so far."""
+
+_RESULTS: dict[Any, Any] = {
+    int: ctypes.c_int64,
+    bool: ctypes.c_uint8,
+    float: ctypes.c_double,
+    NoneType: ctypes.c_void_p,
+}
+_loading = Lock()
+
+Flat = tuple[Any, ...]
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function that Python calls, when it is called first; the machine code is kept on disk.
+
+    Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated; an
+    annotation of several types gives a compiled variant for each. It returns a number or nothing.
+    """
+    compiled = Kernel(function)
+    KERNELS.append(compiled)
+    return cast(Function, compiled)
+
+
+class Kernel:
+    """A function that runs as machine code."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        """Take a function, that is not yet compiled."""
+        self.function = function
+        self.__doc__ = function.__doc__
+        self._parameters: list[_Parameter] = []
+        self._result: Any = None
+        self._variants: dict[tuple[int, ...], Callable[..., int]] = {}
+
+    def __call__(self, *values: Any) -> Any:
+        """Run it. Raises `TypeError` for an argument of another type, `MemoryError` where memory is short."""
+        parameters = self._parameters or self._declared()
+        variant: list[int] = []
+        flat: list[Any] = []
+        for parameter, value in zip(parameters, values, strict=True):
+            which = parameter.which(value)
+            if len(parameter.options) > 1:
+                variant.append(which)
+            flat += parameter.flat[which](value)
+        run = self._variants.get(tuple(variant)) or self._load(tuple(variant))
+        result, error = self._result(), ctypes.c_void_p()
+        if run(ctypes.addressof(result), ctypes.addressof(error), *flat):
+            raise MemoryError(f"not enough memory for {self.function.__qualname__}")
+        return result.value
+
+    def variants(self) -> dict[tuple[int, ...], Wanted]:
+        """Return what can be compiled, by the numbers of the types of those parameters that may have several."""
+        parameters = self._parameters or self._declared()
+        name = f"{self.function.__module__}.{self.function.__name__}"
+        found = {}
+        for choice in product(*(range(len(parameter.options)) for parameter in parameters)):
+            both = list(zip(parameters, choice, strict=True))
+            key = tuple(which for parameter, which in both if len(parameter.options) > 1)
+            examples = tuple(_example(parameter.options[which]) for parameter, which in both)
+            found[key] = Wanted("-".join([name, *map(str, key)]), self.function, examples)
+        return found
+
+    def _declared(self) -> list[_Parameter]:
+        """Return the parameters by their annotations."""
+        hints = get_type_hints(self.function, include_extras=True)
+        self._result = _RESULTS[hints.pop("return")]
+        self._parameters = [_Parameter(name, hint) for name, hint in hints.items()]
+        return self._parameters
+
+    def _load(self, variant: tuple[int, ...]) -> Callable[..., int]:
+        with _loading:
+            if variant not in self._variants:
+                self._variants[variant] = load(machine_code(self.variants()[variant]))
+        return self._variants[variant]
+
+
+class _Parameter:
+    """A parameter of a kernel: the types it may have, and how a value of each is handed over."""
+
+    def __init__(self, name: str, hint: Any) -> None:
+        self.options = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+        self.flat = [_flattener(name, option) for option in self.options]
+        self._types = tuple(get_origin(option) or option for option in self.options)
+
+    def which(self, value: Any) -> int:
+        """Return the number of the type that a value has."""
+        if len(self.options) == 1:
+            return 0
+        return next((i for i, kind in enumerate(self._types) if isinstance(value, kind)), 0)
+
+
+def _members(kind: Any) -> list[Any] | None:
+    """Return the types of a tuple's members, None for what is no tuple."""
+    if get_origin(kind) is tuple:
+        return list(get_args(kind))
+    if isinstance(kind, type) and issubclass(kind, tuple):
+        return list(get_type_hints(kind, include_extras=True).values())
+    return None
+
+
+def _example(kind: Any) -> Any:
+    """Return a value of a type."""
+    members = _members(kind)
+    if members is not None:
+        values = [_example(member) for member in members]
+        return tuple(values) if get_origin(kind) is tuple else kind(*values)
+    if get_origin(kind) is Annotated:
+        array, dimensions = get_args(kind)
+        return np.zeros((1,) * dimensions, _item(array))
+    return kind()
+
+
+def _item(array: Any) -> np.dtype[Any]:
+    """Return the type of the items of an `NDArray[...]`."""
+    found: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
+    return found
+
+
+def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
+    """Return what makes the machine's arguments of a value."""
+    members = _members(kind)
+    if members is not None:
+        return _flat_tuple([_flattener(name, member) for member in members])
+    if get_origin(kind) is Annotated:
+        array, dimensions = get_args(kind)
+        return _flat_array(name, _item(array), dimensions)
+    if kind is NoneType:
+        return lambda value: (None,)
+    if kind is complex:
+        return lambda value: (value.real, value.imag)
+    return lambda value: (kind(value),)
+
+
+def _flat_tuple(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
+    last: tuple[Any, Flat] = (None, ())  # the same tuple often comes many times in turn
+
+    def flat(value: Any) -> Flat:
+        nonlocal last
+        before, found = last
+        if before is not value:
+            found = tuple(item for member, part in zip(members, value, strict=True) for item in member(part))
+            last = value, found
+        return found
+
+    return flat
+
+
+def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[Any], Flat]:
+    def flat(value: Any) -> Flat:
+        if value.dtype != item or value.ndim != dimensions or not value.flags.c_contiguous:
+            raise TypeError(
+                f"{name} must be a contiguous array of {item} in {dimensions} dimensions; "
+                f"got {value.dtype} in {value.ndim}, strides {value.strides}"
+            )
+        return (None, None, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+
+    return flat
