@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import json
 import logging
@@ -53,14 +54,18 @@ class Wanted(NamedTuple):
 
 
 def machine_code(wanted: Wanted) -> MachineCode:
-    """Return the machine code of a variant; all that is missing beside it is compiled too, and kept."""
+    """Return the machine code of a variant, compiled and kept if need be.
+
+    What is missing beside it is compiled too, in other processes, as long as this one lives.
+    """
     folder = kernel_folder()
     if folder is None:
         return wanted.compile()
     file = wanted.file(folder)
     found = read(file)
     if found is None:
-        build(folder, MODEL if wanted.module.startswith(f"{MODEL}.") else wanted.module, file)
+        package = MODEL if wanted.module.startswith(f"{MODEL}.") else wanted.module
+        compile_beside(folder, package, file)
         found = read(file)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()
@@ -95,61 +100,80 @@ def keep(file: Path, found: MachineCode) -> None:
             other.unlink(missing_ok=True)
 
 
-def build(folder: Path, package: str, file: Path) -> None:
-    """Compile what is missing of a package's kernels, on all processors; another process at it is waited for."""
-    with locked(folder / "building", wait=True) as alone:
-        if read(file) is not None or not sys.executable:
+def compile_beside(folder: Path, package: str, file: Path | None = None) -> None:
+    """Have the missing kernels of a package compiled by other processes; return when there is a file, or they ended.
+
+    They do that file's next. Processes that are at it already are waited for.
+    """
+    if file is not None:
+        with contextlib.suppress(OSError), (folder / "wanted").open("a") as wanted:
+            wanted.write(f"{file.name}\n")
+    begun = told = time.monotonic()
+    workers: list[subprocess.Popen[bytes]] | None = None
+    while (file is None or read(file) is None) and time.monotonic() < begun + _PATIENCE:
+        if workers is not None and all(worker.poll() is not None for worker in workers):
             return
-        _log.warning("slidercrank compiles its formulas, once after installation")
-        count = (os.cpu_count() or 1) if alone else 1
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
-        command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", str(folder), package]
-        reading, writing = os.pipe()
-        started: list[subprocess.Popen[bytes]] = []
-        try:
+        if workers is None:
+            with locked(folder / "building") as lock:
+                if lock is not None:
+                    workers = _start(folder, package, lock)
+        if time.monotonic() > told + _TELL:
+            told = time.monotonic()
             with contextlib.suppress(OSError):
-                started += (subprocess.Popen(command, stdout=writing, env=environment) for _ in range(count))
-            os.close(writing)
-            _tell(reading)
-        finally:
-            for process in started:
-                process.terminate()
-                process.wait()
+                _log.warning(f"slidercrank compiles its formulas: {(folder / 'building').read_text()}")
+        time.sleep(_TICK)
 
 
-def _tell(reading: int) -> None:
-    """Tell of what the compiling processes say, until all of them have ended."""
-    told = time.monotonic()
-    done = 0
-    with open(reading) as lines:
-        for line in lines:
-            done += 1
-            name, left = line.split()
-            if time.monotonic() - told > _TELL:
-                told = time.monotonic()
-                _log.warning(f"slidercrank compiles its formulas: {done} of {left} done, the last one {name}")
+def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes]]:
+    """Start a process for each processor; they hold the lock as long as they live, and end with this one."""
+    if not sys.executable:
+        return []
+    _log.warning("slidercrank compiles its formulas, once after installation")
+    atexit.register(_end)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
+    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", str(folder), package]
+    options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+    options |= {"start_new_session": True, "pass_fds": [] if lock == _NO_LOCK else [lock]}
+    with contextlib.suppress(OSError):
+        for _ in range(1 if lock == _NO_LOCK else os.cpu_count() or 1):
+            _workers.append(subprocess.Popen(command, env=environment, **options))  # noqa: PERF401 - those that started
+    return list(_workers)
+
+
+def wanted_files(folder: Path) -> list[str]:
+    """Return the names of the files that somebody waits for, or waited for, in that order."""
+    try:
+        return (folder / "wanted").read_text().split()
+    except OSError:
+        return []
+
+
+_workers: list[subprocess.Popen[bytes]] = []
+_NO_LOCK = -1
+
+
+def _end() -> None:
+    for worker in _workers:
+        worker.terminate()
+        worker.wait()
 
 
 @contextlib.contextmanager
-def locked(file: Path, *, wait: bool) -> Iterator[bool]:
-    """Hold a lock while others do not; give whether it is held. Not held: taken, or no locks here."""
+def locked(file: Path) -> Iterator[int | None]:
+    """Take the lock of a file, and give its descriptor; None where another process has it. -1: no locks here."""
     try:
         import fcntl
 
         lock = os.open(file, os.O_CREAT | os.O_RDWR, 0o600)
     except (ImportError, OSError):
-        yield False
+        yield _NO_LOCK
         return
     try:
-        held, end = False, time.monotonic() + (_PATIENCE if wait else 0.0)
-        while not held:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                held = True
-            except BlockingIOError:
-                if time.monotonic() >= end:
-                    break
-                time.sleep(_TICK)
-        yield held
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield None
+        else:
+            yield lock
     finally:
         os.close(lock)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Callable
 from itertools import product
 from threading import Lock
@@ -36,6 +37,7 @@ _RESULTS: dict[Any, Any] = {
     NoneType: ctypes.c_void_p,
 }
 _loading = Lock()
+_AS_PYTHON = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 
 Flat = tuple[Any, ...]
 
@@ -64,6 +66,8 @@ class Kernel:
 
     def __call__(self, *values: Any) -> Any:
         """Run it. Raises `TypeError` for an argument of another type, `MemoryError` where memory is short."""
+        if _AS_PYTHON:
+            return self.function(*values)
         parameters = self._parameters or self._declared()
         variant: list[int] = []
         flat: list[Any] = []

@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept: which places are taken, which are refused, and that none is stale."""
+"""Where compiled kernels are kept: which places are taken, and which are refused."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.kernel import folder as kernel_folder
 from slidercrank.model.kernel.folder import choose_folder
 
 pytestmark = pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="caches are where Linux keeps them")
@@ -17,11 +16,9 @@ pytestmark = pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="cac
 
 @pytest.fixture
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return a home of its own, with sources and a folder for temporary files of their own."""
-    for name in ("home", "temporary", "sources"):
+    """Return a home of its own, with a folder for temporary files of its own."""
+    for name in ("home", "temporary"):
         (tmp_path / name).mkdir()
-    (tmp_path / "sources/formula.py").write_text("1.0")
-    monkeypatch.setattr(kernel_folder, "_SOURCES", tmp_path / "sources")
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
@@ -89,16 +86,3 @@ def test_a_user_without_a_home_keeps_nothing_in_the_current_folder(
     assert found.folder is not None
     assert found.folder.parent.parent == tmp_path / "temporary"
     assert list(home.iterdir()) == []
-
-
-def test_every_change_of_a_formula_has_kernels_of_its_own_and_few_old_ones_stay(home: Path, tmp_path: Path) -> None:
-    found = []
-    for value in "12345":
-        (tmp_path / "sources/formula.py").write_text(value)
-        found.append(choose_folder().folder)
-        os.utime(str(found[-1]), (int(value), int(value)))
-    assert len(set(found)) == 5
-    kept = set((home / "slidercrank").iterdir())
-    assert set(found[-3:]) == kept
-    (tmp_path / "sources/formula.py").write_text("4")
-    assert choose_folder() == (found[3], False, "")

@@ -1,0 +1,209 @@
+"""Kernels: as the Python functions they are written as, without numba, from disk, compiled once, never stale."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import SlidercrankError
+from slidercrank.model.kernel import disk
+from slidercrank.model.kernel.closure import digest
+from slidercrank.model.kernel.disk import keep, read
+from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
+from slidercrank.model.kernel.machine_code import MachineCode, load
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
+from tests.model.cases import random_designs, random_friction, random_machine
+
+SOURCE = """
+import sys
+from slidercrank.model.kernel.arithmetic import analytic
+from slidercrank.model.kernel.kernel import kernel
+
+@analytic
+def twice(x):
+    return 2.0 * x
+
+@kernel
+def four_times(x: float) -> float:
+    return twice(twice(x))
+
+if __name__ == "__main__":
+    import program
+    print(sum(program.four_times(float(x)) for x in range(3)), "numba" in sys.modules)
+"""
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> list[str]:
+    """Return a command that runs a kernel of its own."""
+    (tmp_path / "program.py").write_text(SOURCE)
+    return [sys.executable, str(tmp_path / "program.py")]
+
+
+def started(command: list[str], cache: Path) -> subprocess.Popen[str]:
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program: list[str], tmp_path: Path) -> None:
+    running = [started(program, tmp_path) for _ in range(4)]
+    said = [process.communicate() for process in running]
+    assert [process.returncode for process in running] == [0] * 4, said
+    assert {output for output, _ in said} == {"12.0 False\n"}
+    assert "".join(messages for _, messages in said) == "slidercrank compiles its formulas, once after installation\n"
+    assert len(list((tmp_path / "slidercrank/kernels").glob("program.four_times.*"))) == 2  # and a lock
+    again = started(program, tmp_path)
+    assert again.communicate() == ("12.0 False\n", "")
+
+
+def test_a_kernel_is_compiled_where_nothing_can_be_kept_and_no_process_started(
+    program: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "cache").write_text("a file")
+    (tmp_path / "home").write_text("another one")
+    environment = {"XDG_CACHE_HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path)}
+    command = ["env", *(f"{name}={value}" for name, value in environment.items()), *program]
+    found, messages = started(command, tmp_path / "cache").communicate()
+    assert found in ("12.0 True\n", "12.0 False\n")
+    assert "cannot be written" in messages
+
+
+@pytest.mark.parametrize("harm", ["cut", "a bit turned", "no head", "empty"])
+def test_a_damaged_file_counts_as_none(harm: str, tmp_path: Path) -> None:
+    file = tmp_path / "some.kernel"
+    keep(file, MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256))))
+    assert read(file) == MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256)))
+    whole = file.read_bytes()
+    turned = whole[:-7] + bytes([whole[-7] ^ 4]) + whole[-6:]
+    file.write_bytes({"cut": whole[:-1], "a bit turned": turned, "no head": whole[20:], "empty": b""}[harm])
+    assert read(file) is None
+
+
+def test_of_earlier_machine_codes_the_last_ones_stay(tmp_path: Path) -> None:
+    for number in range(12):
+        file = tmp_path / f"module.kernel.{number:02d}"
+        keep(file, MachineCode("name", (), (), b"code"))
+        os.utime(file, (number, number))
+    keep(tmp_path / "module.other.00", MachineCode("name", (), (), b"code"))
+    assert sorted(file.name for file in tmp_path.glob("module.kernel.*"))[-1] == "module.kernel.11"
+    assert len(list(tmp_path.glob("module.kernel.*"))) == disk._STATES
+    assert len(list(tmp_path.glob("*.unfinished"))) == 0
+
+
+def test_a_function_that_is_not_there_is_said_and_not_called() -> None:
+    with pytest.raises(SlidercrankError, match="no_such_function"):
+        load(MachineCode("name", (), ("sin", "no_such_function"), b""))
+
+
+def of_source(source: str) -> Kernel:
+    names: dict[str, Any] = {"kernel": kernel}
+    exec(source, names)
+    found: Kernel = names["f"]
+    KERNELS.remove(found)
+    return found
+
+
+PLAIN = """
+c = {c}
+def g(x):
+    return {inner}
+
+@kernel
+def f(x: float) -> float:
+    {comment}
+    return c * g(x) + {k}
+"""
+SAME = {"c": 2.0, "inner": "x", "comment": "y = 1", "k": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("change", "same"),
+    [
+        ({}, True),
+        ({"comment": "# a word\n\n    y = 1"}, True),
+        ({"c": 3.0}, False),
+        ({"c": -2.0}, False),
+        ({"c": "(2.0)"}, True),
+        ({"inner": "-x"}, False),
+        ({"inner": "1.0 * x"}, False),
+        ({"inner": "(lambda y: y)(x)"}, False),
+        ({"k": 1.5}, False),
+        ({"k": "-0.0"}, False),
+    ],
+)
+def test_a_digest_follows_what_a_kernel_does(change: dict[str, Any], same: bool) -> None:
+    first, second = (of_source(PLAIN.format(**given)) for given in (SAME, SAME | change))
+    digests = [digest(found.function, (0.0,)) for found in (first, second)]
+    assert (digests[0] == digests[1]) == same
+    assert digests[0] != digest(first.function, (0,))
+
+
+def test_digests_do_not_depend_on_the_process() -> None:
+    code = (
+        "import json; import slidercrank.model.signals.peaks, slidercrank.model.signals.averages;"
+        "from slidercrank.model.kernel.kernel import KERNELS; from slidercrank.model.kernel.closure import digest;"
+        "print(json.dumps({w.name: digest(w.function, w.examples) for k in KERNELS for w in k.variants().values()}))"
+    )
+    found = []
+    for seed in ("1", "2"):
+        environment = os.environ | {"PYTHONHASHSEED": seed}
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        found.append(json.loads(done.stdout))
+    assert found[0] == found[1]
+    assert len(found[0]) >= 6
+
+
+@kernel
+def _mixed(row: Row, table: Table, numbers: Integers, both: tuple[int, float], which: bool | None) -> float:
+    found = float(row[0] + table[1, 2] + numbers[1] + both[0] * both[1])
+    return found if which is None else -found
+
+
+def test_arguments_of_every_kind_arrive() -> None:
+    random = np.random.default_rng(5)
+    for _ in range(50):
+        row, table = random.normal(size=3), random.normal(size=(2, 4))
+        numbers, both = random.integers(-9, 9, 5), (int(random.integers(-9, 9)), float(random.normal()))
+        for which in (None, True, False):
+            given = (row[random.integers(0, 2) :], table, numbers, both, which)
+            assert isinstance(_mixed, Kernel)
+            assert isinstance(_mixed.function, FunctionType)
+            assert _mixed(*given) == pytest.approx(_mixed.function(*given), rel=1e-13, abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [np.zeros(3, np.float32), np.zeros((3, 1)), np.zeros(6)[::2], np.zeros(3, np.int64), np.zeros(3, complex)],
+    ids=["single", "table", "not contiguous", "integers", "complex"],
+)
+def test_an_array_of_another_kind_is_refused_and_not_read(wrong: Any) -> None:
+    with pytest.raises(TypeError, match="row must be a contiguous array of float64 in 1 dimensions"):
+        _mixed(wrong, np.zeros((2, 4)), np.zeros(2, np.int64), (1, 2.0), None)
+
+
+def test_the_peaks_of_a_machine_are_those_of_the_functions_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(11)
+    for rubbing in (False, True):
+        machine = random_machine(random)
+        if rubbing:
+            machine = type(machine)(**{**vars(machine), "friction": random_friction(random)})
+        designs = random_designs(2, seed=3, least_margin=0.5)
+        for kind in (Signal.TORQUE, Signal.SLIDER_JERK):
+            compiled = find_peaks(machine, kind, designs, gradients=True)
+            with monkeypatch.context() as patched:
+                patched.setattr("slidercrank.model.kernel.kernel._AS_PYTHON", True)
+                python = find_peaks(machine, kind, designs, gradients=True)
+            np.testing.assert_allclose(compiled.values[:, 0], python.values[:, 0], rtol=1e-12)
+            assert compiled.gradients is not None
+            assert python.gradients is not None
+            scale = np.abs(python.gradients[:, 0]).max()
+            np.testing.assert_allclose(compiled.gradients[:, 0], python.gradients[:, 0], atol=1e-9 * scale)
