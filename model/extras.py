@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, requires
 from importlib.util import find_spec
 from types import TracebackType
 from typing import Any
@@ -55,6 +54,8 @@ def is_installed(package: str) -> bool:
 
 def extra_of(package: str) -> str | None:
     """Return the extra that brings a package, by the name it is imported under; None if none does."""
+    from importlib.metadata import PackageNotFoundError, requires
+
     try:
         lines = requires("slidercrank") or []
     except PackageNotFoundError:  # the sources are used where they are, without an installation

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from ..dynamics.torque import Balance, balance
 from ..kinematics.position import motion
@@ -108,6 +107,8 @@ def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tup
     def excess(theta: Any) -> Any:
         return _excess(friction, linkage, theta, middle)
 
+    from scipy.optimize import brentq
+
     theta = a + (b - a) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _SAMPLES)))
     values = excess(theta)
     edges = [a]
@@ -153,6 +154,8 @@ def _balances(d: Design, theta: float, load: float) -> bool:
     reach = 1e6 * size
     upward = 1.0 if h(reach) > 0.0 else -1.0
     steps = np.concatenate([[0.0], np.geomspace(1e-9 * size, reach, 400)])
+    from scipy.optimize import minimize_scalar
+
     for side in (-1.0, 1.0):
         values = upward * h(-weight + side * steps)
         at = int(np.argmin(values))

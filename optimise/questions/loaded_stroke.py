@@ -12,7 +12,7 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
 from ..search.elimination import sheets
-from ..search.sampling import first_samples
+from ..search.sampling import evenly_spread
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
@@ -29,9 +29,9 @@ def expected_warnings(problem: Problem) -> list[str]:
     The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
     """
     fast, turning, sides = 0, 0, []
-    for index, sheet in enumerate(sheets(problem)[:_SHEETS]):
+    for sheet in sheets(problem)[:_SHEETS]:
         part = problem.part(sheet.variant)
-        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), 1, index))
+        designs = sheet.dimensions(evenly_spread(_SAMPLES, len(sheet.free)))
         crank, rod, offset = designs.T[:3]
         with np.errstate(invalid="ignore"):
             designs = designs[(crank > 0.0) & (rod > crank + np.abs(offset))]

@@ -49,6 +49,20 @@ def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
     return np.asarray(np.where(snapped, np.round(points), points))
 
 
+def evenly_spread(count: int, dimension: int) -> Array:
+    """Return points of the unit box (n, k), some on faces: a few to look at, without the time to import scipy.
+
+    Multiples of powers of the root of x^(k+1) = x + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
+    sequences", 2018), stretched so that the outer tenth of each coordinate on either side lies on a face.
+    """
+    root = 2.0
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (dimension + 1.0))
+    steps = root ** -np.arange(1.0, dimension + 1.0)
+    points = np.mod(0.5 + np.arange(1.0, count + 1.0)[:, None] * steps, 1.0)
+    return np.asarray(np.clip(1.25 * points - 0.125, 0.0, 1.0))
+
+
 def around(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
     """Return `count` points near parents (n, k), more near those whose neighbours on the front are far.
 

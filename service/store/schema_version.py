@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from alembic import command
-from alembic.config import Config
-from alembic.migration import MigrationContext
-from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, inspect, text
 
 from ...model.errors import StoreError
 from .database import Database
 from .schema import metadata
 
+if TYPE_CHECKING:
+    from alembic.config import Config
+    from alembic.script import ScriptDirectory
+
+LATEST = "0002"
+"""Version of the tables that this software knows, so that a store of today is opened without Alembic."""
 LOCK = 0x51C7  # PostgreSQL's advisory lock of whoever changes the tables
 
 
@@ -22,12 +25,12 @@ def upgrade(database: Database) -> None:
 
     Raises `StoreError` if they are of a later release.
     """
-    config = _config()
-    scripts = ScriptDirectory.from_config(config)
-    latest = scripts.get_current_head()
     with database.reading() as connection:
-        if _version(connection) == latest:
+        if _version(connection) == LATEST:
             return
+    from alembic import command
+
+    config, scripts = _alembic()
     with database.writing() as connection:
         if not database.sqlite:
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
@@ -41,7 +44,7 @@ def upgrade(database: Database) -> None:
         if not _knows(scripts, version):
             raise StoreError(
                 f"the tables of a store must be of this release or an earlier one; {database.name} has version "
-                f"{version}, this software knows {latest}; install the release that made it"
+                f"{version}, this software knows {LATEST}; install the release that made it"
             )
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
@@ -49,23 +52,25 @@ def upgrade(database: Database) -> None:
 
 def versions(database: Database) -> tuple[str | None, str | None, bool]:
     """Return the version of the tables, None without any, the one of this software, and whether it knows the first."""
-    scripts = ScriptDirectory.from_config(_config())
     with database.reading() as connection:
         version = _version(connection)
-    return version, scripts.get_current_head(), _knows(scripts, version)
+    return version, LATEST, version == LATEST or _knows(_alembic()[1], version)
 
 
-def _config() -> Config:
+def _alembic() -> tuple[Config, ScriptDirectory]:
+    """Return Alembic's configuration, and the scripts of all versions."""
+    from alembic.config import Config
+    from alembic.script import ScriptDirectory
+
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
-    return config
+    return config, ScriptDirectory.from_config(config)
 
 
 def strangers(database: Database) -> str:
     """Return, in words, the tables of a foreign database; an empty text for a store or an empty database."""
-    scripts = ScriptDirectory.from_config(_config())
     with database.reading() as connection:
-        return _strangers(connection, scripts)
+        return _strangers(connection, _alembic()[1])
 
 
 def _strangers(connection: Connection, scripts: ScriptDirectory) -> str:
@@ -83,4 +88,6 @@ def _knows(scripts: ScriptDirectory, version: str | None) -> bool:
 
 
 def _version(connection: Connection) -> str | None:
-    return MigrationContext.configure(connection).get_current_revision()
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()

@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from slidercrank.service.runs.result import finite, rows_from_csv
-from slidercrank.service.store import Store
+from slidercrank.service.store import Store, schema_version
 from tests.service.api.serving import client_of
 
 FOLDER = Path(__file__).parents[2] / "data" / "store_0001"
@@ -75,3 +75,8 @@ def test_a_job_of_an_old_store_without_designs_says_why(client: httpx.Client) ->
     front = client.get("/jobs/3/front").json()
     assert front["status"] == "infeasible"
     assert "peak torque at most 0.001 N m is asked" in front["message"]
+
+
+def test_the_version_that_opens_at_once_is_that_of_the_last_migration() -> None:
+    _, scripts = schema_version._alembic()
+    assert scripts.get_current_head() == schema_version.LATEST
