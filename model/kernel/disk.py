@@ -64,8 +64,7 @@ def machine_code(wanted: Wanted) -> MachineCode:
     file = wanted.file(folder)
     found = read(file)
     if found is None:
-        package = MODEL if wanted.module.startswith(f"{MODEL}.") else wanted.module
-        compile_beside(folder, package, file)
+        compile_beside(folder, ".".join(wanted.module.split(".")[:2]), file)
         found = read(file)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()

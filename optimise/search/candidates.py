@@ -175,22 +175,26 @@ class Finished(Candidates):
         )
         doubtful = self.residual > STATIONARY
         worth = ~doubtful
+        proven = values[~doubtful]
         for row in np.flatnonzero(doubtful).tolist():
             stand(0, len(values))
-            worth[row] = not _as_good(values[~doubtful], values[row], covered).any()
+            worth[row] = not _as_good(proven, values[row], covered).any()
         rows = np.flatnonzero(worth)
         rows = rows[nondominated(values[rows])]
         kept: list[int] = []
+        theirs = np.empty((len(rows), len(self.span)))
         # What is proven first, then what is best in an objective.
         scaled = values[rows] / self.span
         leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
         for done, row in enumerate(rows[order].tolist()):
             stand(done, len(rows))
-            if not _as_good(values[kept], values[row], same if free[row] else equal).any():
+            if not _as_good(theirs[: len(kept)], values[row], same if free[row] else equal).any():
+                theirs[len(kept)] = values[row]
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
-        alone = [row for row in kept if _as_good(values[kept], values[row], equal).sum() == 1]
+        theirs = theirs[: len(kept)]
+        alone = [row for row in kept if _as_good(theirs, values[row], equal).sum() == 1]
         return np.array(sorted(alone), dtype=np.int64)
 
 

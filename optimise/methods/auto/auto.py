@@ -5,11 +5,14 @@ The delivery polishes candidates, fills the gaps that they leave and chooses amo
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ....model.kernel.batches import in_chunks
+from ....model.kernel.kernel import Flags, Table, kernel
 from ...front.front import ParetoFront
 from ...front.hypervolume import Stand, choose, nondominated
 from ...front.stationarity import Array
@@ -171,11 +174,22 @@ def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[
     kept = np.zeros(len(front) + len(screened), dtype=bool)
     kept[nondominated(np.concatenate([front, screened]))] = True
     beating = np.zeros(len(screened), dtype=bool)
-    for values in front:
-        apart = screened - values
-        worst, gain = apart.max(axis=1), -apart.min(axis=1)
-        beating |= (worst <= 0.0) & (gain > _CLEAR) | (worst <= _CLEAR) & (gain > _GAIN)
+    screened, front = np.ascontiguousarray(screened), np.ascontiguousarray(front)
+    in_chunks(len(screened), lambda begin, end: _beat(screened[begin:end], front, _CLEAR, _GAIN, beating[begin:end]))
     return beating, kept[len(front) :]
+
+
+@kernel
+def _beat(screened: Table, front: Table, clear: float, gain: float, beating: Flags) -> None:
+    for i in range(screened.shape[0]):
+        for k in range(front.shape[0]):
+            worst, best, known = -np.inf, np.inf, True
+            for j in range(front.shape[1]):
+                apart = screened[i, j] - front[k, j]
+                worst, best, known = max(worst, apart), min(best, apart), known and not math.isnan(apart)
+            if known and ((worst <= 0.0 and -best > clear) or (worst <= clear and -best > gain)):
+                beating[i] = True
+                break
 
 
 def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int, stand: Stand) -> NDArray[np.int64]:

@@ -36,9 +36,10 @@ def test_processes_killed_at_random_lose_nothing(processes: Processes) -> None:
 
     def kill() -> None:
         while not over.wait(1.0 + chance.random()):
-            children = [child for child in psutil.Process().children() if "spawn_main" in " ".join(child.cmdline())]
-            if children:
-                children[-1].kill()
+            with contextlib.suppress(psutil.NoSuchProcess):  # ended since it was listed
+                children = [child for child in psutil.Process().children() if "spawn_main" in " ".join(child.cmdline())]
+                if children:
+                    children[-1].kill()
 
     killer = threading.Thread(target=kill)
     killer.start()
