@@ -1,5 +1,6 @@
 """Processes, workers and schedulers that end in the middle."""
 
+import contextlib
 import os
 import random
 import subprocess
