@@ -6,54 +6,37 @@ is compiled by the first test that needs it.
 
 from __future__ import annotations
 
-import dataclasses
 import os
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from hashlib import sha256
+from importlib.metadata import version
 from multiprocessing import get_context
+from pathlib import Path
 
-import numpy as np
+from slidercrank.model.kernel.folder import kernel_folder
 
-from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.self_locking import locking_margin
-from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.solve import solve
-from tests.model.cases import SMOOTH, random_designs, random_friction, random_machine
-from tests.optimise.problems import problem
-
-_DESIGNS = random_designs(4, seed=1, least_margin=0.5)
-_CRANK, _ROD, _OFFSET = _DESIGNS[0].tolist()
-
-
-def smooth() -> None:
-    """Evaluate every quantity of a machine without friction."""
-    for quantity in QUANTITIES.values():
-        quantity.evaluate(SMOOTH, _DESIGNS, gradients=True)
-
-
-def rubbing() -> None:
-    """Evaluate every quantity of a machine with friction."""
-    random = np.random.default_rng(9)
-    machine = dataclasses.replace(random_machine(random), friction=random_friction(random))
-    for quantity in reversed(QUANTITIES.values()):
-        quantity.evaluate(machine, _DESIGNS, gradients=True)
-    locking_margin(random_friction(random), _DESIGNS)
-    cycle(machine, Linkage(_CRANK, _ROD, _OFFSET, machine.branch), np.linspace(0.0, 6.0, 8))
-
-
-def search() -> None:
-    """Solve a small job."""
-    cycle(SMOOTH, Linkage(_CRANK, _ROD, _OFFSET, SMOOTH.branch), np.linspace(0.0, 6.0, 8))
-    solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=6, samples=128))
+PARTS = Path(__file__).with_name("kernel_parts.py")
 
 
 def main() -> None:
-    """Run them at the same time, as many as there are processors."""
-    parts: tuple[Callable[[], None], ...] = (rubbing, smooth, search)
+    """Run the parts at the same time, as many as there are processors; again only where something has changed."""
+    folder = kernel_folder()  # that of one state of the sources
+    state = f"{version('numba')} {os.environ.get('NUMBA_CPU_NAME')}".encode() + PARTS.read_bytes()
+    done = None if folder is None else folder / f"tests-{sha256(state).hexdigest()[:16]}"
+    if done is not None and done.exists():
+        return
     with ProcessPoolExecutor(os.cpu_count(), get_context("spawn")) as pool:
-        for done in [pool.submit(part) for part in parts]:
-            done.result()
+        for part in [pool.submit(run, number) for number in range(3)]:
+            part.result()
+    if done is not None:
+        done.touch()
+
+
+def run(number: int) -> None:
+    """Compile a part. Its imports take seconds, so that they come only where something is missing."""
+    from tests.kernel_parts import PARTS
+
+    PARTS[number]()
 
 
 if __name__ == "__main__":
