@@ -26,7 +26,7 @@ def greatest(curve: Curve, designs: Array, *, angles: int = _ANGLES) -> Array:
     the spacing below rounding. A jump counts with the greater of its two limits.
     """
     spacing = 2.0 * math.pi / angles
-    theta = spacing * np.arange(angles)
+    theta = spacing * np.arange(angles, dtype=np.float64)
     cells = np.empty((len(designs), _CELLS))
     for begin in range(0, len(designs), _AT_ONCE):
         swept = np.abs(curve(designs[begin : begin + _AT_ONCE, None, :], theta[None, :]))
