@@ -107,7 +107,7 @@ def test_gradient_of_the_second_piece_is_that_of_extrapolated_differences(quanti
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
 def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
     random = np.random.default_rng(5)
-    designs = random_designs(10, seed=6)
+    designs = random_designs(6, seed=6)
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(8):
         machine = random_machine(random)
@@ -147,7 +147,7 @@ def test_gradient_with_friction_is_that_of_extrapolated_differences(name: str) -
     random = np.random.default_rng(9)
     quantity = QUANTITIES[name]
     # Rods 30 % and more longer than crank + offset: none locks, nor do the displaced ones.
-    designs = random_designs(12, seed=10, least_margin=0.3)
+    designs = random_designs(8, seed=10, least_margin=0.3)
     first = 0.3 * steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(5):
         machine = dataclasses.replace(random_machine(random), friction=random_friction(random))

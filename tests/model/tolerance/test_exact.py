@@ -146,7 +146,7 @@ def test_worst_over_the_cycle_is_the_greatest_of_a_dense_sweep_of_the_window(
         machine = dataclasses.replace(
             mechanism, speed=speed, tolerances=dataclasses.replace(mechanism.tolerances, window=window)
         )
-        theta = np.linspace(0.0, 2.0 * math.pi, 20_001)
+        theta = np.linspace(0.0, 2.0 * math.pi, 5001)
         at = linkage.at(theta, speed=speed)
         low, high = np.abs(linkage.dead_centres)
         share = (np.abs(at.slider_position) - low) / (high - low)
