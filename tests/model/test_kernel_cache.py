@@ -34,7 +34,8 @@ for _ in range(3):
     if not forks[-1]:
         forks.clear()
         break
-print(sum(kernel(float(x)) for x in range(3)), sum(kernel.stats.cache_misses.values()), flush=True)
+values, missed = sum(kernel(float(x)) for x in range(3)), sum(kernel.stats.cache_misses.values())
+os.write(1, f"{values} {missed}\\n".encode())  # in one piece
 sys.exit(any([os.waitpid(fork, 0)[1] for fork in forks]))
 """
 
