@@ -11,8 +11,10 @@ settings.register_profile("fixed", deadline=None, derandomize=True)
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("fixed")
+    gc.disable()  # while objects only come
 
 
 def pytest_collection_finish() -> None:
     """Keep what was imported and collected, some 10^5 objects, out of every later search for garbage."""
     gc.freeze()
+    gc.enable()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -60,11 +61,16 @@ def angles_at(x: float, design: Array) -> list[float]:
 
 def by_quadrature(machine: Mechanism, design: Array) -> tuple[float, float]:
     points = breakpoints(machine, design)
+
+    @cache  # both integrals begin with the same angles
+    def torque(theta: float) -> float:
+        return float(drive_torque(machine, design, theta))
+
     first = second = 0.0
     for a, b in pairwise(points):
         if b - a > 1e-14:
-            first += quad(lambda t: float(drive_torque(machine, design, t)), a, b, limit=400, epsabs=1e-11)[0]
-            second += quad(lambda t: float(drive_torque(machine, design, t)) ** 2, a, b, limit=400, epsrel=1e-12)[0]
+            first += quad(torque, a, b, limit=400, epsabs=1e-11)[0]
+            second += quad(lambda t: torque(t) ** 2, a, b, limit=400, epsrel=1e-12)[0]
     return first / (2.0 * math.pi), math.sqrt(second / (2.0 * math.pi))
 
 

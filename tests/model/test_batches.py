@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import pytest
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
 HEAD = """
-    import multiprocessing, os, signal, threading
+    import json, multiprocessing, os, signal, sys, threading, traceback
     from concurrent.futures import ProcessPoolExecutor
     import numpy as np
 
@@ -25,63 +26,75 @@ HEAD = """
     crank, offset = rng.uniform(0.01, 0.1, (2, 5000))
     designs = np.stack([crank, crank + offset + rng.uniform(0.01, 0.1, 5000), offset], axis=1)
     signal.signal(signal.SIGALRM, lambda *_: os.killpg(0, signal.SIGKILL))  # a hang ends by itself, with its children
-    signal.alarm(20)
 
     def strokes(_):
         return float(evaluate_closed_form(ClosedForm.STROKE, designs)[0].sum())
+
+    told = {}
+    for name, script in json.loads(sys.argv[1]).items():
+        signal.alarm(20)
+        try:
+            exec(script)
+        except Exception:
+            told[name] = traceback.format_exc()
+        else:
+            told[name] = ""
+    print(json.dumps(told))
+"""
+# Python 3.12 and newer warn where a thread is alive while a process forks.
+ALIVE = """
+    strokes(0)
+    assert threading.active_count() > 1
+    if not os.fork():
+        os._exit(0)
+    os.wait()
+    assert counted == [1]
+"""
+POOLS = """
+    here, fork = strokes(0), multiprocessing.get_context("fork")
+    with fork.Pool(2) as pool:
+        assert pool.map_async(strokes, range(4)).get(15) == [here] * 4
+    with ProcessPoolExecutor(2, mp_context=fork) as pool:
+        assert list(pool.map(strokes, range(4), timeout=15)) == [here] * 4
+    assert strokes(0) == here
+"""
+THREADS = """
+    here, found = strokes(0), []
+    def work():
+        for _ in range(100):
+            found.append(strokes(0))
+    others = [threading.Thread(target=work) for _ in range(3)]
+    for thread in others:
+        thread.start()
+    for _ in range(10):
+        child = os.fork()
+        if not child:
+            os._exit(strokes(0) != here)
+        assert os.waitpid(child, 0)[1] == 0
+    for thread in others:
+        thread.join()
+    assert found == [here] * 300
 """
 
 
-def run(script: str) -> str:
-    command = [sys.executable, "-W", "error", "-c", dedent(HEAD) + dedent(script)]
+@pytest.fixture(scope="module")
+def told() -> dict[str, str]:
+    """Return the error of each script, nothing where there is none; one process runs them one after another."""
+    scripts = {name: dedent(script) for name, script in (("alive", ALIVE), ("pools", POOLS), ("threads", THREADS))}
+    command = [sys.executable, "-W", "error", "-c", dedent(HEAD), json.dumps(scripts)]
     done = subprocess.run(command, capture_output=True, text=True, start_new_session=True)
     assert done.returncode == 0, f"exit code {done.returncode}: {done.stderr}"
-    return done.stdout
+    found: dict[str, str] = json.loads(done.stdout)
+    return found
 
 
-def test_processes_forked_after_first_use_compute_the_same() -> None:
-    script = """
-        here, fork = strokes(0), multiprocessing.get_context("fork")
-        with fork.Pool(2) as pool:
-            assert pool.map_async(strokes, range(4)).get(15) == [here] * 4
-        with ProcessPoolExecutor(2, mp_context=fork) as pool:
-            assert list(pool.map(strokes, range(4), timeout=15)) == [here] * 4
-        assert strokes(0) == here
-        print("done")
-    """
-    assert run(script) == "done\n"
+def test_no_thread_of_the_pool_is_alive_while_a_process_forks(told: dict[str, str]) -> None:
+    assert told["alive"] == ""
 
 
-def test_no_thread_of_the_pool_is_alive_while_a_process_forks() -> None:
-    # Python 3.12 and newer warn where one is.
-    script = """
-        strokes(0)
-        assert threading.active_count() > 1
-        if not os.fork():
-            os._exit(0)
-        os.wait()
-        print(counted)
-    """
-    assert run(script) == "[1]\n"
+def test_processes_forked_after_first_use_compute_the_same(told: dict[str, str]) -> None:
+    assert told["pools"] == ""
 
 
-def test_a_fork_waits_for_the_chunks_that_other_threads_have_under_way() -> None:
-    script = """
-        here, found = strokes(0), []
-        def work():
-            for _ in range(100):
-                found.append(strokes(0))
-        others = [threading.Thread(target=work) for _ in range(3)]
-        for thread in others:
-            thread.start()
-        for _ in range(10):
-            child = os.fork()
-            if not child:
-                os._exit(strokes(0) != here)
-            assert os.waitpid(child, 0)[1] == 0
-        for thread in others:
-            thread.join()
-        assert found == [here] * 300
-        print("done")
-    """
-    assert run(script) == "done\n"
+def test_a_fork_waits_for_the_chunks_that_other_threads_have_under_way(told: dict[str, str]) -> None:
+    assert told["threads"] == ""

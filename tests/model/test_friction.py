@@ -180,10 +180,10 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
         linkage = linkage_of(design, machine.branch)
         cuts = breakpoints(machine, linkage)
+        swept = cycle(machine, linkage, spacing * np.arange(20_000))
         for kind, size in SIZES.items():
             peak = find_peaks(machine, kind, design[None], kept=1)
-            at = spacing * np.arange(20_000)
-            best = float(size(cycle(machine, linkage, at)).max())
+            best = float(size(swept).max())
             half = spacing
             for _ in range(4):  # around the peak found too: both must agree on what is highest
                 at = peak.angles[0, 0] + half * np.linspace(-1.0, 1.0, 401)

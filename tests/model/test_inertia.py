@@ -22,7 +22,7 @@ from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
 
 DESIGNS = random_designs(30, seed=101, least_margin=0.05)
-THETA = 2.0 * math.pi * np.arange(360) / 360 + 0.004
+THETA = 2.0 * math.pi * np.arange(120) / 120 + 0.004
 
 
 def machines() -> list[Mechanism]:
@@ -37,7 +37,7 @@ def curves(machine: Mechanism, design: Array) -> ShakingCurves:
 def test_shaking_is_minus_the_rate_of_change_of_momentum_and_angular_momentum() -> None:
     """Accelerations of every mass centre from its position alone, by a contour integral in complex time."""
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        force_x, force_y, moment = np.zeros(360), np.zeros(360), np.zeros(360)
+        force_x, force_y, moment = np.zeros(120), np.zeros(120), np.zeros(120)
         for part in bodies(machine, design).values():
             x, y, turn = (
                 motion_in_time(
@@ -118,7 +118,7 @@ def test_half_the_reciprocating_mass_as_counterweight_halves_the_peak_shaking_fo
 def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed() -> None:
     step = 1e-30
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        expected = np.zeros(360)
+        expected = np.zeros(120)
         for part in bodies(machine, design).values():
             x, y, turn = (f(THETA + 1j * step).imag / step for f in (part.x, part.y, part.turn))
             expected += part.mass * (x**2 + y**2) + part.inertia * turn**2

@@ -70,7 +70,7 @@ def away(gradients: Array, expected: Array) -> Array:
 
 @pytest.mark.parametrize(("quantity", "machine"), CASES)
 def test_gradient_is_that_of_extrapolated_differences(quantity: Quantity, machine: Mechanism) -> None:
-    designs = DESIGNS if machine is SMOOTH else DESIGNS[:200]  # many of which are near locking too
+    designs = DESIGNS[:300] if machine is SMOOTH else DESIGNS[:100]  # a dozen of these within 0.3 % of locking
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
     expected, _ = derivatives(function, designs, first)
@@ -91,8 +91,9 @@ def test_gradient_is_that_of_extrapolated_differences(quantity: Quantity, machin
 def test_gradient_of_the_second_piece_is_that_of_extrapolated_differences(quantity: Quantity, name: str) -> None:
     """A solver that meets a kink follows both pieces; the second one is not the greatest anywhere near."""
     machine = MACHINES[name]
-    second = np.argsort(-quantity.pieces(machine, DESIGNS).values, axis=1, kind="stable")[:, 1]
-    exists = np.isfinite(quantity.pieces(machine, DESIGNS).values[np.arange(len(DESIGNS)), second])
+    values = quantity.pieces(machine, DESIGNS).values
+    second = np.argsort(-values, axis=1, kind="stable")[:, 1]
+    exists = np.flatnonzero(np.isfinite(values[np.arange(len(DESIGNS)), second]))[:300]
     designs, second = DESIGNS[exists], second[exists]
     assert len(designs) > 100
     function, gradients = same_piece(quantity, machine, designs, second)
@@ -106,7 +107,7 @@ def test_gradient_of_the_second_piece_is_that_of_extrapolated_differences(quanti
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
 def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
     random = np.random.default_rng(5)
-    designs = random_designs(10, seed=6)
+    designs = random_designs(6, seed=6)
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(8):
         machine = random_machine(random)
@@ -123,7 +124,7 @@ def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
 @pytest.mark.parametrize(("quantity", "machine"), [case for case in CASES if "rod_to_offset" not in str(case.id)])
 def test_gradient_without_offset_is_that_towards_positive_offsets(quantity: Quantity, machine: Mechanism) -> None:
     """At e = 0 lies a kink of all that depends on |e|, and symmetric machines tie there: one-sided differences."""
-    designs = random_designs(60, seed=8) * [1.0, 1.0, 0.0]
+    designs = random_designs(30, seed=8) * [1.0, 1.0, 0.0]
     function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
     first = steps_to_the_nearest_edge(designs, kink_without_offset=False)
     gradients = quantity.evaluate(machine, designs, gradients=True).gradients
@@ -146,7 +147,7 @@ def test_gradient_with_friction_is_that_of_extrapolated_differences(name: str) -
     random = np.random.default_rng(9)
     quantity = QUANTITIES[name]
     # Rods 30 % and more longer than crank + offset: none locks, nor do the displaced ones.
-    designs = random_designs(12, seed=10, least_margin=0.3)
+    designs = random_designs(8, seed=10, least_margin=0.3)
     first = 0.3 * steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(5):
         machine = dataclasses.replace(random_machine(random), friction=random_friction(random))

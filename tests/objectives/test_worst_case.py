@@ -37,7 +37,7 @@ def worst_of_machines(
     found = value(points)
     around, best = points[np.argmax(found)], float(found.max())
     for step in range(24):
-        near = around + 0.6**step * (2.0 * cube[:256] - 1.0)
+        near = around + 0.6**step * (2.0 * cube[:64] - 1.0)
         found = value(near)
         if found.max() > best:
             around, best = np.clip(near[np.argmax(found)], -1.0, 1.0), float(found.max())

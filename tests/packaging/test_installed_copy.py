@@ -20,20 +20,34 @@ stroke = evaluate_closed_form(ClosedForm.STROKE, np.array([[0.1, 0.3, 0.0]]))[0]
 print(slidercrank.__file__, round(float(stroke[0]), 12))
 """
 
+FirstUse = tuple[Path, str, str]
+"""A copy, and what its first use put out and said."""
+
 COMPILES = "slidercrank compiles its formulas, once after installation\n"
 
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture
-def copy(tmp_path: Path, pytestconfig: pytest.Config) -> Path:
+def copied(root: Path, place: Path) -> Path:
     """Return a copy as pip would install it."""
-    root, package = pytestconfig.rootpath, tmp_path / "site/slidercrank"
+    package = place / "site/slidercrank"
     only = shutil.ignore_patterns("__pycache__")
     shutil.copytree(root / ".package/slidercrank", package, ignore=only)
     for folder in ORDER:
         shutil.copytree(root / folder, package / folder, ignore=only)
     return package
+
+
+@pytest.fixture
+def copy(tmp_path: Path, pytestconfig: pytest.Config) -> Path:
+    return copied(pytestconfig.rootpath, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def first_use(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> FirstUse:
+    """Use a copy for the first time."""
+    copy = copied(pytestconfig.rootpath, tmp_path_factory.mktemp("installed"))
+    return copy, *used(copy)
 
 
 def used(package: Path, code: str = USE, *, before: tuple[str, ...] = (), **environment: str) -> tuple[str, str]:
@@ -50,15 +64,15 @@ def used(package: Path, code: str = USE, *, before: tuple[str, ...] = (), **envi
     return done.stdout, done.stderr
 
 
-def test_nothing_is_kept_beside_the_sources_that_an_uninstallation_would_leave(copy: Path) -> None:
-    printed, said = used(copy)
+def test_nothing_is_kept_beside_the_sources_that_an_uninstallation_would_leave(first_use: FirstUse) -> None:
+    copy, printed, said = first_use
     assert printed == f"{copy / '__init__.py'} 0.2\n"
     assert said.startswith(COMPILES)
     assert {file.suffix for file in copy.rglob("__pycache__/*")} <= {".pyc"}
 
 
-def test_a_damaged_kernel_is_compiled_anew(copy: Path) -> None:
-    printed, _ = used(copy)
+def test_a_damaged_kernel_is_compiled_anew(first_use: FirstUse) -> None:
+    copy, printed, _ = first_use
     kernels = [file for file in (copy.parent.parent / "home").rglob("*kernels/*._evaluate.*") if file.stat().st_size]
     assert kernels
     for file in kernels:

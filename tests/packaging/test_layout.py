@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -23,6 +24,11 @@ SLOW = (
 @pytest.fixture(scope="module")
 def root(pytestconfig: pytest.Config) -> Path:
     return pytestconfig.rootpath
+
+
+@cache
+def import_statements(file: Path) -> list[ast.Import | ast.ImportFrom]:
+    return [node for node in ast.walk(ast.parse(file.read_bytes())) if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
 def test_listed_packages_are_the_folders_on_disk(root: Path) -> None:
@@ -76,7 +82,7 @@ def imports_within_the_project(file: Path, root: Path) -> Iterator[tuple[int, st
     Absolute imports of it are given as they are written: inside the folders none is allowed.
     """
     package = file.relative_to(root).parent.parts
-    for node in ast.walk(ast.parse(file.read_bytes())):
+    for node in import_statements(file):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if alias.name.split(".")[0] in ("slidercrank", *ORDER):
@@ -126,7 +132,7 @@ def imports_between_modules(root: Path, folder: str) -> dict[str, set[str]]:
     for module, path in files.items():
         package = path.parent.parts
         targets = found.setdefault(module, set())
-        for node in ast.walk(ast.parse((root / path).read_bytes())):
+        for node in import_statements(root / path):
             if not (isinstance(node, ast.ImportFrom) and node.level):
                 continue
             source = ".".join([*package[: len(package) + 1 - node.level], *(node.module or "").split(".")]).rstrip(".")

@@ -71,8 +71,11 @@ class Energies:
         before = self.gain(0, self.starts[0], self.starts[1]) if n else 0.0
         return np.asarray(self.torque * (theta - self.starts[0]) + before + self.gain(n, self.starts[n], theta))
 
-    def fluctuation(self, flywheel: float) -> float:
-        """Return (greatest - least speed) / (2 pi / period), infinite where the last bit of energy is too much."""
+    def fluctuation(self, flywheel: float, *, between_nodes: bool = True) -> float:
+        """Return (greatest - least speed) / (2 pi / period), infinite where the last bit of energy is too much.
+
+        Without what lies between the nodes it is the same or less.
+        """
         lows = [float(work.min()) for work in self.works]
 
         def excess(log: float) -> float:
@@ -99,6 +102,9 @@ class Energies:
             for n, angle in enumerate(self.angle):
                 values = sign * (least - min(lows) + self.works[n]) / (self.inertias[n] + flywheel)
                 i = int(np.argmin(values))
+                best = min(best, float(values[i]))
+                if not between_nodes:
+                    continue
                 around: Any = sorted((float(angle[max(i - 1, 0)]), float(angle[min(i + 1, len(angle) - 1)])))
                 found = minimize_scalar(energy, args=(n, sign), bounds=around, method="bounded", options=_FINE)
                 ends = [energy(end, n, sign) for end in self.starts[n : n + 2]]
@@ -142,7 +148,7 @@ def test_a_load_that_always_pushes_inward_needs_the_flywheel_of_the_energy_integ
 
 def test_flywheels_are_those_of_the_energy_integral_and_no_smaller_one_serves() -> None:
     rng = np.random.default_rng(12)
-    for _ in range(40):
+    for _ in range(20):
         machine, design = random_machine(rng)
         wanted = float(rng.choice([0.01, 0.02, 0.1, 0.5]))
         found = design_flywheel(machine, Linkage(*design), wanted)
@@ -152,7 +158,7 @@ def test_flywheels_are_those_of_the_energy_integral_and_no_smaller_one_serves() 
             continue
         assert energies.fluctuation(found.inertia) == pytest.approx(wanted, rel=1e-8)
         for share in (0.0, 0.3, 0.7, 0.99):
-            assert energies.fluctuation(share * found.inertia) > wanted
+            assert energies.fluctuation(share * found.inertia, between_nodes=False) > wanted
 
 
 def test_a_crank_that_nearly_stops_has_a_fluctuation_without_bound() -> None:
