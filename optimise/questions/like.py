@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ..front.front import ParetoFront
-from ..front.hypervolume import scaling
+from ..front.hypervolume import beating, scaling
 from ..front.stationarity import STATIONARY, Array
 from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings
@@ -202,9 +202,7 @@ def _ranked(finished: Finished, archive: Archive, values: Array) -> NDArray[np.i
     rows = finished.best()
     if archive.met.any():  # samples within a band around the constraints prove nothing
         own, screened = finished.values[rows] / finished.span, archive.values[archive.met] / finished.span
-        beaten = np.array(
-            [bool(((screened <= point).all(axis=1) & (screened < point - _BEATEN).any(axis=1)).any()) for point in own]
-        )
+        beaten = beating(-own, -screened, clearly=_BEATEN)
         rows = rows[~beaten] if not beaten.all() else rows
     apart = distance(finished.values[rows], values, finished.span)
     return rows[np.lexsort((apart, finished.residual[rows] > STATIONARY))]

@@ -5,16 +5,13 @@ The delivery polishes candidates, fills the gaps that they leave and chooses amo
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....model.kernel.batches import in_chunks
-from ....model.kernel.kernel import Flags, Table, kernel
 from ...front.front import ParetoFront
-from ...front.hypervolume import Stand, choose, nondominated
+from ...front.hypervolume import Stand, beating, choose, nondominated
 from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import SELECTING, assemble, span_of
@@ -142,13 +139,13 @@ def challengers(
     front = best.values / best.span
     _sample(problem, evaluators, archive, best, attempt)
     screened = archive.values / best.span
-    beating, uncovered = _against(screened, front)
+    better, uncovered = _against(screened, front)
     # Samples within a band around the constraints prove nothing.
-    rows = np.flatnonzero(beating & archive.met)[:_FILLING]
+    rows = np.flatnonzero(better & archive.met)[:_FILLING]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
     starts = archive[_few(screened, rows, front, max(wanting, 32), stand)].by_sheet(evaluators)
     if wanting > 0:
-        rows = np.flatnonzero(uncovered & ~beating)
+        rows = np.flatnonzero(uncovered & ~better)
         rows = _few(screened, rows[:: 1 + len(rows) // _FILLING], front, wanting, stand)
         starts += archive[rows].by_sheet(evaluators)
         starts += _half_way(evaluators, best, wanting)
@@ -173,23 +170,7 @@ def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[
     """Return which screened designs dominate one of the front, and which none of the front dominates."""
     kept = np.zeros(len(front) + len(screened), dtype=bool)
     kept[nondominated(np.concatenate([front, screened]))] = True
-    beating = np.zeros(len(screened), dtype=bool)
-    screened, front = np.ascontiguousarray(screened), np.ascontiguousarray(front)
-    in_chunks(len(screened), lambda begin, end: _beat(screened[begin:end], front, _CLEAR, _GAIN, beating[begin:end]))
-    return beating, kept[len(front) :]
-
-
-@kernel
-def _beat(screened: Table, front: Table, clear: float, gain: float, beating: Flags) -> None:
-    for i in range(screened.shape[0]):
-        for k in range(front.shape[0]):
-            worst, best, known = -np.inf, np.inf, True
-            for j in range(front.shape[1]):
-                apart = screened[i, j] - front[k, j]
-                worst, best, known = max(worst, apart), min(best, apart), known and not math.isnan(apart)
-            if known and ((worst <= 0.0 and -best > clear) or (worst <= clear and -best > gain)):
-                beating[i] = True
-                break
+    return beating(screened, front, clearly=_CLEAR, slightly=_GAIN), kept[len(front) :]
 
 
 def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int, stand: Stand) -> NDArray[np.int64]:
