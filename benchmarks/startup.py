@@ -1,8 +1,12 @@
-"""Time that commands take from the shell, the second time."""
+"""Processor time of commands from the shell, over that of a process that only imports NumPy, pandas and scipy.optimize.
+
+Ratios, since the speed of a machine changes by the minute; the reference is measured between the commands. The first
+use is a command with an empty folder of kernels.
+"""
 
 from __future__ import annotations
 
-import shutil
+import os
 import subprocess
 import sys
 import tempfile
@@ -11,30 +15,43 @@ from time import perf_counter
 
 from .report import Row
 
+_REFERENCE = [sys.executable, "-c", "import numpy, pandas, scipy.optimize"]
+_DESIGN = ["--crank", "60 mm", "--rod", "230 mm", "--offset", "70 mm"]
 
-def commands(repeats: int = 3) -> list[Row]:
-    """Return the wall times of `--help` and of the feeder job with figures, s; none if the command is not found."""
-    command = Path(sys.executable).with_name("slidercrank")
-    if not command.exists():
-        found = shutil.which("slidercrank")
-        if found is None:
-            return []
-        command = Path(found)
+
+def commands(repeats: int = 5) -> list[Row]:
+    """Return the ratios of commands on the feeder; none if the command is not installed beside this Python."""
+    command = str(Path(sys.executable).with_name("slidercrank"))
+    if not Path(command).exists():
+        return []
     with tempfile.TemporaryDirectory() as folder:
-        return [
-            Row("slidercrank --help, s", _times([str(command), "--help"], repeats), at_most=0.5),
-            Row(
-                "slidercrank optimise runs/feeder.toml, figures included, s",
-                _times([str(command), "optimise", "runs/feeder.toml", "--runs", folder], repeats),
-                at_most=10.0,
-            ),
+        runs = ["--runs", folder]
+        solve = [command, "optimise", "runs/feeder.toml", *runs]
+        asked = [
+            ("check", [command, "check", "runs/feeder.toml"], 0.7),
+            ("front", [command, "front", "latest", *runs], 0.7),
+            ("jobs", [command, "jobs", *runs], 0.7),
+            ("analyse", [command, "analyse", "runs/feeder.toml", *_DESIGN], 1.2),
+            ("optimise, without figures", [*solve, "--no-figures"], 2.0),
+            ("optimise, with its figures", solve, 4.0),
         ]
-
-
-def _times(command: list[str], repeats: int) -> list[float]:
-    times = []
-    for _ in range(repeats + 1):
+        _seconds(solve)  # compiles, and leaves a run for `front`
+        rows = [
+            Row(
+                f"{name}, over the reference",
+                [_seconds(line) / _seconds(_REFERENCE) for _ in range(repeats)],
+                at_most=most,
+            )
+            for name, line, most in asked
+        ]
         begin = perf_counter()
-        subprocess.run(command, check=True, capture_output=True)
-        times.append(perf_counter() - begin)
-    return times[1:]
+        _seconds([*solve, "--no-figures"], XDG_CACHE_HOME=folder, NUMBA_CACHE_DIR="")
+        return [*rows, Row("first use of optimise, compiling included, s", [perf_counter() - begin], at_most=20.0)]
+
+
+def _seconds(command: list[str], **environment: str) -> float:
+    """Return the processor time of a command and its children, s."""
+    before = os.times()
+    subprocess.run(command, check=True, capture_output=True, env=os.environ | environment)
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system

@@ -26,6 +26,8 @@ MODEL = __name__.split(".kernel.")[0]
 _PATIENCE = 300.0  # s; who compiles for longer is stopped, or gone wrong
 _TICK = 0.05  # s
 _TELL = 3.0  # s
+_SIDE_BY_SIDE = 4
+"""Compiling processes at most; each takes 200 MB."""
 _STATES = 8
 """Machine codes kept of a kernel, the latest ones: of other formulas, versions and processors."""
 
@@ -134,7 +136,7 @@ def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     options |= {"start_new_session": True, "pass_fds": [] if lock == _NO_LOCK else [lock]}
     with contextlib.suppress(OSError):
-        for _ in range(1 if lock == _NO_LOCK else os.cpu_count() or 1):
+        for _ in range(1 if lock == _NO_LOCK else min(os.cpu_count() or 1, _SIDE_BY_SIDE)):
             _workers.append(subprocess.Popen(command, env=environment, **options))  # noqa: PERF401 - those that started
     return list(_workers)
 
