@@ -47,7 +47,7 @@ def _surroundings() -> bytes:
 
     settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _PLACES)
     host = llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    own = [Path(__file__).with_name(name).read_bytes() for name in ("compiler.py", "machine_code.py")]
+    own = Path(__file__).with_name("compiler.py").read_bytes()
     return repr(
         (host, sys.version_info[:2], np.__version__, version("numba"), version("llvmlite"), settings, own)
     ).encode()

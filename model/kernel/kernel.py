@@ -6,6 +6,7 @@ import ctypes
 import os
 from collections.abc import Callable
 from itertools import product
+from struct import Struct
 from threading import Lock
 from types import NoneType, UnionType
 from typing import Annotated, Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .disk import Wanted, machine_code
-from .machine_code import load
+from .machine_code import Leaf, load
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -62,23 +63,24 @@ class Kernel:
         self.__doc__ = function.__doc__
         self._parameters: list[_Parameter] = []
         self._result: Any = None
-        self._variants: dict[tuple[int, ...], Callable[..., int]] = {}
+        self._variants: dict[tuple[int, ...], tuple[Callable[[bytes, int], int], Callable[..., bytes]]] = {}
 
     def __call__(self, *values: Any) -> Any:
         """Run it. Raises `TypeError` for an argument of another type, `MemoryError` where memory is short."""
         if _AS_PYTHON:
             return self.function(*values)
         parameters = self._parameters or self._declared()
-        variant: list[int] = []
+        variant: tuple[int, ...] = ()
         flat: list[Any] = []
         for parameter, value in zip(parameters, values, strict=True):
-            which = parameter.which(value)
-            if len(parameter.options) > 1:
-                variant.append(which)
+            which = 0
+            if parameter.several:
+                which = parameter.which(value)
+                variant += (which,)
             flat += parameter.flat[which](value)
-        run = self._variants.get(tuple(variant)) or self._load(tuple(variant))
-        result, error = self._result(), ctypes.c_void_p()
-        if run(ctypes.addressof(result), ctypes.addressof(error), *flat):
+        run, pack = self._variants.get(variant) or self._load(variant)
+        result = self._result()
+        if run(pack(*flat), ctypes.addressof(result)):
             raise MemoryError(f"not enough memory for {self.function.__qualname__}")
         return result.value
 
@@ -89,7 +91,7 @@ class Kernel:
         found = {}
         for choice in product(*(range(len(parameter.options)) for parameter in parameters)):
             both = list(zip(parameters, choice, strict=True))
-            key = tuple(which for parameter, which in both if len(parameter.options) > 1)
+            key = tuple(which for parameter, which in both if parameter.several)
             examples = tuple(_example(parameter.options[which]) for parameter, which in both)
             found[key] = Wanted("-".join([name, *map(str, key)]), self.function, examples)
         return found
@@ -101,10 +103,14 @@ class Kernel:
         self._parameters = [_Parameter(name, hint) for name, hint in hints.items()]
         return self._parameters
 
-    def _load(self, variant: tuple[int, ...]) -> Callable[..., int]:
+    def _load(self, variant: tuple[int, ...]) -> tuple[Callable[[bytes, int], int], Callable[..., bytes]]:
+        """Return the machine code of a variant, and what packs its arguments."""
         with _loading:
             if variant not in self._variants:
-                self._variants[variant] = load(machine_code(self.variants()[variant]))
+                wanted = self.variants()[variant]
+                leaves = [leaf for example in wanted.examples for leaf in _leaves(example)]
+                packed = Struct("".join("d" if leaf.type == "double" else "q" for leaf in leaves)).pack
+                self._variants[variant] = load(machine_code(wanted), leaves), packed
         return self._variants[variant]
 
 
@@ -113,13 +119,12 @@ class _Parameter:
 
     def __init__(self, name: str, hint: Any) -> None:
         self.options = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+        self.several = len(self.options) > 1
         self.flat = [_flattener(name, option) for option in self.options]
         self._types = tuple(get_origin(option) or option for option in self.options)
 
     def which(self, value: Any) -> int:
         """Return the number of the type that a value has."""
-        if len(self.options) == 1:
-            return 0
         return next((i for i, kind in enumerate(self._types) if isinstance(value, kind)), 0)
 
 
@@ -159,7 +164,7 @@ def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
         array, dimensions = get_args(kind)
         return _flat_array(name, _item(array), dimensions)
     if kind is NoneType:
-        return lambda value: (None,)
+        return lambda value: (0,)
     if kind is complex:
         return lambda value: (value.real, value.imag)
     return lambda value: (kind(value),)
@@ -186,6 +191,17 @@ def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[An
                 f"{name} must be a contiguous array of {item} in {dimensions} dimensions; "
                 f"got {value.dtype} in {value.ndim}, strides {value.strides}"
             )
-        return (None, None, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+        return (id(value),)
 
     return flat
+
+
+def _leaves(example: Any) -> list[Leaf]:
+    """Return what a value is for the machine."""
+    if isinstance(example, tuple):
+        return [leaf for member in example for leaf in _leaves(member)]
+    if isinstance(example, np.ndarray):
+        return [Leaf("ptr", example.ndim, example.itemsize)]
+    if isinstance(example, complex):
+        return [Leaf("double"), Leaf("double")]
+    return [Leaf({bool: "i8", int: "i64", float: "double", NoneType: "ptr"}[type(example)])]

@@ -3,6 +3,9 @@
 A compiled function takes the address for its result, the address for an error, and its arguments: an array as
 (nothing, nothing, size, bytes of an item, address, shape, strides), a tuple as its members one after the other. The
 arrays that a kernel allocates come from numba's runtime, a small library that needs none of the rest of numba.
+
+Python calls an entry that is made beside it. It takes all arguments in one block of 8 bytes each, of an array the
+object itself, and reads address, shape and strides from there (`PyArrayObject` of NumPy's C interface).
 """
 
 from __future__ import annotations
@@ -17,12 +20,7 @@ from typing import Any, NamedTuple
 
 from ..errors import SlidercrankError
 
-_TYPES: dict[str, Any] = {
-    "ptr": ctypes.c_void_p,
-    "i64": ctypes.c_int64,
-    "double": ctypes.c_double,
-    "i8": ctypes.c_uint8,
-}
+_SYMBOL = "slidercrank_entry"
 
 
 class MachineCode(NamedTuple):
@@ -34,10 +32,18 @@ class MachineCode(NamedTuple):
     code: bytes
 
 
-def load(found: MachineCode) -> Callable[..., int]:
-    """Return the function; it gives 0, or something else where there was no memory.
+class Leaf(NamedTuple):
+    """A number, an array or nothing in the arguments: type in the machine, dimensions and bytes of an item."""
 
-    It releases the interpreter lock. It takes the addresses of its result and of its error first.
+    type: str
+    dimensions: int = 0
+    item: int = 0
+
+
+def load(found: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
+    """Return the entry: of the block of arguments and the address for a result it gives 0, else there was no memory.
+
+    It releases the interpreter lock.
     """
     import llvmlite.binding as llvm
 
@@ -48,12 +54,56 @@ def load(found: MachineCode) -> Callable[..., int]:
             f"compiled formulas must find all functions that they call; {', '.join(missing)} is not in this process; "
             "install the versions of numba and llvmlite anew"
         )
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_entry(found, leaves)), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(found.code))
     engine.finalize_object()
     _engines.append(engine)
-    types = [ctypes.c_void_p, ctypes.c_void_p, *(_TYPES[name] for name in found.arguments)]
-    return ctypes.CFUNCTYPE(ctypes.c_int32, *types)(engine.get_function_address(found.symbol))
+    made = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_char_p, ctypes.c_void_p)
+    return made(engine.get_function_address(_SYMBOL))
+
+
+def _entry(found: MachineCode, leaves: list[Leaf]) -> str:
+    """Return the entry in LLVM's language."""
+    lines: list[str] = []
+    given: list[tuple[str, str]] = []
+
+    def read(kind: str, base: str, offset: int) -> str:
+        name = f"%v{len(lines)}"
+        lines.append(f"{name}p = getelementptr i8, ptr {base}, i64 {offset}\n  {name} = load {kind}, ptr {name}p")
+        return name
+
+    head = object.__basicsize__  # of every Python object; an array's address, dimensions, shape and strides follow
+    for number, leaf in enumerate(leaves):
+        if not leaf.item:
+            given.append((leaf.type, "null" if leaf.type == "ptr" else read(leaf.type, "%block", 8 * number)))
+            continue
+        array = read("ptr", "%block", 8 * number)
+        shape, strides = read("ptr", array, head + 16), read("ptr", array, head + 24)
+        sides = [read("i64", shape, 8 * side) for side in range(leaf.dimensions)]
+        size = sides[0]
+        for side in sides[1:]:
+            product = f"%v{len(lines)}"
+            lines.append(f"{product} = mul i64 {size}, {side}")
+            size = product
+        given += [("ptr", "null"), ("ptr", "null"), ("i64", size), ("i64", str(leaf.item))]
+        given += [("ptr", read("ptr", array, head)), *(("i64", side) for side in sides)]
+        given += [("i64", read("i64", strides, 8 * side)) for side in range(leaf.dimensions)]
+    types = tuple(kind for kind, _ in given)
+    if types != found.arguments:
+        raise SlidercrankError(f"a kernel must take what it declares, {types}; got {found.arguments}; compile it anew")
+    asked = ", ".join(f"{kind} {value}" for kind, value in given)
+    body = "\n  ".join(lines)
+    return f"""
+declare i32 @"{found.symbol}"(ptr, ptr, {", ".join(types)})
+
+define i32 @{_SYMBOL}(ptr %block, ptr %result) {{
+  %error = alloca ptr
+  store ptr null, ptr %error
+  {body}
+  %status = call i32 @"{found.symbol}"(ptr %result, ptr %error, {asked})
+  ret i32 %status
+}}
+"""
 
 
 def _machine() -> Any:

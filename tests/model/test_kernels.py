@@ -18,7 +18,7 @@ from slidercrank.model.kernel import disk
 from slidercrank.model.kernel.closure import digest
 from slidercrank.model.kernel.disk import keep, read
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
-from slidercrank.model.kernel.machine_code import MachineCode, load
+from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import random_designs, random_friction, random_machine
@@ -101,7 +101,12 @@ def test_of_earlier_machine_codes_the_last_ones_stay(tmp_path: Path) -> None:
 
 def test_a_function_that_is_not_there_is_said_and_not_called() -> None:
     with pytest.raises(SlidercrankError, match="no_such_function"):
-        load(MachineCode("name", (), ("sin", "no_such_function"), b""))
+        load(MachineCode("name", (), ("sin", "no_such_function"), b""), [])
+
+
+def test_a_kernel_that_takes_other_arguments_is_said_and_not_called() -> None:
+    with pytest.raises(SlidercrankError, match="must take what it declares"):
+        load(MachineCode("name", ("i64", "i64"), (), b""), [Leaf("double"), Leaf("i64")])
 
 
 def of_source(source: str) -> Kernel:
