@@ -10,10 +10,9 @@ from ..model.machine.dissipation import linkage_loaded, pushed
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
-from .domain import Domain
 from .kinds import RATIO
 from .needs import Need
-from .quantity import Array, Group, Pieces, Quantity, Values
+from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,9 +7,8 @@ import math
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
-from .domain import Domain
 from .kinds import AREA, LENGTH, RATIO
-from .quantity import Group
+from .quantity import Domain, Group
 from .reach import Ranges, Reach
 
 _SECTION = "2. Closed forms"

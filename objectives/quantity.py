@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.machine.mechanism import Mechanism
-from .domain import Domain
 from .kinds import Face, Kind
 from .needs import Need, Without
 from .reach import Reach
@@ -36,6 +36,28 @@ class Group(Enum):
     FORCES = "Forces"
     ACCURACY = "Accuracy"
     FURTHER = "Further quantities"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Domain:
+    """The values of a quantity that some linkage has: from lower to upper, SI.
+
+    open: whether the ends are excluded. idle: whether a least value below the domain is let pass, as it asks nothing.
+    rule, remedy: in words, for a message.
+    """
+
+    lower: float
+    upper: float = math.inf
+    open: bool = True
+    idle: bool = False
+    rule: str
+    remedy: str
+
+    def refuses(self, value: float, *, least: bool) -> bool:
+        """Return whether no linkage has a value. least: whether it is asked as a least value."""
+        if least and self.idle:
+            return False
+        return not (self.lower < value < self.upper or (not self.open and value in (self.lower, self.upper)))
 
 
 @dataclass(frozen=True)

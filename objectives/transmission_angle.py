@@ -9,9 +9,8 @@ import numpy as np
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from .closed_form import ClosedFormQuantity
-from .domain import Domain
 from .kinds import ANGLE
-from .quantity import Group
+from .quantity import Domain, Group
 from .reach import Ranges, Reach
 
 

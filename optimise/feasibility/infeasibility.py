@@ -13,7 +13,8 @@ from ..front.stationarity import Array
 from ..problem.problem import Problem, Settings
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
-from ..search.evaluation import FEASIBLE, Evaluator, Rows, constraints_of
+from ..search.evaluation import FEASIBLE, Evaluator, constraints_of
+from ..search.pieces import Rows
 from ..search.recorded import polished
 from ..search.sampling import apart, first_samples
 from .best import Best
@@ -49,8 +50,7 @@ class _Violations:
     def exact(self, u: Array) -> tuple[Rows, Rows]:
         _, limits = self.inner.exact(u)
         goals = Rows(limits.values, limits.gradients, limits.labels, np.zeros(len(limits.owner), np.int64))
-        n, k = u.shape
-        return goals, Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
+        return goals, Rows.none(*u.shape)
 
 
 def diagnose(

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..front.stationarity import Array
-from ..search.evaluation import Evaluator, Rows
-from ..search.pieces import alone, greatest
+from ..search.evaluation import Evaluator
+from ..search.pieces import Rows, alone, greatest
 
 _ABSENT = -1.0  # value of a row that a design does not have: fulfilled, without slope
 _OUT = 10.0  # violation of a point where no linkage turns fully, so that a line search turns back

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,32 +18,13 @@ from ..problem.requirements import Constraint, Objective, Range
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly
+from .pieces import Rows
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
 _HUGE = 1e100
 Side = tuple[float, float, float]
 """A side of what is asked: 1 from above or -1 from below, the bound, and the scale of what lies beyond."""
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
-
-    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
-    objective that a row belongs to.
-    """
-
-    values: Array
-    gradients: Array
-    labels: Array
-    owner: NDArray[np.int64]
-
-    def put(self, row: int, other: Rows, source: int) -> None:
-        """Overwrite a design's rows with those of a design of `other`."""
-        self.values[row] = other.values[source]
-        self.gradients[row] = other.gradients[source]
-        self.labels[row] = other.labels[source]
 
 
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
@@ -292,7 +272,7 @@ def _held(pieces: Pieces, side: float) -> Pieces:
 
 def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
     if not parts:
-        return Rows(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, dtype=np.int64))
+        return Rows.none(n, k)
     values = np.concatenate([part.values for _, part in parts], axis=1)
     return Rows(
         np.where(np.isnan(values), np.inf, values),

@@ -2,15 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..front.stationarity import Array
-from .evaluation import Rows
 
 ACTIVE = 1e-8
 """Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
 _SAME = 0.3  # labels farther apart (rad) are not the same peak
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
+
+    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
+    objective that a row belongs to.
+    """
+
+    values: Array
+    gradients: Array
+    labels: Array
+    owner: NDArray[np.int64]
+
+    @classmethod
+    def none(cls, n: int, k: int) -> Rows:
+        """Return no rows of n designs in k unknowns."""
+        return cls(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
+
+    def put(self, row: int, other: Rows, source: int) -> None:
+        """Overwrite a design's rows with those of a design of `other`."""
+        self.values[row] = other.values[source]
+        self.gradients[row] = other.gradients[source]
+        self.labels[row] = other.labels[source]
 
 
 def greatest(rows: Rows, count: int) -> Array:

@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from ..front.stationarity import Array, multipliers, strict_multipliers
 from .candidates import Polished, ragged
-from .evaluation import Rows
-from .pieces import ACTIVE, active_pieces, alone, bent, box, difference, greatest
+from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
 from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
 
 ITERATIONS = 100

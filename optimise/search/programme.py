@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..front.stationarity import Array
-from .evaluation import Rows
+from .pieces import Rows
 
 LOSS = 1e3
 """K: what an objective's loss weighs against another's gain, ranges scaled to one."""

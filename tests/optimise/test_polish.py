@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.search.evaluation import Rows
+from slidercrank.optimise.search.pieces import Rows
 from slidercrank.optimise.search.polish import polish
 
 Array = NDArray[np.float64]

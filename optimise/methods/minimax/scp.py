@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...front.stationarity import Array
-from ...search.evaluation import Rows
-from ...search.pieces import alone, bent, difference
+from ...search.pieces import Rows, alone, bent, difference
 from ...search.polish import Evaluates
 from .subproblem import Step, Subproblem
 
