@@ -23,9 +23,8 @@ from ..problem.problem import Problem
 from ..search.candidates import stacked
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.search import Archive, Run
-from .method import Method
 from .population import Brood, Generation, evolve, generation_seed
-from .registry import budget
+from .registry import Method, budget
 
 STEP = 0.3
 """First standard deviation, of the unit box: the optimum is expected within about two of the centre."""

@@ -14,8 +14,7 @@ from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
 from .local import by_slsqp, keep
-from .method import Method
-from .registry import budget
+from .registry import Method, budget
 from .scalar import Form, Programme
 
 _POPULATION = 20  # of differential evolution, members an unknown

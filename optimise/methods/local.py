@@ -16,8 +16,7 @@ from ..search.candidates import Candidates
 from ..search.evaluation import FEASIBLE, Evaluator
 from ..search.sampling import first_samples
 from ..search.search import BANDS, Archive, Run
-from .method import Method
-from .registry import budget
+from .registry import Method, budget
 from .scalar import Form, Programme
 
 SAMPLES = 16384

@@ -11,9 +11,8 @@ from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .method import Method
 from .population import Brood, Generation, evolve, generation_seed
-from .registry import budget
+from .registry import Method, budget
 
 Draw = Callable[[int, int, int], Array]
 

@@ -23,7 +23,7 @@ from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .local import by_slsqp, keep, samples, spent
-from .method import Method
+from .registry import Method
 from .scalar import Form, Programme
 
 _SUM = 1e-4

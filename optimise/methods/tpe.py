@@ -16,9 +16,8 @@ import numpy as np
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .method import Method
 from .population import Brood, Generation, evolve, generation_seed
-from .registry import budget
+from .registry import Method, budget
 from .trials import asked, new_study, quiet, space, stored
 
 BATCH = 20

@@ -20,7 +20,7 @@ from ...search.evaluation import Evaluator
 from ...search.recorded import polished, projected
 from ...search.sampling import around, first_samples, generator
 from ...search.search import FIRST, SAMPLES, WIDTHS, Archive, Run, enumerate_settled, explore, searched, share
-from ..method import Method
+from ..registry import Method
 
 ROUNDS = 4
 """Rounds of the polish: the later ones fill gaps that the first one leaves."""

@@ -33,7 +33,7 @@ from ...search.evaluation import FEASIBLE, Evaluator
 from ...search.sampling import apart, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
 from ..local import spent
-from ..method import Method
+from ..registry import Method
 from .scp import Descent
 
 STARTS = 12

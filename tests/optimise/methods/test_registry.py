@@ -16,8 +16,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job.model import Job
 from slidercrank.optimise.job.schema import schema_of
-from slidercrank.optimise.methods.method import FAMILIES, Method
-from slidercrank.optimise.methods.registry import budget, methods
+from slidercrank.optimise.methods.registry import FAMILIES, Method, budget, methods
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
