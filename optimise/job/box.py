@@ -72,11 +72,6 @@ def require_reachable(problem: Problem) -> None:
         raise JobError(f"constraints.{TIME_RATIO.name}: {wrong}")
 
 
-def greatest_within(problem: Problem, of: Quantity) -> float:
-    """Return a bound, SI, that a quantity with a reach does not exceed within the ranges."""
-    return Box.of(problem).possible(of)[1]
-
-
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
     if box.offset.upper == 0.0:

@@ -15,8 +15,8 @@ from ...objectives.time_ratio import TIME_RATIO
 from ..problem.problem import Problem
 from ..problem.requirements import Range
 from ..problem.zero_objectives import require_ranking
-from ..search.elimination import require_slow_side
-from .box import greatest_within, require_reachable
+from ..search.elimination import require_slow_side, signs
+from .box import Box, require_reachable
 
 
 def require_consistent(problem: Problem) -> None:
@@ -86,10 +86,10 @@ def require_slow_stroke(problem: Problem) -> None:
             f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
             "or leave out slow_stroke"
         )
-    sides = list(_sides(parts))
+    ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]
     narrowed = replace(
         problem,
-        offset=Range(lower=min(ends.lower for ends in sides), upper=max(ends.upper for ends in sides)),
+        offset=Range(lower=min(ends), upper=max(ends)),
         choices=(),
         variants=(),
     )
@@ -98,7 +98,7 @@ def require_slow_stroke(problem: Problem) -> None:
     except JobError as error:
         where = "above" if narrowed.offset.lower >= 0.0 else "below"
         raise JobError(f"{error}, or leave out constraints.slow_stroke, which keeps the offset {where} 0") from None
-    greatest = greatest_within(narrowed, TIME_RATIO)
+    greatest = Box.of(narrowed).possible(TIME_RATIO)[1]
     floor = TIME_RATIO.floor or 1.0
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)
@@ -107,13 +107,3 @@ def require_slow_stroke(problem: Problem) -> None:
             f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
             f"let crank or offset be greater, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"
         )
-
-
-def _sides(parts: tuple[Problem, ...]) -> Iterator[Range]:
-    """Yield the offsets of each part that has some on the side of its slow stroke."""
-    for part in parts:
-        lower, upper = part.offset.lower, part.offset.upper
-        if (part.slow_side() or 1.0) > 0.0 and upper > 0.0:
-            yield Range(lower=max(lower, 0.0), upper=upper)
-        elif (part.slow_side() or 1.0) < 0.0 and lower < 0.0:
-            yield Range(lower=lower, upper=min(upper, 0.0))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
-from ..search.elimination import sheets
+from ..search.elimination import sheets, signs
 from ..search.sampling import evenly_spread
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> NDArray[np.bool_]
 
 def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
     stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
-    has = any(_may_be_slow(part, stroke) for part in problem.parts())
+    has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
     turn = "" if has else ", with an offset of the other sign or the crank turning the other way"
     other = "inward" if stroke == "outward" else "outward"
     return (
@@ -96,9 +96,3 @@ def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
         f'require slow_stroke = "{stroke}" among the constraints{turn}; if it is meant so, require '
         f'slow_stroke = "{other}"'
     )
-
-
-def _may_be_slow(part: Problem, stroke: SlowStroke) -> bool:
-    """Whether the ranges of a part have designs with this stroke as the slow one."""
-    side = replace(part, slow_stroke=stroke).slow_side() or 1.0
-    return side * part.offset.upper > 0.0 or side * part.offset.lower > 0.0

@@ -111,14 +111,14 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     found = (
         _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
         for variant, part in enumerate(parts)
-        for sign, offset in _signs(part)
+        for sign, offset in signs(part)
     )
     return tuple(sorted(found, key=lambda sheet: not sheet.free))
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     """Raise `InputError` if a slow stroke is asked that no offset of any part's range has."""
-    if any(_signs(part) for part in parts):
+    if any(signs(part) for part in parts):
         return
     part = parts[0]
     side = part.slow_side()
@@ -133,8 +133,8 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     )
 
 
-def _signs(problem: Problem) -> list[tuple[float, Range]]:
-    """Return the signs that the offset may have, each with the range of its size."""
+def signs(problem: Problem) -> list[tuple[float, Range]]:
+    """Return the signs that the offset may have, each with the range of its size; with a slow stroke its side alone."""
     lower, upper = problem.offset.lower, problem.offset.upper
     signed = []
     if upper > 0.0 or lower == upper == 0.0:
