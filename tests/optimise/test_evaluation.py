@@ -16,13 +16,8 @@ from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import (
-    FEASIBLE,
-    Evaluator,
-    Rows,
-    constraints_of,
-    minimised,
-)
+from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
+from slidercrank.optimise.search.pieces import Rows
 from tests.optimise.independent import Array, excess, objectives, value
 from tests.optimise.problems import Bounds, degrees, problem
 
