@@ -21,7 +21,8 @@ _LEFT_OUT = ("folders",)  # where the function of an own quantity lies: a job ma
 
 
 @cache
-def _version(name: str) -> str:
+def version_of(name: str) -> str:
+    """Return the version of an installed package; "unknown" where it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -30,7 +31,7 @@ def _version(name: str) -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions of this software and of what computes its numbers."""
-    return {"python": python_version(), **{name: _version(name) for name in (*_COMPUTE, "pandas")}}
+    return {"python": python_version(), **{name: version_of(name) for name in (*_COMPUTE, "pandas")}}
 
 
 def identity_of(problem: Problem) -> Identity:
@@ -39,7 +40,7 @@ def identity_of(problem: Problem) -> Identity:
     digest = hashlib.blake2b(digest_size=16)
     for part in _parts(replace(problem, settings=settings, name="")):
         digest.update(part)
-    return Identity(digest.hexdigest(), json.dumps({name: _version(name) for name in _COMPUTE}))
+    return Identity(digest.hexdigest(), json.dumps({name: version_of(name) for name in _COMPUTE}))
 
 
 def _parts(value: Any) -> Iterator[bytes]:

@@ -215,7 +215,7 @@ def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsMode
     return RequirementsModel(
         job=found.job.id,
         number=design,
-        ranges=ranges_of(stored.part),
+        ranges={of.column: (of.lower, of.upper) for of in ranges_of(stored.part)},
         requirements=asked,
         slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),

@@ -130,14 +130,11 @@ def _topic_options(
     at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
-    options: dict[str, dict[str, Any]] = {}
-    for option, topic, given in (
-        ("--at", "polygons", at),
-        ("--limit", "tolerances", limit),
-        ("--fluctuation", "flywheel", fluctuation),
-    ):
-        if given is not None and topic not in topics:
+    given = {"--at": ("polygons", at), "--limit": ("tolerances", limit), "--fluctuation": ("flywheel", fluctuation)}
+    for option, (topic, value) in given.items():
+        if value is not None and topic not in topics:
             raise InputError(f"{option} is for --show {topic}, which is not asked for; add it or leave {option} out")
+    options: dict[str, dict[str, Any]] = {}
     if at is not None:
         options["polygons"] = {"crank_angle": value_option("--at", at, ANGLE)}
     if limit is not None:

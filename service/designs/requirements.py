@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...objectives.kinds import System, shown_in
 from ..runs.result import Cell, Row
+from .columns import DIMENSIONS
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
@@ -34,11 +36,15 @@ class Requirement:
         """The column of the distance to the nearer bound."""
         return f"slack_{self.column}"
 
-    def met(self, row: Row) -> bool:
-        """Return whether a design meets it; one without the number does not."""
-        slack = row.get(self.slack)
-        size = max(abs(self.lower or 0.0), abs(self.upper or 0.0), 1e-300)
-        return isinstance(slack, float) and slack >= -MET * size
+    def missed_by(self, row: Row) -> float | None:
+        """Return by how much a design misses it, zero where it is met; None for a design without the number."""
+        value = _number(row.get(self.column))
+        if value is None:
+            return None
+        below = 0.0 if self.lower is None else self.lower - value
+        above = 0.0 if self.upper is None else value - self.upper
+        missed = max(0.0, below, above)
+        return 0.0 if missed <= MET * max(abs(self.lower or 0.0), abs(self.upper or 0.0)) else missed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,10 +77,10 @@ def requirements_of(part: Problem) -> list[Requirement]:
     return found
 
 
-def ranges_of(part: Problem) -> dict[str, tuple[float, float]]:
-    """Return where crank, rod and offset may lie, mm, by column."""
-    dimensions = {"crank": part.crank, "rod": part.rod, "offset": part.offset}
-    return {f"{name}_mm": (1e3 * of.lower, 1e3 * of.upper) for name, of in dimensions.items()}
+def ranges_of(part: Problem) -> list[Requirement]:
+    """Return the ranges of crank, rod and offset, mm."""
+    ranges = ((name, getattr(part, name)) for name in DIMENSIONS)
+    return [Requirement(name, f"{name}_mm", name, "mm", 1e3 * of.lower, 1e3 * of.upper) for name, of in ranges]
 
 
 def names_of(part: Problem) -> dict[str, str]:
@@ -84,15 +90,9 @@ def names_of(part: Problem) -> dict[str, str]:
     return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
 
 
-def outside(part: Problem, row: Row) -> list[str]:
-    """Return the columns of crank, rod and offset that are out of their ranges."""
-    found = []
-    for column, (lower, upper) in ranges_of(part).items():
-        room = MET * max(abs(lower), abs(upper))
-        value = row[column]
-        if not isinstance(value, float) or not lower - room <= value <= upper + room:
-            found.append(column)
-    return found
+def unmet(rules: Iterable[Requirement], row: Row) -> list[str]:
+    """Return the columns of the rules that a design does not meet."""
+    return [rule.column for rule in rules if rule.missed_by(row) != 0.0]
 
 
 def speed_rpm(mechanism: Mechanism) -> float:
@@ -105,25 +105,18 @@ def judged(problem: Problem, row: Row, system: System = "metric") -> list[Judged
 
     system: of the units of the answer.
     """
-    found = []
-    for name in ("crank", "rod", "offset"):
-        column = f"{name}_mm"
-        ranges = dict.fromkeys(ranges_of(part)[column] for part in problem.parts())  # of several, where it is chosen
-        each = [_judged(Requirement(name, column, name, "mm", *ends), row[column], system) for ends in ranges]
-        found.append(min(each, key=lambda rule: rule.missed_by or 0.0))
-    return found + [_judged(rule, row.get(rule.column), system) for rule in requirements_of(problem)]
+    each = zip(*(ranges_of(part) for part in problem.parts()), strict=True)  # of several, where it is chosen
+    ranges = [min(of, key=lambda rule: rule.missed_by(row) or 0.0) for of in each]
+    return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
 
 
-def _judged(rule: Requirement, value: Cell, system: System) -> JudgedRule:
-    number = float(value) if isinstance(value, int | float) and not math.isnan(value) else None
-    missed = None
-    if number is not None:
-        below = 0.0 if rule.lower is None else rule.lower - number
-        above = 0.0 if rule.upper is None else number - rule.upper
-        missed = max(0.0, below, above)
-        if missed <= MET * max(abs(rule.lower or 0.0), abs(rule.upper or 0.0)):
-            missed = 0.0
+def _number(cell: Cell) -> float | None:
+    return float(cell) if isinstance(cell, int | float) and not math.isnan(cell) else None
+
+
+def _judged(rule: Requirement, row: Row, system: System) -> JudgedRule:
+    missed = rule.missed_by(row)
     unit, factor = shown_in(rule.unit, system)
-    told = {"lower": rule.lower, "upper": rule.upper, "value": number, "missed_by": missed}
+    told = {"lower": rule.lower, "upper": rule.upper, "value": _number(row.get(rule.column)), "missed_by": missed}
     shown = {name: None if item is None else item * factor for name, item in told.items()}
     return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **shown)

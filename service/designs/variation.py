@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...model.linkage.linkage import Linkage
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
-from .requirements import outside, requirements_of
+from .requirements import ranges_of, requirements_of, unmet
 from .stored_designs import StoredDesign
 
 if TYPE_CHECKING:
@@ -53,13 +53,12 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
     table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     row = rows_of(table.to_dict("list"))[0]
-    wanted = requirements_of(design.part)
     return Variation(
         row=row,
         linkage=design.linkage,
-        broken=[item.column for item in wanted if not item.met(row)]
+        broken=unmet(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row["slow_stroke"]) else []),
-        outside=outside(design.part, row),
+        outside=unmet(ranges_of(design.part), row),
         **_beside(result, row, minimised),
     )
 

@@ -17,6 +17,7 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ...optimise.questions.price_of_robustness import robust_cost
 from ..runs.result import Wanted, wanted_of
+from .marks import BETTER, arrowed
 from .numerals import with_unit
 from .scatter import MOST, triangle
 from .style import INK, SMALL, dress, heading, legend_at, limits, new_figure, write
@@ -35,7 +36,6 @@ _STYLES = (
 GREATEST = len(_STYLES)
 """Runs that can be told apart in one figure."""
 _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY, _NOTE = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24, 0.18  # inches
-_WORDS = {"maximise": "→ better", "minimise": "← better", "target": ""}
 
 
 @dataclass(frozen=True)
@@ -128,4 +128,4 @@ def _style(index: int) -> dict[str, Any]:
 
 def _label(wanted: Wanted) -> str:
     title = with_unit(wanted.title.removesuffix(", worst case"), wanted.unit, wanted.target)
-    return f"{title}\n{_WORDS[wanted.sense]}".rstrip()
+    return arrowed(title, BETTER[wanted.sense])

@@ -78,8 +78,7 @@ def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric"
     """Return the sheet of a design of a front. label: what it is among the others. system: of units."""
     design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))
     numbers = {str(key): value for key, value in front.designs.iloc[row].items()}
-    subtitle = f"design {row + 1} of {len(front)}"
-    return sheet_of_changed(front, design, numbers, label, system, subtitle=subtitle)
+    return sheet_of_changed(front, design, numbers, label, system, subtitle=f"design {row + 1} of {len(front)}")
 
 
 def sheet_of_changed(
@@ -98,5 +97,5 @@ def sheet_of_changed(
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     bold = {of.field: of.short_title for of in wanted}
     title = f"{front.problem.name}: {label}"
-    options: dict[str, Any] = {"title": title, "subtitle": subtitle, "bold": bold, "system": system}
-    return design_sheet(design.mechanism, design.linkage, numbers, **options)
+    mechanism, linkage = design.mechanism, design.linkage
+    return design_sheet(mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)

@@ -16,6 +16,17 @@ from ...optimise.problem.requirements import Objective
 from .numerals import with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
+BETTER = {"maximise": 1, "minimise": -1, "target": 0}
+"""The way to better values of an objective, upward positive, by its sense."""
+
+
+def arrowed(title: str, better: int) -> str:
+    """Return an axis title with the way to better values below it. better: as of `Axis`.
+
+    Also right for titles along y, which are turned: there the arrows point up and down.
+    """
+    return f"{title}\n{'→' if better > 0 else '←'} better" if better else title
+
 
 @dataclass(frozen=True)
 class Mark:
@@ -86,11 +97,10 @@ def marks(front: ParetoFront) -> list[Mark]:
 def objective_axis(front: ParetoFront, objective: Objective, system: System = "metric") -> Axis:
     """Return the axis of an objective, in the units of a system."""
     of = front.problem.quantity(objective.quantity)
-    better = {"maximise": 1, "minimise": -1, "target": 0}[objective.sense]
     symbol, factor = shown_in(of.unit.symbol, system)
     values = front.designs[of.field].to_numpy(dtype=np.float64) * factor
     target = None if objective.target is None else objective.target * of.unit.factor * factor
-    return Axis(with_unit(of.short_title, symbol, target), symbol, values, better)
+    return Axis(with_unit(of.short_title, symbol, target), symbol, values, BETTER[objective.sense])
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:

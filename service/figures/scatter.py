@@ -12,15 +12,13 @@ from matplotlib.lines import Line2D
 
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from .marks import Axis, Mark, dimension_axes, marks, objective_axis
+from .marks import Axis, Mark, arrowed, dimension_axes, marks, objective_axis
 from .style import INK, SMALL, TEXT, colours, dress, heading, legend_at, limits, new_figure, place
 
 MOST = 6
 """Objectives drawn at most: beyond, the panels are too small to read."""
 
 _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP = 0.95, 0.75, 0.7, 0.3, 0.18  # inches
-# Also right for the labels along y, which are turned: there the arrows point up and down.
-_ARROWS = {1: "→ better", -1: "← better", 0: ""}
 
 
 def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
@@ -34,7 +32,7 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
     figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
-    labels = [_label(axis) for axis in axes]
+    labels = [arrowed(axis.title, axis.better) for axis in axes]
     for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
         points = _panel(panel, axes[across], axes[up], axes[0].values, marked)
     # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
@@ -70,8 +68,8 @@ def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mar
     figure = new_figure(8.8, 5.2)
     panel = place(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
     points = _panel(panel, axes[0], axes[1], colour.values, marked)
-    panel.set_xlabel(_label(axes[0]), fontsize=TEXT)
-    panel.set_ylabel(_label(axes[1]), fontsize=TEXT)
+    panel.set_xlabel(arrowed(axes[0].title, axes[0].better), fontsize=TEXT)
+    panel.set_ylabel(arrowed(axes[1].title, axes[1].better), fontsize=TEXT)
     x, y = _LEFT + 5.2, 5.2 - _TOP
     _colour_bar(figure, points, colour.title, x, y - 0.45)
     _legend(figure, marked, x, y - 0.75)
@@ -96,11 +94,6 @@ def _panel(panel: Axes, across: Axis, up: Axis, colour: np.ndarray, marked: list
     panel.set_xlim(limits(across.values.min(), across.values.max()))
     panel.set_ylim(limits(up.values.min(), up.values.max()))
     return points
-
-
-def _label(axis: Axis) -> str:
-    arrow = _ARROWS[axis.better]
-    return f"{axis.title}\n{arrow}" if arrow else axis.title
 
 
 def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y: float) -> None:

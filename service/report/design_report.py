@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 
 from ...objectives.proportions import STROKE
+from ...optimise.search.fingerprint import version_of
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
@@ -92,7 +92,7 @@ def _versions(subject: Subject, when: str) -> Section:
             Facts(
                 (
                     ("Front computed by", (_listed(subject.versions) or "not recorded",)),
-                    ("Report drawn by", (_listed(_installed()),)),
+                    ("Report drawn by", (_listed({name: version_of(name) for name in _DREW}),)),
                     ("Made", (when,)),
                 )
             ),
@@ -107,13 +107,3 @@ def _versions(subject: Subject, when: str) -> Section:
 
 def _listed(versions: Mapping[str, str]) -> str:
     return ", ".join(f"{name} {number}" for name, number in versions.items())
-
-
-def _installed() -> dict[str, str]:
-    found = {}
-    for name in _DREW:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "unknown"
-    return found

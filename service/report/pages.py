@@ -103,22 +103,20 @@ class _Layout:
                 self.room(1.3)  # what is said of a table stays with it
             if isinstance(block, Facts):
                 self.facts(block, tail=2.0 * _TEXT * _LEADING if isinstance(after, Paragraph) else 0.0)
+            elif isinstance(block, Paragraph):
+                self.paragraph(block)
+            elif isinstance(block, Table):
+                self.table(block)
             else:
-                self.block(block)
+                self.picture(block)
 
-    def block(self, block: Paragraph | Table | Picture) -> None:
-        """Write a part of a section."""
-        if isinstance(block, Paragraph):
-            size = _SMALL + 0.4 if block.tone == "note" else _TEXT
-            text = _MARKS[block.tone] + block.text
-            self.y -= 0.03
-            bold = block.tone == "bad"
-            self.lines(wrapped(text, size, _ACROSS, bold=bold), size, ink=_INKS[block.tone], bold=bold)
-            self.y -= 0.03
-        elif isinstance(block, Table):
-            self.table(block)
-        else:
-            self.picture(block)
+    def paragraph(self, paragraph: Paragraph) -> None:
+        """Write text in the size and ink of its tone."""
+        size, bold = _SMALL + 0.4 if paragraph.tone == "note" else _TEXT, paragraph.tone == "bad"
+        self.y -= 0.03
+        text = wrapped(_MARKS[paragraph.tone] + paragraph.text, size, _ACROSS, bold=bold)
+        self.lines(text, size, ink=_INKS[paragraph.tone], bold=bold)
+        self.y -= 0.03
 
     def facts(self, facts: Facts, *, tail: float) -> None:
         """Write names with what there is to say beside them. tail: inches of what stays with the last of them."""
