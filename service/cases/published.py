@@ -7,6 +7,7 @@ the project, in `why`; whether it is confirmed is decided here and nowhere else.
 
 from __future__ import annotations
 
+import csv
 import math
 import tomllib
 from collections.abc import Mapping
@@ -68,8 +69,6 @@ def read_case(number: int, numbers: Numbers) -> Case:
 
 def read_table(name: str) -> list[dict[str, str]]:
     """Return the rows of a printed table, every cell as printed."""
-    import csv
-
     text = files(__package__).joinpath("data", name).read_text(encoding="utf-8")
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 

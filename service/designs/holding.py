@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,8 +27,6 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
     equalities, halved while the linkage would not turn fully. Raises `InputError` where it finds none.
     """
-    import numpy as np
-
     part = design.part
     equal = [constraint for constraint in part.constraints if constraint.equality]
     place = _LENGTHS.index(moved)
@@ -56,8 +56,6 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
 
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
     """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
-    import numpy as np
-
     misses, slopes, sizes = [], [], []
     for constraint in equal:
         target = float(constraint.lower or 0.0)

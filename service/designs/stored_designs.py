@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...model.errors import RunError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
@@ -64,7 +66,6 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, of the slopes at the designs nothing is known."""
-    import numpy as np
     import pandas as pd
 
     from ...optimise.front.front import ParetoFront
@@ -92,8 +93,6 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
 
 def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
     """Return the designs as their shown rows tell them: everything but slopes, which have no piece and no unknown."""
-    import numpy as np
-
     sizes = _factors(problem.mechanism)
     dimensions = [_values(row, sizes) for row in rows]
     variants = [_variant(problem, *of) for of in zip(rows, dimensions, strict=True)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,8 +27,6 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     Raises `InputError` where there are no such rates: a single
     objective, an objective without gradient, a design that does not meet its constraints.
     """
-    import numpy as np
-
     from ...optimise.front.hypervolume import scaling
     from ...optimise.search.elimination import sheets
     from ...optimise.search.evaluation import Evaluator
@@ -61,8 +61,6 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
 
 def _point(sheet: Sheet, values: Array) -> Array | None:
     """Return the point of the unit box that gives a design, None if no point of the sheet does."""
-    import numpy as np
-
     if values[2] * sheet.sign < 0.0:
         return None
     sizes = np.abs(values)

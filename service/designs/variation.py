@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...model.linkage.linkage import Linkage
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
@@ -47,8 +49,6 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
     minimised: of `minimised_values(result)`, so that it is made once for many.
     """
-    import numpy as np
-
     from ...optimise.search.assemble import table_of
 
     table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
@@ -65,8 +65,6 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
 def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
-    import numpy as np
-
     from ...optimise.front.constant import spread
 
     own = minimised_values(replace(result, designs=[row], exact=None))[0]

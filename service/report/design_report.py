@@ -54,16 +54,19 @@ def _summary(subject: Subject) -> Section:
     chosen = [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")]
     if chosen:
         rows.append(("Choices", tuple(chosen)))
-    if subject.changed is not None:
-        rows.append(("What it is", tuple(_changed(subject, subject.changed))))
-        return Section("Summary", (Facts(tuple(rows)),))
+    words = _marked(subject) if subject.changed is None else _changed(subject, subject.changed)
+    if words:
+        rows.append(("What it is", tuple(words)))
+    return Section("Summary", (Facts(tuple(rows)),))
+
+
+def _marked(subject: Subject) -> list[str]:
+    """Return what a design of the front is the best in."""
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
     words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
         words.append("knee of the front: the nearest to the best values of all objectives")
-    if words:
-        rows.append(("What it is", tuple(words)))
-    return Section("Summary", (Facts(tuple(rows)),))
+    return words
 
 
 def _changed(subject: Subject, changed: Variation) -> list[str]:
@@ -86,23 +89,16 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
 
 
 def _versions(subject: Subject, when: str) -> Section:
-    return Section(
-        "How this was made",
-        (
-            Facts(
-                (
-                    ("Front computed by", (_listed(subject.versions) or "not recorded",)),
-                    ("Report drawn by", (_listed({name: version_of(name) for name in _DREW}),)),
-                    ("Made", (when,)),
-                )
-            ),
-            Paragraph(
-                "Crank angles are counter-clockwise from the slider line's direction; signs and formulas are those of "
-                "the theory that comes with slidercrank.",
-                "note",
-            ),
-        ),
+    rows = (
+        ("Front computed by", (_listed(subject.versions) or "not recorded",)),
+        ("Report drawn by", (_listed({name: version_of(name) for name in _DREW}),)),
+        ("Made", (when,)),
     )
+    note = (
+        "Crank angles are counter-clockwise from the slider line's direction; signs and formulas are those of "
+        "the theory that comes with slidercrank."
+    )
+    return Section("How this was made", (Facts(rows), Paragraph(note, "note")))
 
 
 def _listed(versions: Mapping[str, str]) -> str:

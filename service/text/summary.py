@@ -11,6 +11,7 @@ from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.varying import Varying
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
+from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
@@ -161,8 +162,6 @@ def _lengths(problem: Problem, name: str) -> str:
 
 
 def _varying(item: Varying) -> str:
-    from ...objectives.tables.varying_column import varying_column
-
     unit = varying_column(item)[1]
     ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()
     return f"{item.name} {ends}"
