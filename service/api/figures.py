@@ -124,9 +124,6 @@ def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
 
 
 def _sheet(shown: ShownDesign, units: System) -> Figure:
-    from ..figures.front import sheet_of, sheet_of_changed
+    from ..figures.front import sheet_of
 
-    variation, front = shown.variation(), shown.found.front
-    if variation is None:
-        return sheet_of(front, shown.number - 1, shown.words, units)
-    return sheet_of_changed(front, shown.design, variation.row, shown.words, units)
+    return sheet_of(shown.found.front, shown.number - 1, shown.words, units, shown.variation())

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...model.linkage.linkage import Linkage
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
 from .requirements import ranges_of, requirements_of, unmet
@@ -30,7 +29,7 @@ class Variation:
     """
 
     row: Row
-    linkage: Linkage
+    design: StoredDesign
     broken: list[str]
     outside: list[str]
     dominated_by: list[int]
@@ -55,7 +54,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
     row = rows_of(table.to_dict("list"))[0]
     return Variation(
         row=row,
-        linkage=design.linkage,
+        design=design,
         broken=unmet(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row["slow_stroke"]) else []),
         outside=unmet(ranges_of(design.part), row),

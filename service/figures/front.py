@@ -15,6 +15,7 @@ from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..designs.stored_designs import StoredDesign
+from ..designs.variation import Variation
 from .comparison import robustness_figure
 from .marks import marks
 from .parallel import parallel_coordinates
@@ -74,28 +75,20 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
             yield folder / "robust.png"
 
 
-def sheet_of(front: ParetoFront, row: int, label: str, system: System = "metric") -> Figure:
-    """Return the sheet of a design of a front. label: what it is among the others. system: of units."""
-    design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))
-    numbers = {str(key): value for key, value in front.designs.iloc[row].items()}
-    return sheet_of_changed(front, design, numbers, label, system, subtitle=f"design {row + 1} of {len(front)}")
-
-
-def sheet_of_changed(
-    front: ParetoFront,
-    design: StoredDesign,
-    numbers: Mapping[str, Any],
-    label: str,
-    system: System = "metric",
-    *,
-    subtitle: str = "other lengths than those found",
+def sheet_of(
+    front: ParetoFront, row: int, label: str, system: System = "metric", changed: Variation | None = None
 ) -> Figure:
-    """Return the sheet of a design, of other lengths than any of the front unless `subtitle` says what it is.
+    """Return the sheet of a design of a front. label: what it is among the others. system: of units.
 
-    numbers: its row of a table of designs, metric. system: of the units that the sheet shows.
+    changed: the design with other lengths, if it has others.
     """
+    if changed is None:
+        design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))
+        numbers: Mapping[str, Any] = {str(key): value for key, value in front.designs.iloc[row].items()}
+        subtitle = f"design {row + 1} of {len(front)}"
+    else:
+        design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     bold = {of.field: of.short_title for of in wanted}
-    title = f"{front.problem.name}: {label}"
-    mechanism, linkage = design.mechanism, design.linkage
-    return design_sheet(mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)
+    title, linkage = f"{front.problem.name}: {label}", design.linkage
+    return design_sheet(design.mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)

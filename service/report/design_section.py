@@ -12,7 +12,7 @@ from ...objectives.kinds import unit_text
 from ..designs.columns import Column, find_column
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.linkage_drawing import linkage_drawing
-from ..figures.front import sheet_of, sheet_of_changed
+from ..figures.front import sheet_of
 from ..figures.numerals import as_stored, rounded
 from ..figures.painting import drawing_figure
 from .document import Block, Paragraph, Picture, Section, Table
@@ -137,6 +137,5 @@ def _drawing(subject: Subject) -> Figure:
 
 
 def _sheet(subject: Subject) -> Figure:
-    if subject.changed is None:
-        return sheet_of(subject.front, subject.number - 1, "the chosen design", subject.system)
-    return sheet_of_changed(subject.front, subject.design, subject.changed.row, subject.label, subject.system)
+    label = "the chosen design" if subject.changed is None else subject.label
+    return sheet_of(subject.front, subject.number - 1, label, subject.system, subject.changed)

@@ -11,7 +11,7 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.shown_units import result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.variation import Variation, with_lengths
+from ..designs.variation import Variation
 from ..runs.result import Result, Row
 
 
@@ -70,17 +70,13 @@ def subject_of(
 
     Raises `RunError` for a design that does not belong to the problem.
     """
-    design = stored_design(problem, result, number)
-    if changed is not None:
-        linkage = changed.linkage
-        design = with_lengths(design, (float(linkage.crank), float(linkage.rod), float(linkage.offset)))
     return Subject(
         result=result_in(result, system),
         number=number,
         run=run,
         problem=problem,
         front=front_of(problem, result) if front is None else front,
-        design=design,
+        design=stored_design(problem, result, number) if changed is None else changed.design,
         versions=versions,
         certificate=certificate,
         changed=changed,
