@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -102,7 +103,6 @@ def analyse(
             cancelled=interruption.asked,
             lenient=ALL in (show or ()),
         )
-    told = [topic for topic in found.topics if topic.name in found.found]
     rules = [] if problem is None else judged(problem, row, units)
     if json:
         record = record_in(found.record(), units)
@@ -113,15 +113,15 @@ def analyse(
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
-        if told and units != "metric":
+        if found.topics and units != "metric":
             screen.print("\nTopics are told in metric units; --json has them in those asked for.", style="dim")
-        for topic in told:
+        for topic in found.topics:
             screen.print()
             topic.show(screen, found.found[topic.name])
     for note in found.notes:
         say(note)
     if figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, told, figures, units)
+        _draw(problem, mechanism, linkage, row, found.topics, figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
 
@@ -149,7 +149,7 @@ def _draw(
     mechanism: Mechanism,
     linkage: Linkage,
     row: Row,
-    topics: list[TopicOfDesign],
+    topics: Sequence[TopicOfDesign],
     folder: Path,
     units: System,
 ) -> None:

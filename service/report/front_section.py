@@ -40,20 +40,11 @@ def _ranges(subject: Subject) -> Table:
         best, worst = ranked[0][wanted.column], ranked[-1][wanted.column]
         value = subject.row[wanted.column]
         place = 1 + sum(wanted.rank(row) < wanted.rank(subject.row) for row in ranked)
-        numbers = (rounded(value), rounded(best), rounded(worst))
-        rows.append(
-            (
-                wanted.title,
-                _sense(wanted),
-                *numbers,
-                unit_text(wanted.unit),
-                f"{place} of {len(ranked) + (subject.changed is not None)}",
-            )
-        )
+        rank = f"{place} of {len(ranked) + (subject.changed is not None)}"
+        numbers = (rounded(value), rounded(best), rounded(worst), unit_text(wanted.unit), rank)
+        rows.append((wanted.title, _sense(wanted), *numbers))
     return Table(
-        f"Objectives: {subject.label}, within the front"
-        if subject.changed
-        else f"Objectives: {subject.label} within the front",
+        f"Objectives: {subject.label}{',' if subject.changed else ''} within the front",
         ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
         tuple(rows),
         (0.29, 0.13, 0.13, 0.12, 0.12, 0.08, 0.13),

@@ -69,4 +69,4 @@ def analysis_of(
             if not lenient:
                 raise
             said.append(f"{topic.name}: {error}")
-    return Analysis(row, found, design, said)
+    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said)
