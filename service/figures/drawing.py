@@ -14,7 +14,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ..drawings.parts import Look, look_of, moving, pins_at, scenery
 from ..drawings.shapes import Point
-from .numerals import shown
+from .numerals import length, shown
 from .painting import paint, show_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
@@ -94,7 +94,7 @@ def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
     for x in (inner, outer):
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _arrow(axes, (inner, y), (outer, y))
-    text, middle = f"stroke {_length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
+    text, middle = f"stroke {length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
     _tell(axes, text, middle, (0, 3.0 * side), BLUE, ha="center", va="bottom" if side > 0.0 else "top")
 
 
@@ -104,13 +104,8 @@ def _offset(axes: Axes, left: float, e: float, size: float, system: System) -> N
         return
     x = left - 0.045 * size
     _arrow(axes, (x, 0.0), (x, e))
-    text = f"offset {_length(e, system)}"
+    text = f"offset {length(e, system)}"
     _tell(axes, text, (x, 0.5 * e), (-3.0, 0.0), BLUE, ha="right", va="center", rotation=90)
-
-
-def _length(millimetres: float, system: System) -> str:
-    unit, factor = shown_in("mm", system)
-    return f"{shown(millimetres * factor)} {unit}"
 
 
 def _arrow(axes: Axes, start: Point, end: Point) -> None:

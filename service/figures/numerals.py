@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import System, shown_in, unit_text
 from ..runs.result import Cell
 
 
@@ -44,6 +44,12 @@ def as_stored(cell: Cell) -> str:
     if cell is None or isinstance(cell, str) or math.isnan(cell):
         return ""
     return repr(cell)
+
+
+def length(millimetres: float, system: System, digits: int = 4) -> str:
+    """Return a length, mm, for people in the unit of a system."""
+    unit, factor = shown_in("mm", system)
+    return f"{shown(millimetres * factor, digits)} {unit}"
 
 
 def measured(cell: Cell, unit: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
-from ..figures.numerals import measured, rounded
+from ..figures.numerals import length, rounded
 from ..topics.sensitivity.figure import tornado_figure, tornado_rows
 from ..topics.tolerances.analysis import numbers
 from ..topics.tolerances.figure import error_bands, tolerances_figure
@@ -47,12 +47,12 @@ def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str,
         size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
         if size is None:
             return "not defined: a linkage within the tolerances does not turn fully"
-        return f"{_length(size, system)} at {rounded(angle)} deg"
+        return f"{length(size, system, 6)} at {rounded(angle)} deg"
 
     spread = found["monte_carlo"]["percentiles_greatest_mm"]
-    percents = tuple(f"{percent} % within {_length(value, system)}" for percent, value in spread.items())
+    percents = tuple(f"{percent} % within {length(value, system, 6)}" for percent, value in spread.items())
     yields = tuple(
-        f"{rounded(item['yield_percent'])} % within {_length(item['limit_mm'], system)} ({item['limit']})"
+        f"{rounded(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
         for item in found["yields"]
     )
     return (
@@ -64,17 +64,12 @@ def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str,
     )
 
 
-def _length(millimetres: float, system: System) -> str:
-    unit, factor = shown_in("mm", system)
-    return measured(millimetres * factor, unit)
-
-
 def _sources(found: dict[str, Any], system: System) -> Table:
     unit, factor = shown_in("mm", system)
     rows = tuple(
         (
             str(row["source"]),
-            f"{rounded(row['limit_deg'])} deg" if row["limit_mm"] is None else _length(row["limit_mm"], system),
+            f"{rounded(row['limit_deg'])} deg" if row["limit_mm"] is None else length(row["limit_mm"], system, 6),
             rounded(row["contribution_mm"] * factor),
             f"{row['share_of_worst_case_percent']:.1f}",
             f"{row['share_of_variance_percent']:.1f}",
