@@ -199,7 +199,7 @@ def test_records_of_another_job_method_or_seed_are_refused() -> None:
 
 def test_records_of_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     _, records, _, _ = whole("random")
-    monkeypatch.setattr(identity, "_version", lambda name: "0.0.1" if name == "numpy" else "9")
+    monkeypatch.setattr(identity, "version_of", lambda name: "0.0.1" if name == "numpy" else "9")
     with pytest.raises(ForeignRecords, match=r"only with the versions .* install those, or start the run anew"):
         solve(asked("random"), resume=records)
 
