@@ -30,7 +30,7 @@ def commands(repeats: int = 5) -> list[Row]:
         asked = [
             ("check", [command, "check", "runs/feeder.toml"], 0.7),
             ("front", [command, "front", "latest", *runs], 0.7),
-            ("jobs", [command, "jobs", *runs], 0.7),
+            ("jobs", [command, "jobs", "--store", f"{folder}/slidercrank.db"], 0.7),
             ("analyse", [command, "analyse", "runs/feeder.toml", *_DESIGN], 1.2),
             ("optimise, without figures", [*solve, "--no-figures"], 2.0),
             ("optimise, with its figures", solve, 4.0),

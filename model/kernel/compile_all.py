@@ -9,7 +9,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from .disk import MODEL, compile_beside, keep, locked, read, wanted_files
+from .disk import MODEL, building, compile_beside, keep, locked, read, wanted_files
 from .folder import kernel_folder
 from .kernel import KERNELS
 
@@ -17,27 +17,28 @@ from .kernel import KERNELS
 def compile_missing(folder: Path, package: str) -> None:
     """Compile the kernels of a package, or module, that are missing and that no other process is at.
 
-    What somebody waits for comes first, then what else a machine of that kind needs. How far it is stands in the file
-    "building".
+    What somebody waits for comes first, then what else a machine of that kind needs. How far it is stands in the
+    file of `building`.
     """
     module = import_module(package)
     for found in pkgutil.walk_packages(getattr(module, "__path__", []), f"{package}."):
         import_module(found.name)
     asked = [kernel for kernel in KERNELS if kernel.function.__module__.startswith(package)]
     tasks = [(wanted, wanted.file(folder)) for kernel in asked for wanted in kernel.variants().values()]
-    tasks.sort(key=lambda task: len(task[0].function.__code__.co_code))
+    # First variants before second ones, and of these what takes long.
+    tasks.sort(key=lambda task: (task[0].name.count("-1"), -len(task[0].function.__code__.co_code)))
     count, parent = len(tasks), os.getppid()
     while tasks and os.getppid() == parent:  # it may have been killed
         names = wanted_files(folder)
-        kinds = [name.rpartition(".")[0][-2:] for name in names]
-        kind = next((kind for kind in reversed(kinds) if kind.startswith("-")), "")
-        wanted, file = min(tasks, key=lambda task: (task[1].name not in names, not task[0].name.endswith(kind)))
+        variants = [name.rpartition(".")[0][-2:] for name in names]
+        others = {"-0", "-1"} - {next((each for each in reversed(variants) if each.startswith("-")), "-0")}
+        wanted, file = min(tasks, key=lambda task: (task[1].name not in names, task[0].name[-2:] in others))
         tasks.remove((wanted, file))
         with locked(file.with_suffix(".lock")) as lock:
             if lock is not None and read(file) is None:
                 with contextlib.suppress(OSError):
                     progress = f"{count - len(tasks)} of {count}, {wanted.name.rpartition('.')[2]}"
-                    (folder / "building").write_text(progress)
+                    building(folder, package).write_text(progress)
                 keep(file, wanted.compile())
 
 

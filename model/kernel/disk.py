@@ -115,13 +115,13 @@ def compile_beside(folder: Path, package: str, file: Path | None = None) -> None
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
-            with locked(folder / "building") as lock:
+            with locked(building(folder, package)) as lock:
                 if lock is not None:
                     workers = _start(folder, package, lock)
         if time.monotonic() > told + _TELL:
             told = time.monotonic()
             with contextlib.suppress(OSError):
-                _log.warning(f"slidercrank compiles its formulas: {(folder / 'building').read_text()}")
+                _log.warning(f"slidercrank compiles its formulas: {building(folder, package).read_text()}")
         time.sleep(_TICK)
 
 
@@ -139,6 +139,11 @@ def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes
         for _ in range(1 if lock == _NO_LOCK else min(os.cpu_count() or 1, _SIDE_BY_SIDE)):
             _workers.append(subprocess.Popen(command, env=environment, **options))  # noqa: PERF401 - those that started
     return list(_workers)
+
+
+def building(folder: Path, package: str) -> Path:
+    """Return the file that is locked while a package's kernels are compiled, and that says how far that is."""
+    return folder / f"{package}.building"
 
 
 def wanted_files(folder: Path) -> list[str]:

@@ -118,7 +118,8 @@ class _Parameter:
     """A parameter of a kernel: the types it may have, and how a value of each is handed over."""
 
     def __init__(self, name: str, hint: Any) -> None:
-        self.options = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+        options = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+        self.options = tuple(sorted(options, key=lambda option: option is not NoneType))
         self.several = len(self.options) > 1
         self.flat = [_flattener(name, option) for option in self.options]
         self._types = tuple(get_origin(option) or option for option in self.options)
