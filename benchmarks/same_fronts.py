@@ -8,6 +8,7 @@ Prints a line for each job that differs and a summary; ends with 1 where one dif
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import json
 import os
@@ -138,7 +139,11 @@ def fronts(checkout: Path, asked: Mapping[str, Table]) -> dict[str, Table]:
 
 def main() -> int:
     """Compare and print; return 1 where a front differs."""
-    here, other = Path.cwd(), Path(sys.argv[1]).absolute()
+    parser = argparse.ArgumentParser(description="Fronts of two checkouts compared bit for bit.")
+    parser.add_argument("other", type=Path, help="a checkout with an installed .venv; this one is the current folder")
+    here, other = Path.cwd(), parser.parse_args().other.absolute()
+    if not (other / ".venv/bin/python").exists():
+        parser.error(f"a checkout to compare with must have an installed .venv; {other} has none; run make run in it")
     asked = jobs(here)
     ours, theirs = fronts(here, asked), fronts(other, asked)
     extra: set[str] = set()
