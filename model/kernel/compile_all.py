@@ -1,4 +1,4 @@
-"""All kernels of the model, compiled: `python -m slidercrank.model.kernel.compile_all`."""
+"""Kernels of packages, compiled: `python -m slidercrank.model.kernel.compile_all [PACKAGE...]`; else the model's."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from .disk import MODEL, building, compile_beside, keep, locked, read, wanted_files
+from .disk import INTO, MODEL, building, compile_beside, keep, locked, read, wanted_files
 from .folder import kernel_folder
 from .kernel import KERNELS
 
@@ -43,7 +43,8 @@ def compile_missing(folder: Path, package: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        compile_missing(Path(sys.argv[1]), sys.argv[2])
+    if sys.argv[1:2] == [INTO]:
+        compile_missing(Path(sys.argv[2]), sys.argv[3])
     elif (place := kernel_folder()) is not None:
-        compile_beside(place, MODEL)
+        for name in sys.argv[1:] or [MODEL]:
+            compile_beside(place, name)

@@ -14,6 +14,7 @@ import uuid
 from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
+from threading import Thread
 from typing import Any, NamedTuple
 
 from .closure import digest
@@ -23,6 +24,8 @@ from .machine_code import MachineCode
 _log = logging.getLogger(__name__)
 
 MODEL = __name__.split(".kernel.")[0]
+INTO = "--into"
+"""Option of the compiling processes, before their folder."""
 _PATIENCE = 300.0  # s; who compiles for longer is stopped, or gone wrong
 _TICK = 0.05  # s
 _TELL = 3.0  # s
@@ -130,15 +133,17 @@ def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes
     if not sys.executable:
         return []
     _log.warning("slidercrank compiles its formulas, once after installation")
-    atexit.register(_end)
+    started: list[subprocess.Popen[bytes]] = []
+    atexit.register(_end, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
-    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", str(folder), package]
+    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), package]
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     options |= {"start_new_session": True, "pass_fds": [] if lock == _NO_LOCK else [lock]}
     with contextlib.suppress(OSError):
         for _ in range(1 if lock == _NO_LOCK else min(os.cpu_count() or 1, _SIDE_BY_SIDE)):
-            _workers.append(subprocess.Popen(command, env=environment, **options))  # noqa: PERF401 - those that started
-    return list(_workers)
+            started.append(subprocess.Popen(command, env=environment, **options))
+            Thread(target=started[-1].wait, daemon=True).start()  # so that it is gone when it has ended
+    return started
 
 
 def building(folder: Path, package: str) -> Path:
@@ -154,14 +159,14 @@ def wanted_files(folder: Path) -> list[str]:
         return []
 
 
-_workers: list[subprocess.Popen[bytes]] = []
 _NO_LOCK = -1
 
 
-def _end() -> None:
-    for worker in _workers:
-        worker.terminate()
-        worker.wait()
+def _end(started: list[subprocess.Popen[bytes]], owner: int) -> None:
+    if os.getpid() == owner:  # and no fork of it
+        for worker in started:
+            worker.terminate()
+            worker.wait()
 
 
 @contextlib.contextmanager

@@ -70,8 +70,17 @@ def worker(tmp_path: Path) -> Callable[[str], Worker]:
 
 
 def functions(of: int) -> list[psutil.Process]:
-    """Return the processes below another one, guards included."""
-    return psutil.Process(of).children(recursive=True)
+    """Return the processes below another one, guards included, but for those that compile kernels."""
+    found = psutil.Process(of).children(recursive=True)
+    return [each for each in found if not any("compile_all" in word for word in command_of(each))]
+
+
+def command_of(process: psutil.Process) -> list[str]:
+    """Return the command line of a process, empty for one that has ended."""
+    try:
+        return process.cmdline()
+    except psutil.NoSuchProcess:
+        return []
 
 
 def gone(processes: list[psutil.Process], within: float = 5.0) -> bool:
