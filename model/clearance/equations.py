@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.segments import find_pieces, load_on_slider, with_formulas
-from ..kernel.arithmetic import inlined
+from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
 from ..machine.design import design_at
@@ -100,7 +100,7 @@ class Contact(NamedTuple):
     lost: Any
 
 
-@inlined
+@analytic
 def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
     """Return where the linkage is, from the two components of the gap and of its derivative."""
     theta = s.start + s.speed * time
@@ -113,7 +113,7 @@ def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
     return Place(crank, complex(along, across) / s.l, x, x_t, rod_t)
 
 
-@inlined
+@analytic
 def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) -> Contact:
     """Return the contact. rate: h / d'_0, s/m; negative while the journal is in free flight."""
     distance = abs(gap)
@@ -143,7 +143,7 @@ def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) ->
     )
 
 
-@inlined
+@analytic
 def accelerate(
     p: Place, force: complex, on_crank: float, on_rod: float, load: float, s: System
 ) -> tuple[complex, float, float]:
@@ -168,7 +168,7 @@ def accelerate(
     return gap_tt, x_tt, torque
 
 
-@inlined
+@analytic
 def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, loads: Any) -> float:
     """Return the loads on the slider at its actual position and velocity, along x."""
     d = design_at(block, 0)

@@ -65,7 +65,7 @@ def _curves(
     speeds: Row,
     accelerations: Row,
     out: Table,
-    rubbing: bool | None,
+    rubbing: bool,
 ) -> None:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
@@ -131,16 +131,17 @@ def cycle(
 
 
 @kernel
-def _breakpoints(raw: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool | None) -> int:
+def _breakpoints(raw: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool) -> int:
     block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     derive(raw, loads.kind, loads.datum, block)
     d = design_at(block, 0)
     cuts = work_space(loads.at.shape[0])
     count = cut_cycle(d, block, 0, loads, watch, cuts)
-    if rubbing is not None:
+    if rubbing:
         count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
-    out[:count] = cuts.angle[:count]
+    for i in range(count):
+        out[i] = cuts.angle[i]
     return count
 
 

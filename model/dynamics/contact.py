@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..kernel.arithmetic import STEP, inlined
+from ..kernel.arithmetic import STEP, analytic
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .rubbing import Sides, touch
@@ -22,12 +22,12 @@ _BISECTIONS = 60
 _TURN = 2.0 * math.pi
 
 
-def rubs(mechanism: Mechanism) -> Any:
-    """Return the flag that selects kernels with friction: True, or None, for which friction is not even compiled."""
-    return True if mechanism.fullest.friction.acts else None
+def rubs(mechanism: Mechanism) -> bool:
+    """Whether kernels have to count with friction."""
+    return bool(mechanism.fullest.friction.acts)
 
 
-@inlined
+@analytic
 def _touch(
     theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, turn: Any, swing: Any
 ) -> Any:
@@ -37,13 +37,13 @@ def _touch(
     return touch(sine, cosine, m, d, load, turn, swing)
 
 
-@inlined
+@analytic
 def sides_of(
     inside: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
 ) -> Any:
-    """Return the `Sides` of the segment, entered before, around the crank angle `inside`; None without friction."""
-    if rubbing is None:
-        return None
+    """Return the `Sides` of the segment, entered before, around the crank angle `inside`."""
+    if not rubbing:
+        return Sides(0.0, 0.0, 0.0, 0.0)
     m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
     turn = 1.0 if d.speed >= 0.0 else -1.0
     slide = d.branch.real * (1.0 if outward else -1.0)
@@ -52,7 +52,7 @@ def sides_of(
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0)
 
 
-@inlined
+@analytic
 def cut_contacts(
     d: Any, block: Any, j: Any, loads: Any, watch: Watch, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
@@ -95,7 +95,7 @@ def cut_contacts(
     return n
 
 
-@inlined
+@analytic
 def contact_shift(
     z: Any,
     stepped: Any,
@@ -119,7 +119,7 @@ def contact_shift(
     return float(-moved / rise)
 
 
-@inlined
+@analytic
 def shift_of(
     z: Any,
     stepped: Any,
@@ -134,9 +134,7 @@ def shift_of(
     shift: Any,
     sides: Any,
 ) -> float:
-    """Return the imaginary part of any cut's angle, in the segment entered before; `sides` None without friction."""
-    if sides is None:
-        return cut_shift(z, stepped, 0, theta, cuts, i)
+    """Return the imaginary part of any cut's angle, in the segment entered before."""
     if cuts.code[i] == CONTACT:
         return contact_shift(z, stepped, d, block, 0, theta, outward, loads, piece, shift, sides)
     return cut_shift(z, stepped, 0, theta, cuts, i)

@@ -28,7 +28,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..kernel.arithmetic import analytic, inlined, inverse, root
+from ..kernel.arithmetic import analytic, inverse, root
 from ..kinematics.position import Motion
 from ..machine.design import Design
 from .torque import Forces, balance, forces, joined
@@ -38,7 +38,7 @@ _SETTLED = 1e-15
 
 
 class Sides(NamedTuple):
-    """Signs, each +1 or -1, that stay the same within a segment of the cycle.
+    """Signs, each +1 or -1, that stay the same within a segment of the cycle; all 0 without friction.
 
     turn: of the crank speed (+1 at rest). slide: of the slider's velocity along x. swing: of the rod's angular
     velocity. press: of B_y + W, minus that of the guide's force.
@@ -75,7 +75,7 @@ def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, turn: Any, sw
     return d.branch.real * (m.along * y - m.across * b.pull + b.moment + pins)
 
 
-@inlined
+@analytic
 def _moment(y: Any, slope: Any, rest: Any, mu: Any, pull: Any, rod_x: Any, rod_y: Any, p: Any, q: Any) -> Any:
     """Return h(y) and h'(y); `pull` is B_x at y = 0."""
     bx = pull + mu * y
@@ -86,7 +86,7 @@ def _moment(y: Any, slope: Any, rest: Any, mu: Any, pull: Any, rod_x: Any, rod_y
     return slope * y + rest + p * a + q * b, slope + p * by_a + q * by_b
 
 
-@inlined
+@analytic
 def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: Sides) -> Forces:
     """Return drive torque and reactions with friction; all NaN where they are not determined."""
     b = balance(sine, cosine, m, d, load)
@@ -128,9 +128,11 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
     return Forces(torque, f.pivot_x, f.pivot_y, f.crank_pin_x, f.crank_pin_y, f.slider_pin_x, f.slider_pin_y, f.guide)
 
 
-@inlined
+@analytic
 def joint_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
-    """Return drive torque and reactions, with friction if `sides` (None without) are given."""
+    """Return drive torque and reactions, with friction unless `sides` are 0, or None where friction is not compiled."""
     if sides is None:
+        return forces(sine, cosine, m, d, load)
+    if sides.turn == 0.0:
         return forces(sine, cosine, m, d, load)
     return rubbing_forces(sine, cosine, m, d, load, sides)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..kernel.arithmetic import analytic, inlined
+from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Integers, Row
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
@@ -67,14 +67,14 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
     return math.atan2(e, x) + (half if second else -half)
 
 
-@inlined
+@analytic
 def work_space(knots: int) -> Cuts:
     """Return room for the breakpoints of a design whose tables have so many knots in all."""
     room = ROOM + 2 * knots
     return Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
 
 
-@inlined
+@analytic
 def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: int) -> int:
     """Insert a breakpoint into the first `n`, in ascending order; return how many there are then."""
     wrapped = angle - _TURN * math.floor(angle / _TURN)
@@ -89,7 +89,7 @@ def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: in
     return n + 1
 
 
-@inlined
+@analytic
 def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: Cuts) -> int:
     """Fill `cuts` with the breakpoints of a design in ascending crank angle; return how many (at least one)."""
     n = 0
@@ -125,7 +125,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
     return n
 
 
-@inlined
+@analytic
 def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> float:
     """Return the imaginary part of breakpoint i's angle when the design carries an imaginary step."""
     code = cuts.code[i]
@@ -156,7 +156,7 @@ def within(a: float, b: float) -> float:
     return a + 0.382 * (b - a)
 
 
-@inlined
+@analytic
 def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
     """Fix the piece of every table at a crank angle and a slider distance x from the crank pivot."""
     for k in range(loads.kind.shape[0]):
@@ -174,7 +174,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
         piece[k] = i
 
 
-@inlined
+@analytic
 def enter(
     d: Design, block: Any, j: int, inside: float, loads: Loads, watch: Watch, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
@@ -194,7 +194,7 @@ def enter(
     return counts, outward
 
 
-@inlined
+@analytic
 def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
     """Return a force, N outward, with all loads added that have a formula of their own."""
     way = 1.0 if outward else -1.0
@@ -208,7 +208,7 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
     return force
 
 
-@inlined
+@analytic
 def load_on_slider(
     m: Any, d: Any, block: Any, j: int, theta: Any, outward: bool, loads: Loads, piece: Any, shift: Any
 ) -> Any:

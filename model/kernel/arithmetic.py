@@ -13,7 +13,7 @@ over designs into vector instructions.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -23,42 +23,14 @@ STEP = 1e-30
 """Length of the imaginary step of the complex-step derivative."""
 
 
-class Choice(NamedTuple):
-    """A formula that is another one for the compiler: `alone` where its first argument is a tuple, else `together`."""
-
-    formula: Callable[..., Any]
-    together: Callable[..., Any]
-    alone: Callable[..., Any]
-
-
 FORMULAS: list[Callable[..., Any]] = []
 """Functions marked `analytic`."""
-CHOICES: list[Choice] = []
-"""Functions marked `chosen_by_type`."""
 
 
 def analytic(formula: Function) -> Function:
     """Mark a formula that runs on floats, complex numbers and arrays from Python, and inline in compiled kernels."""
     FORMULAS.append(formula)
     return formula
-
-
-inlined = analytic
-"""Marks a step of a kernel, compiled into it.
-
-Always inlined: a step compiled on its own as well would be optimised differently there, and which of the two a process
-runs would depend on whether the kernel came from the cache.
-"""
-
-
-def chosen_by_type(*, together: Any, alone: Any) -> Callable[[Function], Function]:
-    """Mark a formula that compiles to `alone` where its first argument is a tuple, else to `together`."""
-
-    def marked(formula: Function) -> Function:
-        CHOICES.append(Choice(formula, together, alone))
-        return formula
-
-    return marked
 
 
 def inverse(z: Any) -> Any:

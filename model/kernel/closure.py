@@ -19,8 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from .arithmetic import CHOICES
-
 _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 
 
@@ -58,9 +56,6 @@ _PLACES = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT")
 
 def _parts(function: Any) -> tuple[bytes, list[Any]]:
     """Return what a function is by itself, and the functions that it calls."""
-    chosen = next((choice for choice in CHOICES if choice.formula is function), None)
-    if chosen is not None:
-        return b"choice", [chosen.together, chosen.alone]
     calls: list[Any] = []
     text = [function.__qualname__, _of(function.__defaults__)]
     codes = list(_codes(function.__code__))

@@ -7,36 +7,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from itertools import islice
 from typing import Any
 
 from numba import njit, typeof, types
 from numba.extending import overload, register_jitable
 
-from .arithmetic import CHOICES, FORMULAS, Choice, arcsine, inverse, magnitude, root
+from .arithmetic import FORMULAS, arcsine, inverse, magnitude, root
 from .machine_code import MachineCode
 
 # Without `nnan` and `ninf`: a NaN must stay a NaN. Contraction and reassociation are what vectorisation needs.
-_OPTIONS: Any = {"fastmath": {"reassoc", "contract", "arcp", "nsz"}, "error_model": "numpy"}
+_OPTIONS: Any = {
+    "fastmath": {"reassoc", "contract", "arcp", "nsz"},
+    "error_model": "numpy",
+    "no_cpython_wrapper": True,  # nobody calls them from outside
+    "no_cfunc_wrapper": True,
+}
 _FORMULA: Any = _OPTIONS | {"forceinline": True}
-_KERNEL: Any = _OPTIONS | {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_KERNEL: Any = _OPTIONS | {"nogil": True}
 
-_known = [0, 0]
+_known: list[Callable[..., Any]] = []
 
 
 def know_formulas() -> None:
     """Tell numba of all formulas marked so far."""
-    for formula in islice(FORMULAS, _known[0], None):
+    for formula in FORMULAS[len(_known) :]:
         register_jitable(**_FORMULA)(formula)
-    for choice in islice(CHOICES, _known[1], None):
-        _know_choice(choice)
-    _known[:] = len(FORMULAS), len(CHOICES)
-
-
-def _know_choice(choice: Choice) -> None:
-    @overload(choice.formula, jit_options=_FORMULA, strict=False)
-    def choose(*arguments: Any) -> Any:
-        return choice.alone if isinstance(arguments[0], types.BaseTuple) else choice.together
+        _known.append(formula)
 
 
 def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> MachineCode:

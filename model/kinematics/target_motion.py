@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..kernel.arithmetic import inlined
+from ..kernel.arithmetic import analytic
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Row, Table, kernel
 from .position import motion
@@ -84,7 +84,7 @@ class Fit(NamedTuple):
     shift: Array
 
 
-@inlined
+@analytic
 def _measure(
     phase: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any
 ) -> tuple[float, float]:
@@ -109,7 +109,7 @@ def _measure(
     return max(high, -low), 0.0
 
 
-@inlined
+@analytic
 def _newton(phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
     """Return Newton's step of the phase for the mean square of `d`, the deviations there; zero where not convex."""
     sines, cosines, at = points
@@ -130,7 +130,7 @@ def _newton(phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any
     return float(-first / second) if second > 0.0 else 0.0
 
 
-@inlined
+@analytic
 def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
     """Return the phase of the least deviation between two phases, by golden section."""
     p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
@@ -153,7 +153,7 @@ def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any,
     return float(0.5 * (low + high))
 
 
-@inlined
+@analytic
 def _bound(
     phase: Any, half: Any, bend: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any
 ) -> Any:
@@ -186,7 +186,7 @@ def _bound(
     return max(high, low), max(high_least, low_least) - rest
 
 
-@inlined
+@analytic
 def _branch_and_bound(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, cells: Any, d: Any) -> float:
     """Return the phase of the least greatest deviation.
 
@@ -219,7 +219,7 @@ def _branch_and_bound(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, 
     return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, shifts, r, l, e, b, points, d)
 
 
-@inlined
+@analytic
 def _least_square(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
     """Return the phase of the least root mean square deviation: the best of the grid's best stretches."""
     grid = np.empty(_PHASES)

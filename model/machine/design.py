@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..kernel.arithmetic import analytic, inlined, magnitude, root
+from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
@@ -116,7 +116,7 @@ def link_properties(
     )
 
 
-@inlined
+@analytic
 def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
     """Fill `out` (DESIGN + 2 k, n) from raw numbers (END + 4 k, n), real or complex."""
     for j in range(raw.shape[1]):
@@ -199,3 +199,23 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
             elif kind[k] >= _FORMULA:
                 out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]
+
+
+@analytic
+def derive_design(raw: Any, columns: Any, values: Any, kind: Any, datum: Any, own: Any, out: Any) -> None:
+    """Fill `out` (DESIGN + 2 k, 1) for raw numbers, of which those in `columns` are `values`; own: room for them."""
+    for i in range(raw.shape[0]):
+        own[i, 0] = raw[i]
+    for i in range(columns.shape[0]):
+        own[columns[i], 0] = values[i]
+    derive(own, kind, datum, out)
+
+
+@analytic
+def derive_steps(own: Any, columns: Any, kind: Any, datum: Any, room: Any, out: Any) -> None:
+    """Fill `out` (v, DESIGN + 2 k, 1), one for an imaginary step of each of the first v numbers in `columns`."""
+    for v in range(out.shape[0]):
+        for i in range(own.shape[0]):
+            room[i, 0] = own[i, 0]
+        room[columns[v], 0] += complex(0.0, STEP)
+        derive(room, kind, datum, out[v])

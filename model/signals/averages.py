@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Watch, crowded, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
-from ..kernel.arithmetic import STEP, inlined, root
+from ..kernel.arithmetic import STEP, analytic, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..kinematics.position import motion_of
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, derive_design, derive_steps, design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
@@ -64,7 +64,7 @@ class Averages:
     rms_gradients: Array | None
 
 
-@inlined
+@analytic
 def _square(theta: Any, d: Any, gap: Any) -> Any:
     """Return l^2 cos^2(phi), m^2, exact to rounding however near to locking; gap: l - r - |e|, m, likewise.
 
@@ -77,7 +77,7 @@ def _square(theta: Any, d: Any, gap: Any) -> Any:
     return (gap + 2.0 * d.r * s * s) * (gap + 2.0 * abs(d.e) + 2.0 * d.r * c * c)
 
 
-@inlined
+@analytic
 def _curve(
     kind: Any, theta: Any, square: Any, d: Any, block: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
 ) -> Any:
@@ -92,7 +92,7 @@ def _curve(
     return signal(kind, sine, cosine, m, d, load, sides)
 
 
-@inlined
+@analytic
 def _rough(values: Any, tail: Any, allowed: Any) -> bool:
     """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
     for k in range(tail.shape[0]):
@@ -119,7 +119,7 @@ def _average(
     rms: Row,
     mean_slope: Table,
     rms_slope: Table,
-    rubbing: bool | None,
+    rubbing: bool,
 ) -> None:
     nodes, weights, tail = rule
     rows = DESIGN + 2 * loads.kind.shape[0]
@@ -133,18 +133,12 @@ def _average(
     greatest = np.zeros(nv + 1)
     stack = np.empty((_DEEPEST + 2, 3))
     for n in range(designs.shape[0]):
-        real[:, 0] = raw
-        for v in range(variables.shape[0]):
-            real[variables[v], 0] = designs[n, v]
-        derive(real, loads.kind, loads.datum, block)
+        derive_design(raw, variables, designs[n], loads.kind, loads.datum, real, block)
+        derive_steps(real, variables, loads.kind, loads.datum, imaginary, stepped)
         for v in range(nv):
-            for i in range(raw.shape[0]):
-                imaginary[i, 0] = real[i, 0]
-            imaginary[variables[v], 0] += complex(0.0, STEP)
-            derive(imaginary, loads.kind, loads.datum, stepped[v])
             mean_slope[n, v] = rms_slope[n, v] = 0.0
         d = design_at(block, 0)
-        if rubbing is not None and not always_drives(d) > 0.0:
+        if rubbing and not always_drives(d) > 0.0:
             mean[n], rms[n] = np.nan, np.inf
             continue
         # That of `crowding`, from the gap: no digits lost, so no floor.
@@ -152,7 +146,7 @@ def _average(
         denser = math.ceil(max(1.0, _EVEN / kappa))
         resolved = max(1.0, _NOISE / (kappa * kappa))
         count = cut_cycle(d, block, 0, loads, watch, cuts)
-        if rubbing is not None:
+        if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         first = second = 0.0
@@ -163,7 +157,7 @@ def _average(
             _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
-            smooth = count == 1 and rubbing is None
+            smooth = count == 1 and not rubbing
             panels = denser if smooth else denser * (int(_PANELS * (high - low) / _TURN) + 1)
             points = _NODES if smooth else nodes.shape[0]
             for p in range(panels):
@@ -185,7 +179,7 @@ def _average(
                             z = design_at(stepped[v], 0)
                             z = _curve(kind, theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             slope[v, i] = z.imag / STEP
-                    if rubbing is not None:
+                    if rubbing:
                         greatest[nv] = max(greatest[nv], np.abs(value[:points]).max())
                         halve = _rough(value, tail, _RESOLVED[0] * resolved * greatest[nv])
                         for v in range(nv):
@@ -203,7 +197,7 @@ def _average(
                         for v in range(nv):
                             mean_slope[n, v] += weight[i] * slope[v, i]
                             rms_slope[n, v] += weight[i] * value[i] * slope[v, i]
-            if rubbing is not None:
+            if rubbing:
                 # With friction the torque may jump at a cut, which then adds the jump times the cut's own motion.
                 for end in range(2):
                     i, theta = (s + 1) % count if end else s, b if end else a
@@ -258,7 +252,7 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((2, n if gradients else 0, len(columns)))
     watch = watch_of(mechanism, kind)
-    rubbing = rubs(mechanism) if kind.needs_forces else None
+    rubbing = kind.needs_forces and rubs(mechanism)
     rule, gaps = _rule(), _gaps(*designs.T[:3])
 
     def work(begin: int, end: int) -> None:

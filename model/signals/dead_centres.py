@@ -11,7 +11,7 @@ from ..dynamics.torque import forces
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import load_structure, raw_vector
@@ -25,11 +25,8 @@ def _torques(
     raw: Row, columns: Integers, designs: Table, load_kind: Integers, load_datum: Integers, crossed: bool, out: Table
 ) -> None:
     own, block = np.empty((raw.shape[0], 1)), np.empty((DESIGN + 2 * load_kind.shape[0], 1))
-    own[:, 0] = raw
     for n in range(designs.shape[0]):
-        for i in range(columns.shape[0]):
-            own[columns[i], 0] = designs[n, i]
-        derive(own, load_kind, load_datum, block)
+        derive_design(raw, columns, designs[n], load_kind, load_datum, own, block)
         d = design_at(block, 0)
         for k in range(2):
             angle = inner_crank_angle(d.r, d.l, d.e) if k == 0 else outer_crank_angle(d.r, d.l, d.e)

@@ -28,7 +28,7 @@ _WIDE = len(Forces._fields) + 1
 
 @kernel
 def _follow(
-    raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool | None
+    raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool
 ) -> None:
     watch = Watch(0, 0.0, 1.0, False)
     rows = DESIGN + 2 * loads.kind.shape[0]

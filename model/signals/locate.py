@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from ..kernel.arithmetic import inlined
+from ..kernel.arithmetic import analytic
 from ..machine.design import design_at
 from .signals import Signal
 
@@ -41,7 +41,7 @@ _LOCKED = np.float32(2.0**-22)  # least square of cos(phi): below, rounding coul
 _ROUNDING = 2.0**-20  # of a sample, with room, where the linkage is far from locking
 
 
-@inlined
+@analytic
 def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
     """Fill `b` (ROWS, LANES), single precision, from derived designs, kappa of the crowded angle, sense of rotation."""
     for j in range(LANES):
@@ -83,7 +83,7 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         b[_OF_OFFSET, j], b[_OF_ANGLE, j] = per * d.offset_error, per * angle
 
 
-@inlined
+@analytic
 def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
     """Sine and cosine of the crank angle at tau: tan(theta - pi/2) = kappa tan(tau)."""
     if crowd:
@@ -93,7 +93,7 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
     return cosine_tau, -sine_tau
 
 
-@inlined
+@analytic
 def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     """Torque, worst case and square of the root-sum-square, each at theta and at pi - theta, which share the motion.
 
@@ -143,7 +143,7 @@ def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     )
 
 
-@inlined
+@analytic
 def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any, two: Any) -> None:
     """Torque and worst-case position error of all lanes at tau and -tau."""
     for j in range(LANES):
@@ -151,7 +151,7 @@ def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any, two: A
         one[0, j], two[0, j], one[1, j], two[1, j], _, _ = _curves(b, j, sine, cosine)
 
 
-@inlined
+@analytic
 def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any, two: Any) -> None:
     """Squares of the root-sum-square of all lanes at tau and -tau."""
     for j in range(LANES):
@@ -159,13 +159,13 @@ def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any
         _, _, _, _, one[2, j], two[2, j] = _curves(b, j, sine, cosine)
 
 
-@inlined
+@analytic
 def row_of(kind: Any) -> Any:
     """Return where the samples of a signal are."""
     return 0 if kind == _TORQUE else (1 if kind == _WORST else 2)
 
 
-@inlined
+@analytic
 def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
     """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and the wrapped ends.
 
@@ -190,7 +190,7 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
             samples[q, 0, j] = samples[q, angles, j]
 
 
-@inlined
+@analytic
 def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) -> Any:
     """Return 1 at a local maximum, other than the highest sample, near which the curve may exceed the floor.
 
@@ -200,7 +200,7 @@ def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) ->
     return _ONE if (middle >= low) & (middle > high) & (bound > floor) & (place != at) else _ZERO
 
 
-@inlined
+@analytic
 def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
     """Fill three rows of `top` from the samples around each lane's first (i = 0) or second maximum."""
     for j in range(LANES):
@@ -215,7 +215,7 @@ def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
         top[3 * i + 2, j] = second / middle if middle > _ZERO else _ZERO
 
 
-@inlined
+@analytic
 def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
     """Find each lane's highest sample, and the highest other local maximum that could exceed it between samples.
 

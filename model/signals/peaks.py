@@ -28,10 +28,10 @@ from ..dynamics.segments import (
     within,
     work_space,
 )
-from ..kernel.arithmetic import STEP, inlined
+from ..kernel.arithmetic import STEP, analytic
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, derive_design, derive_steps, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
@@ -68,7 +68,7 @@ class Peaks:
     gradients: Array | None
 
 
-@inlined
+@analytic
 def _value(
     kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
 ) -> Any:
@@ -78,7 +78,7 @@ def _value(
     return signal(kind, sine, cosine, m, d, load, sides)
 
 
-@inlined
+@analytic
 def _slope(
     kind: Any, theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
 ) -> Any:
@@ -91,7 +91,7 @@ def _slope(
     return z.real, z.imag / STEP
 
 
-@inlined
+@analytic
 def _refine(
     kind: Any,
     a: Any,
@@ -107,11 +107,13 @@ def _refine(
     sides: Any,
 ) -> Any:
     """Highest point found in (a, b): a root of the slope by secants, bisecting whenever a secant leaves the bracket."""
-    theta = start
-    value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift, sides)
-    best, at = value, theta
-    old_theta, old_slope = theta, slope
+    theta = at = old_theta = start
+    best = old_slope = 0.0
     for i in range(_ITERATIONS):
+        value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift, sides)
+        # On the flat top values differ by rounding only: there the later angle is the better one.
+        if i == 0 or value >= best - _FLAT * best:
+            best, at = value, theta
         if slope > 0.0:
             a = theta
         elif slope < 0.0:
@@ -127,14 +129,10 @@ def _refine(
         if abs(trial - theta) < 4e-16 * _TURN or b - a < 1e-15:
             break
         theta = trial
-        value, slope = _slope(kind, theta, d, block, j, outward, loads, piece, shift, sides)
-        # On the flat top values differ by rounding only: there the later angle is the better one.
-        if value >= best - _FLAT * best:
-            best, at = value, theta
     return best, at
 
 
-@inlined
+@analytic
 def _divide(
     kind: Any,
     a: Any,
@@ -158,7 +156,7 @@ def _divide(
     return best, at, step
 
 
-@inlined
+@analytic
 def _known(angles: Any, count: Any, theta: Any) -> bool:
     """Whether a peak at that angle is in the list."""
     known = False
@@ -167,7 +165,7 @@ def _known(angles: Any, count: Any, theta: Any) -> bool:
     return known
 
 
-@inlined
+@analytic
 def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: Any, theta: Any, s: Any, p: Any) -> Any:
     """Insert a peak into the lists, highest first; the lowest falls off when they are full."""
     kept = values.shape[0]
@@ -183,7 +181,7 @@ def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: A
 
 @kernel
 def _find(
-    kind: int | tuple[int],
+    kind: int,
     raw: Row,
     variables: Integers,
     designs: Table,
@@ -193,7 +191,7 @@ def _find(
     values: Table,
     where: Table,
     gradients: Cube,
-    rubbing: bool | None,
+    rubbing: bool,
 ) -> None:
     rows = DESIGN + 2 * loads.kind.shape[0]
     knots = loads.at.shape[0]
@@ -214,19 +212,16 @@ def _find(
     theta = np.empty(angles + 8)
     f = np.empty(angles + 8)
     for n in range(designs.shape[0]):
-        real[:, 0] = raw
-        for v in range(variables.shape[0]):
-            real[variables[v], 0] = designs[n, v]
-        derive(real, loads.kind, loads.datum, block)
+        derive_design(raw, variables, designs[n], loads.kind, loads.datum, real, block)
         d = design_at(block, 0)
         kappa = crowding(d.r, d.l, d.e)
-        if rubbing is not None and not always_drives(d) > 0.0:
+        if rubbing and not always_drives(d) > 0.0:
             values[n, :], values[n, 0], where[n, :] = -np.inf, np.inf, np.nan
             if nv:
                 gradients[n] = 0.0
             continue
         count = cut_cycle(d, block, 0, loads, watch, cuts)
-        if rubbing is not None:
+        if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         found = 0
@@ -249,8 +244,9 @@ def _find(
                 f[i] = _value(kind, theta[i], d, block, 0, outward, loads, piece, shift, sides)
                 if f[i] > best:
                     best, best_at, best_segment = f[i], theta[i], s
-            edge[s, 0], edge[s, 1] = _slope(kind, a, d, block, 0, outward, loads, piece, shift, sides)
-            edge[s, 2], edge[s, 3] = _slope(kind, b, d, block, 0, outward, loads, piece, shift, sides)
+            for end in range(2):
+                value, slope = _slope(kind, b if end else a, d, block, 0, outward, loads, piece, shift, sides)
+                edge[s, 2 * end], edge[s, 2 * end + 1] = value, slope
             for i in range(points):
                 if i == 0:
                     top = edge[s, 1] > 0.0 and f[0] >= f[1]
@@ -258,24 +254,22 @@ def _find(
                     top = edge[s, 3] < 0.0 and f[i] >= f[i - 1]
                 else:
                     top = f[i] >= f[i - 1] and f[i] > f[i + 1]
-                if top:
-                    left, right = theta[max(i - 1, 0)], theta[min(i + 1, points - 1)]
-                    value, angle = _refine(
-                        kind, left, right, theta[i], d, block, 0, outward, loads, piece, shift, sides
-                    )
-                    if not _known(at, found, angle):
+                if not top:
+                    continue
+                left, right, angle = theta[max(i - 1, 0)], theta[min(i + 1, points - 1)], theta[i]
+                # One place in the code for both rows: the compiler works out each anew.
+                for finer in range(2):
+                    value, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides)
+                    # A finer row that rises to the very end of the segment has no top; the breakpoint may be one.
+                    if (finer == 0 or a + _SAME < angle < b - _SAME) and not _known(at, found, angle):
                         found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
-                    if f[i] > _NEAR * best:
-                        left, right = theta[max(i - 2, 0)], theta[min(i + 2, points - 1)]
-                        high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift, sides)
-                        if high > value + _FLAT * value:
-                            left, right = max(left, angle - step), min(right, angle + step)
-                            high, angle = _refine(
-                                kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides
-                            )
-                            # A row that rises to the very end of the segment has no top; the breakpoint may be one.
-                            if a + _SAME < angle < b - _SAME and not _known(at, found, angle):
-                                found = _keep(peak, at, segment, pin, found, high, angle, s, -1)
+                    if finer == 1 or not f[i] > _NEAR * best:
+                        break
+                    left, right = theta[max(i - 2, 0)], theta[min(i + 2, points - 1)]
+                    high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift, sides)
+                    if not high > value + _FLAT * value:
+                        break
+                    left, right = max(left, angle - step), min(right, angle + step)
         for s in range(count):
             if thin[s]:
                 continue
@@ -294,11 +288,7 @@ def _find(
                 found = _keep(peak, at, segment, pin, found, right, cuts.angle[s], s, s)
         if found == 0 and best_segment >= 0:  # a constant curve
             found = _keep(peak, at, segment, pin, found, best, best_at, best_segment, -1)
-        for v in range(nv):
-            for i in range(raw.shape[0]):
-                imaginary[i, 0] = real[i, 0]
-            imaginary[variables[v], 0] += complex(0.0, STEP)
-            derive(imaginary, loads.kind, loads.datum, stepped[v])
+        derive_steps(real, variables, loads.kind, loads.datum, imaginary, stepped)
         for i in range(kept):
             if i >= found:
                 values[n, i], where[n, i] = -np.inf, np.nan
@@ -351,11 +341,11 @@ def find_peaks(
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((n if gradients else 0, kept, len(columns)))
     watch = watch_of(mechanism, kind, during=during)
-    rubbing = rubs(mechanism) if kind.needs_forces else None
+    rubbing = kind.needs_forces and rubs(mechanism)
 
     def work(begin: int, end: int) -> None:
         _find(
-            kind.code,
+            int(kind),
             raw,
             columns,
             designs[begin:end],

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..dynamics.segments import crowding
 from ..dynamics.torque import smooth_load
-from ..kernel.arithmetic import STEP, analytic, inlined, inverse, root
+from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
 from ..machine.design import DESIGN, derive, design_at
@@ -98,7 +98,7 @@ def _step(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any)
     return z.real, z.imag * (1.0 / STEP)
 
 
-@inlined
+@analytic
 def _slopes(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction: Any, value: Any, slope: Any) -> Any:
     """Value and slope of every lane at its own angle."""
     if kind == _TORQUE:
@@ -118,7 +118,7 @@ def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
     return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction).imag * (1.0 / STEP)
 
 
-@inlined
+@analytic
 def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slope: Any) -> Any:
     """Derivatives of all lanes, each at its own crank angle."""
     if kind == _TORQUE:
@@ -132,7 +132,7 @@ def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slo
             slope[j] = _partial(_RSS, sine[j], cosine[j], design_at(block, j), direction)
 
 
-@inlined
+@analytic
 def _refine(
     kind: Any, tau: Any, h: Any, top: Any, kappa: Any, block: Any, direction: Any, best: Any, sines: Any, cosines: Any
 ) -> Any:

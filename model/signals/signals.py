@@ -7,7 +7,7 @@ from typing import Any
 
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
-from ..kernel.arithmetic import analytic, chosen_by_type, magnitude, root
+from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_derivative
 from ..machine.design import Design
 from .position_error import influences, root_sum_square, worst_case
@@ -16,9 +16,9 @@ from .position_error import influences, root_sum_square, worst_case
 class Signal(IntEnum):
     """A signal that is watched over the cycle by its size.
 
-    Torque (N m), forces (N), slider speed and acceleration, position error (m), power (W), reflected inertia (kg m^2),
-    shaking force (N), shaking moment (N m), slider jerk (m/s^3), and the component along the slider line
-    of the force between rod and slider (N).
+    Torque (N m), forces (N), power (W), the component along the slider line of the force between rod and slider (N),
+    slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking force (N) and shaking
+    moment (N m).
     """
 
     TORQUE = 0
@@ -26,40 +26,34 @@ class Signal(IntEnum):
     CRANK_PIN_FORCE = 2
     SLIDER_PIN_FORCE = 3
     GUIDE_FORCE = 4
-    SLIDER_SPEED = 5
-    SLIDER_ACCELERATION = 6
-    POSITION_ERROR = 7
-    POSITION_ERROR_RSS = 8
-    POWER = 9
-    REFLECTED_INERTIA = 10
-    SHAKING_FORCE = 11
-    SHAKING_MOMENT = 12
-    SLIDER_JERK = 13
-    LINE_FORCE = 14
+    POWER = 5
+    LINE_FORCE = 6
+    SLIDER_SPEED = 7
+    SLIDER_ACCELERATION = 8
+    SLIDER_JERK = 9
+    POSITION_ERROR = 10
+    POSITION_ERROR_RSS = 11
+    REFLECTED_INERTIA = 12
+    SHAKING_FORCE = 13
+    SHAKING_MOMENT = 14
 
     @property
     def needs_forces(self) -> bool:
         """Whether it follows from the joint forces, and with them from loads and friction."""
-        return self <= Signal.GUIDE_FORCE or self in (Signal.POWER, Signal.LINE_FORCE)
-
-    @property
-    def code(self) -> int | tuple[int]:
-        """Number by which kernels know the signal; in a tuple for one with kernels of its own.
-
-        A branch more in the formula of all would make the compiler group the others anew, and move their last digits.
-        """
-        return int(self) if self <= Signal.SHAKING_MOMENT else (int(self),)
+        return self <= Signal.LINE_FORCE
 
 
-_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _SPEED, _ACCELERATION, _WORST, _RSS = range(9)
-_POWER, _INERTIA, _SHAKING_FORCE = range(9, 12)
-_JERK = int(Signal.SLIDER_JERK)
+_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _POWER, _LINE, _SPEED, _ACCELERATION, _JERK = range(10)
+_WORST, _RSS, _INERTIA, _SHAKING_FORCE = range(10, 14)
 
 
 @analytic
-def _together(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
-    """Return a signal of the formula that is compiled for all up to the shaking moment."""
-    if kind <= _GUIDE or kind == _POWER:
+def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+    """Return the value of a `Signal` at one crank angle for the load on the slider (N, outward).
+
+    sides: signs of the sliding where there is friction (`rubbing.Sides`).
+    """
+    if kind <= _LINE:
         f = joint_forces(sine, cosine, m, d, load, sides)
         if kind == _TORQUE:
             return magnitude(f.torque)
@@ -71,38 +65,24 @@ def _together(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, s
             return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
         if kind == _SLIDER_PIN:
             return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
+        if kind == _LINE:
+            return magnitude(f.slider_pin_x)
         return magnitude(f.guide)
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:
         return magnitude(m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration)
-    if kind == _INERTIA:
-        return reflected_inertia(sine, cosine, m, d)
-    if kind > _INERTIA:
-        x, y, moment = shaking(sine, cosine, m, d)
-        return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
-    i = influences(sine, cosine, m, d.l)
-    if kind == _WORST:
-        return worst_case(i, d)
-    return root_sum_square(i, d)
-
-
-@analytic
-def _alone(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
-    """Return a signal with kernels of its own."""
-    if kind[0] == _JERK:
+    if kind == _JERK:
         third = third_derivative(sine, cosine, m, d.r)
         return magnitude((third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
-    return magnitude(joint_forces(sine, cosine, m, d, load, sides).slider_pin_x)
-
-
-@chosen_by_type(together=_together, alone=_alone)
-def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
-    """Return the signal of a `Signal.code` at one crank angle for the load on the slider (N, outward).
-
-    sides: signs of the sliding where there is friction (`rubbing.Sides`).
-    """
-    return (_alone if isinstance(kind, tuple) else _together)(kind, sine, cosine, m, d, load, sides)
+    if kind == _WORST:
+        return worst_case(influences(sine, cosine, m, d.l), d)
+    if kind == _RSS:
+        return root_sum_square(influences(sine, cosine, m, d.l), d)
+    if kind == _INERTIA:
+        return reflected_inertia(sine, cosine, m, d)
+    x, y, moment = shaking(sine, cosine, m, d)
+    return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
 
 
 @analytic

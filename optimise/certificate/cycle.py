@@ -104,7 +104,7 @@ class Curve:
                 if self.loads.start[k] < self.loads.start[k + 1]:
                     load = load + self._table(k, m, d, block, theta, outward)
             return _of_forces(self.kind, forces(sine, cosine, m, d, load), d)
-        return cast(Enclosure, signal(self.kind.code, sine, cosine, m, d, None))
+        return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
 
     def _table(self, k: int, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Enclosure:
         loads: Loads = self.loads
