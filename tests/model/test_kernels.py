@@ -154,7 +154,9 @@ def test_a_digest_follows_what_a_kernel_does(change: dict[str, Any], same: bool)
 
 def test_digests_do_not_depend_on_the_process() -> None:
     code = (
-        "import json; import slidercrank.model.signals.peaks, slidercrank.model.signals.averages;"
+        "import json; import slidercrank.model.cycle.cycle, slidercrank.model.signals.averages;"
+        "import slidercrank.model.signals.peaks;"
+        "import slidercrank.model.signals.screening, slidercrank.model.signals.follow;"
         "from slidercrank.model.kernel.kernel import KERNELS; from slidercrank.model.kernel.closure import digest;"
         "print(json.dumps({w.name: digest(w.function, w.examples) for k in KERNELS for w in k.variants().values()}))"
     )
