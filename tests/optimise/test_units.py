@@ -182,6 +182,15 @@ def test_every_quantity_has_a_kind_whose_unit_agrees_with_its_factor(name: str) 
     assert one * unit.factor == pytest.approx(1.0, rel=1e-15)
 
 
+def test_usual_units_are_those_of_the_definitions(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = dict(units._USUAL)
+    assert len(usual) > 8
+    monkeypatch.setattr(units, "_USUAL", {})
+    for name, (factor, powers) in usual.items():
+        defined, dimension = units._lookup(name)
+        assert (defined, dict(dimension)) == (factor, dict(powers))
+
+
 def test_a_kind_is_found_for_another_unit_of_its_dimension() -> None:
     assert kind_of("kN m") is kinds.TORQUE
     with pytest.raises(InputError, match="no kind of value"):
