@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
+from numpy.typing import NDArray
 
 from ...model.kinematics.in_line import without_rounding
 from ...model.linkage.linkage import Linkage
@@ -24,6 +25,9 @@ from ..time_ratio import TIME_RATIO
 from ..transmission_angle import TRANSMISSION_ANGLE
 from .varying_column import varying_column
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> pd.DataFrame:
     """Return a table with every quantity of designs (n, 3 + k): crank, rod, offset, m, each turning fully.
@@ -34,6 +38,13 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     rotation, the loaded stroke that of `loaded_stroke`. Position errors are NaN without tolerances. Raises
     `AssemblyError` for a linkage that does not turn fully.
     """
+    import pandas as pd
+
+    return pd.DataFrame(columns_of(mechanism, dimensions, own=own))
+
+
+def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> dict[str, NDArray[Any]]:
+    """Return the columns (n,) of the table that `analyse` gives: pandas takes longer to import than one design."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     dimensions = dimensions.copy()
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
@@ -43,7 +54,7 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     torque = find_peaks(mechanism, Signal.TORQUE, dimensions, kept=1)
     averages = average_torque(mechanism, dimensions)
     varying = [varying_column(item) for item in mechanism.varying]
-    columns: dict[str, object] = {
+    columns: dict[str, NDArray[Any]] = {
         "crank_mm": 1e3 * dimensions[:, 0],
         "rod_mm": 1e3 * dimensions[:, 1],
         "offset_mm": 1e3 * dimensions[:, 2],
@@ -64,8 +75,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
         if quantity.lacks(mechanism, "undefined"):
-            columns[quantity.field] = np.nan
+            columns[quantity.field] = np.full(len(dimensions), np.nan)
     for quantity in own:
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)
-    return pd.DataFrame(columns)
+    return columns

@@ -12,7 +12,7 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
 from ..search.elimination import sheets, signs
-from ..search.sampling import evenly_spread
+from ..search.sampling import first_samples
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
@@ -31,7 +31,7 @@ def expected_warnings(problem: Problem) -> list[str]:
     fast, turning, sides = 0, 0, []
     for sheet in sheets(problem)[:_SHEETS]:
         part = problem.part(sheet.variant)
-        designs = sheet.dimensions(evenly_spread(_SAMPLES, len(sheet.free)))
+        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), 0, 0))
         crank, rod, offset = designs.T[:3]
         with np.errstate(invalid="ignore"):
             designs = designs[(crank > 0.0) & (rod > crank + np.abs(offset))]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..front.hypervolume import scaling
 from ..front.stationarity import Array
+from .sobol import sobol
 
 FACES = 0.3
 """Chance that a coordinate of a sample is snapped to one of its bounds: optima sit on faces and edges."""
@@ -40,27 +41,11 @@ def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
     """Return about `count` points of the unit box (n, k), a part of them on faces, edges and corners."""
     if dimension == 0:
         return np.zeros((1, 0))
-    from scipy.stats import qmc
-
     random = generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
-    points = qmc.Sobol(dimension, rng=random).random_base2(power)[:count]
+    points = sobol(power, dimension, random)[:count]
     snapped = random.random(points.shape) < FACES
     return np.asarray(np.where(snapped, np.round(points), points))
-
-
-def evenly_spread(count: int, dimension: int) -> Array:
-    """Return points of the unit box (n, k), some on faces: a few to look at, without the time to import scipy.
-
-    Multiples of powers of the root of x^(k+1) = x + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
-    sequences", 2018), stretched so that the outer tenth of each coordinate on either side lies on a face.
-    """
-    root = 2.0
-    for _ in range(40):
-        root = (1.0 + root) ** (1.0 / (dimension + 1.0))
-    steps = root ** -np.arange(1.0, dimension + 1.0)
-    points = np.mod(0.5 + np.arange(1.0, count + 1.0)[:, None] * steps, 1.0)
-    return np.asarray(np.clip(1.25 * points - 0.125, 0.0, 1.0))
 
 
 def around(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:

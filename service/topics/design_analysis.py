@@ -35,9 +35,10 @@ def numbers_of(mechanism: Mechanism, values: Sequence[float], own: Sequence[Quan
     """Return every quantity of one design. values: crank, rod, offset, m. own: quantities of its job."""
     import numpy as np
 
-    from ...objectives.tables.analysis import analyse
+    from ...objectives.tables.analysis import columns_of
 
-    return rows_of(analyse(mechanism, np.array([values]), own=own).to_dict("list"))[0]
+    columns = columns_of(mechanism, np.array([values]), own=own)
+    return rows_of({name: column.tolist() for name, column in columns.items()})[0]
 
 
 def analysis_of(
