@@ -92,9 +92,13 @@ def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, s
     from ...objectives.tables.analysis import analyse
 
     parts, done = [], 0
+    alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
     for variant in np.unique(variants).tolist():
-        own = np.flatnonzero(variants == variant)
         part = problem.part(variant)
+        alike.setdefault((part.mechanism, part.constraints), []).append(variant)
+    for same in alike.values():
+        own = np.flatnonzero(np.isin(variants, same))
+        part = problem.part(same[0])
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
             stand(done, len(dimensions))
             table = analyse(part.mechanism, dimensions[rows], own=problem.own)
@@ -102,8 +106,8 @@ def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, s
             _slacks(table, part, dimensions[rows])
             done += len(rows)
             for place, name in enumerate(problem.choices):
-                label = problem.variants[variant].labels[place]
-                table.insert(list(table.columns).index("stroke_mm"), choice_field(name), label)
+                labels = [problem.variants[variant].labels[place] for variant in variants[rows]]
+                table.insert(list(table.columns).index("stroke_mm"), choice_field(name), labels)
             parts.append(table.set_index(rows))
     return parts[0] if len(parts) == 1 else pd.concat(parts).sort_index()
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective
 
@@ -110,13 +109,10 @@ def _around(random: np.random.Generator, length: float) -> list[float]:
 
 def brute_force(problem: Problem) -> Array:
     """Return the objectives (n, m) of the front, as minimised, by evaluation of every combination."""
-    rows = []
+    alike: dict[Any, tuple[Problem, list[Array]]] = {}
     for part in problem.parts():
-        for design in _designs(part):
-            values = _values(part, design)
-            if values is not None:
-                rows.append(values)
-    return front_of(np.array(rows).reshape(len(rows), len(problem.objectives)))
+        alike.setdefault((part.mechanism, part.constraints), (part, []))[1].extend(_designs(part))
+    return front_of(np.concatenate([_values(part, np.reshape(designs, (-1, 3))) for part, designs in alike.values()]))
 
 
 def front_of(values: Array) -> Array:
@@ -158,34 +154,33 @@ def _designs(part: Problem) -> list[Array]:
     return [d for d, value in zip(places, found, strict=True) if ends.lower - 1e-12 <= value <= ends.upper + 1e-12]
 
 
-def _values(part: Problem, design: Array) -> list[float] | None:
-    """Return the objectives of a design as minimised, None where it violates a requirement."""
-    r, l, e = design
-    if l <= r + abs(e):
-        return None
+def _values(part: Problem, designs: Array) -> Array:
+    """Return the objectives (k, m), as minimised, of those of the designs (n, 3) that meet the requirements."""
+    r, l, e = designs.T
+    designs = designs[l > r + np.abs(e)]
     bounds = {c.quantity: (c.lower, c.upper) for c in part.constraints}
     floors = {"transmission_angle"} | ({"self_locking_margin"} if part.mechanism.friction.acts else set())
     for name in floors:
         lower, upper = bounds.get(name, (None, None))
         bounds[name] = (_FLOORS[name] if lower is None else lower, upper)
     for name, (lower, upper) in bounds.items():
-        value = _of(part, name, design)
-        if math.isnan(value):
-            return None
-        if lower is not None and value < lower - _MET * abs(lower):
-            return None
-        if upper is not None and value > upper + _MET * abs(upper):
-            return None
-    return [_minimised(objective, _of(part, objective.quantity, design)) for objective in part.objectives]
+        values = _of(part, name, designs)
+        met = ~np.isnan(values)
+        if lower is not None:
+            met &= values >= lower - _MET * abs(lower)
+        if upper is not None:
+            met &= values <= upper + _MET * abs(upper)
+        designs = designs[met]
+    found = [_minimised(objective, _of(part, objective.quantity, designs)) for objective in part.objectives]
+    return np.stack(found, axis=1)
 
 
-def _minimised(objective: Objective, value: float) -> float:
-    return -value if objective.sense == "maximise" else value
+def _minimised(objective: Objective, values: Array) -> Array:
+    return -values if objective.sense == "maximise" else values
 
 
-def _of(part: Problem, name: str, design: Array) -> float:
-    machine: Mechanism = part.mechanism
-    return float(part.quantity(name).evaluate(machine, design[None]).values[0])
+def _of(part: Problem, name: str, designs: Array) -> Array:
+    return part.quantity(name).evaluate(part.mechanism, designs).values
 
 
 def distance(found: Array, expected: Array) -> float:

@@ -51,7 +51,7 @@ def problem(
     rod: Ends = (0.06, 0.6),
     offset: Ends = (0.0, 0.2),
     mechanism: Mechanism = MACHINE,
-    designs: int = 100,
+    designs: int = 16,
     samples: int | None = None,
     seed: int = 1,
 ) -> Problem:

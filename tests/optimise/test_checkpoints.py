@@ -34,9 +34,9 @@ SETTINGS: dict[str, dict[str, int]] = {
     "differential_evolution": {"evaluations": 1_000},
     "shgo": {"evaluations": 64},
     "minimax": {"evaluations": 2_000},
-    "epsilon_constraint": {"evaluations": 800},
-    "chebyshev": {"evaluations": 800},
-    "nbi": {"evaluations": 800},
+    "epsilon_constraint": {"evaluations": 400},
+    "chebyshev": {"evaluations": 400},
+    "nbi": {"evaluations": 400},
     "tpe": {"samples": 8, "evaluations": 40},
     "cmaes": {"samples": 6, "evaluations": 60},
 }
@@ -108,7 +108,7 @@ def after(questions: int) -> Callable[[], bool]:
 def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
     found, records, told, _ = whole(method)
     assert len(records) >= 6
-    for cut in (2, len(records) - 1) if method in SLOW else (1, 2, len(records) - 1, len(records)):
+    for cut in (2, len(records) - 1) if method in SLOW else (1, len(records) - 1, len(records)):
         kept, again = list(records[:cut]), list[Progress]()
         front = solve(asked(method), resume=records[:cut], keep=kept.append, progress=again.append)
         assert content(front) == found

@@ -1,6 +1,7 @@
 """Every quantity as the only objective: what the search finds is no worse than the best of random designs."""
 
 import dataclasses
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ RUBBING = dataclasses.replace(MACHINE, friction=Friction(guide=0.1))
 LEAN = np.radians(40.0)
 
 
-def random_values(quantity: Quantity, count: int = 4000) -> np.ndarray:
+@cache
+def random_values(quantity: Quantity, count: int = 2000) -> np.ndarray:
     """Return the quantity of random designs that keep the bounds below."""
     random = np.random.default_rng(6)
     designs = random.uniform((0.05, 0.1, 0.001), (0.1, 0.4, 0.08), (count, 3))

@@ -58,7 +58,7 @@ def answered(job: Any) -> None:
     assert "pydantic" not in message
 
 
-@settings(max_examples=1500)
+@settings(max_examples=600)
 @given(st.data())
 def test_a_mutated_job_gives_a_problem_or_a_job_error(data: st.DataObject) -> None:
     job = deepcopy(data.draw(st.sampled_from(JOBS)))
@@ -90,7 +90,7 @@ LENGTHS = st.one_of(st.floats(1e-9, 1e4), st.sampled_from([1e-9, 0.1, 0.2, 0.3, 
 BOUNDS = st.one_of(st.floats(0.0, 10.0), st.sampled_from([1.0, 1.5, 3.0, 3.2]))
 
 
-@settings(max_examples=500)
+@settings(max_examples=250)
 @given(
     st.lists(LENGTHS, min_size=6, max_size=6),
     st.dictionaries(

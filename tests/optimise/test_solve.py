@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import pickle
 import subprocess
 import sys
 
@@ -19,7 +20,7 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
 
-from .problems import MACHINE, RUNS, Bounds, degrees, problem, shipped_front
+from .problems import MACHINE, Bounds, degrees, problem
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
 WISHES: dict[str, Sense] = {
@@ -33,9 +34,9 @@ WISHES: dict[str, Sense] = {
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
 def test_any_number_of_objectives(count: int) -> None:
-    front = solve(problem(dict(itertools.islice(WISHES.items(), count)), HELD, designs=40))
+    front = solve(problem(dict(itertools.islice(WISHES.items(), count)), HELD))
     assert front.status == "done"
-    assert len(front) == (1 if count == 1 else 40)
+    assert len(front) == (1 if count == 1 else 16)
     assert front.values.shape == (len(front), count)
     assert 0.0 < front.hypervolume <= 1.0
     assert (front.designs["residual"] <= 1e-6).all()
@@ -69,19 +70,20 @@ def test_a_process_with_one_core_gives_the_same_front_bit_for_bit() -> None:
         pytest.skip("this system cannot bind a process to one core")
     code = (
         "import os, sys; os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[0]});"
-        "from slidercrank import load_job, solve;"
-        "sys.stdout.write(solve(load_job(sys.argv[1])).dimensions.tobytes().hex())"
+        "import pickle; from slidercrank import solve;"
+        "sys.stdout.buffer.write(solve(pickle.load(sys.stdin.buffer)).dimensions.tobytes())"
     )
-    command = [sys.executable, "-c", code, str(RUNS / "feeder.toml")]
-    finished = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert finished.stdout == shipped_front("feeder").dimensions.tobytes().hex()
+    given = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD)
+    command = [sys.executable, "-c", code]
+    finished = subprocess.run(command, input=pickle.dumps(given), check=True, stdout=subprocess.PIPE)
+    assert finished.stdout == solve(given).dimensions.tobytes()
 
 
 def test_constraints_on_peaks_hold_exactly_and_bind() -> None:
     wishes: dict[str, Sense] = {"time_ratio": "maximise", "peak_torque": "minimise"}
-    free = solve(problem(wishes, HELD, designs=40))
+    free = solve(problem(wishes, HELD))
     limit = float(np.median(free.designs["peak_pivot_force_N"]))
-    limited = solve(problem(wishes, HELD | {"peak_pivot_force": (None, limit)}, designs=40))
+    limited = solve(problem(wishes, HELD | {"peak_pivot_force": (None, limit)}))
     forces = QUANTITIES["peak_pivot_force"].evaluate(MACHINE, limited.dimensions).values
     assert forces.max() <= limit * (1.0 + 1e-8)
     assert forces.max() == pytest.approx(limit, rel=1e-6)
@@ -124,39 +126,9 @@ def test_no_crank_turns_fully() -> None:
     assert "no crank turns fully" in front.message
 
 
-def test_a_front_reports_extremes_knee_picks_and_trade_offs() -> None:
-    front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=40))
-    extremes = front.extremes()
-    spans = np.ptp(front.values, axis=0)
-    for column, name in enumerate(("peak_torque", "time_ratio")):
-        # Ties to 1e-9 of the range go to the design that is better elsewhere.
-        assert front.values[extremes[name], column] <= front.values[:, column].min() + 1e-9 * spans[column]
-    row = front.pick("peak_torque", time_ratio=(1.15, None))
-    allowed = front.designs[front.designs["time_ratio"] >= 1.15]
-    assert front.designs["peak_torque_Nm"][row] == allowed["peak_torque_Nm"].min()
-    assert front.trade_offs(front.knee())
-    with pytest.raises(ValueError, match="no column"):
-        front.pick("peak_torque", nonsense=(1.0, 2.0))
-    with pytest.raises(ValueError, match="one of the objectives"):
-        front.pick("stroke")
-    with pytest.raises(ValueError, match="no design of the front"):
-        front.pick("peak_torque", time_ratio=(9.0, None))
-
-
 def test_tables_of_a_job_are_no_problem_yet() -> None:
     with pytest.raises(InputError, match="solve takes a problem; got dict; make one by problem or load_job"):
         solve({})  # type: ignore[arg-type]
-
-
-def test_rates_are_the_slope_of_the_front() -> None:
-    # Two objectives and a one-dimensional front: the rate is the slope between close designs on either side.
-    held: dict[str, Bounds] = HELD | {"rod_to_crank": 3.5}
-    front = solve(problem({"position_error": "minimise", "time_ratio": "maximise"}, held, designs=400))
-    order = np.argsort(front.values[:, 1])
-    low, here, high = order[len(order) // 2 - 1 : len(order) // 2 + 2]
-    error, ratio = front.designs["position_error_mm"], front.designs["time_ratio"]
-    slope = (error[low] - error[high]) / (ratio[low] - ratio[high])
-    assert front.rates(int(here))[0, 1] == pytest.approx(slope, rel=0.02)
 
 
 def test_a_bar_shows_a_search_and_leaves_the_front_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:

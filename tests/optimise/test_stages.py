@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -19,9 +20,7 @@ from slidercrank.optimise.solve import solve
 from .problems import Bounds, degrees, problem
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
-GIVEN = problem(
-    {"peak_torque": "minimise", "time_ratio": "maximise", "footprint": "minimise"}, HELD, designs=8, samples=64
-)
+GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=4, samples=64)
 
 
 @pytest.fixture(autouse=True)
@@ -39,8 +38,14 @@ def searched(**more: object) -> tuple[ParetoFront, list[Progress], list[Record]]
     return front, told, kept
 
 
+@cache
+def whole() -> tuple[ParetoFront, list[Progress], list[Record]]:
+    """Return what an uninterrupted search told of everything gives."""
+    return searched()
+
+
 def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_are() -> None:
-    front, told, _ = searched()
+    front, told, _ = whole()
     last = max(index for index, entry in enumerate(told) if not entry.steps)
     after = told[last + 1 :]
     assert [stage for stage, _ in itertools.groupby(entry.stage for entry in after)] == [
@@ -52,7 +57,7 @@ def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_
 
 
 def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
-    _, _, kept = searched()
+    _, _, kept = whole()
     past = kept[: len(kept) // 2 + 1]
     rounds = past[-1].told
     assert rounds > 2
@@ -68,8 +73,8 @@ def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
 
 
 def test_a_search_that_goes_on_tells_so_before_it_computes_anything(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, _, kept = whole()
     monkeypatch.setattr(search, "TELL", 3600.0)
-    _, _, kept = searched()
     _, told, _ = searched(resume=kept)
     assert (told[0].stage, told[0].step, told[0].steps) == (REPEATING, 0, len(kept))
 
@@ -77,7 +82,7 @@ def test_a_search_that_goes_on_tells_so_before_it_computes_anything(monkeypatch:
 def test_what_is_told_changes_nothing() -> None:
     silent: list[Record] = []
     alone = solve(GIVEN, keep=silent.append)
-    front, _, kept = searched()
+    front, _, kept = whole()
     assert front.designs.equals(alone.designs)
     assert (
         np.concatenate([record.words for record in kept]).tobytes()

@@ -24,7 +24,7 @@ def job(motion: dict[str, Any] | None, objectives: dict[str, Any], **parts: Any)
         "mechanism": {"speed": "100 rpm", "slider": {"mass": "1 kg"}},
         "variables": RANGES,
         "objectives": objectives,
-        "optimiser": {"samples": 1000, "designs": 10},
+        "optimiser": {"samples": 300, "designs": 6},
         **parts,
     }
     return data if motion is None else {**data, "target_motion": motion}

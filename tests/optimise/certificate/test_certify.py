@@ -27,7 +27,7 @@ ROUNDED = 1e-9
 @cache
 def two() -> ParetoFront:
     """Return a front of two objectives over two free unknowns."""
-    return solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=60))  # type: ignore[arg-type]
+    return solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=30))  # type: ignore[arg-type]
 
 
 @cache
@@ -165,7 +165,7 @@ def test_a_job_that_leaves_one_design_is_certified() -> None:
 
 def test_the_hypervolume_gap_holds_for_a_fuller_front() -> None:
     front, found = two(), certificate()
-    fuller = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=150))  # type: ignore[arg-type]
+    fuller = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=75))  # type: ignore[arg-type]
     ideal = front.values.min(axis=0)
     more = hypervolume(fuller.values, ideal, found.span) - hypervolume(front.values, ideal, found.span)
     assert 0.0 < more <= found.hypervolume_gap

@@ -37,6 +37,7 @@ PROBLEMS: dict[str, Problem] = {
 METHODS = ("slsqp", "trust_constr", "differential_evolution", "shgo")
 PAIRS = [(method, name) for method in METHODS for name in PROBLEMS if method != "trust_constr"]
 PAIRS += [("trust_constr", "a torque between two peaks"), ("trust_constr", "a target within reach")]  # takes seconds
+BUDGETS = {"trust_constr": {"evaluations": 1}, "shgo": {"evaluations": 300}}  # one start; a third of the default
 
 
 @cache
@@ -58,7 +59,7 @@ def violation(front: ParetoFront) -> float:
 
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_every_method_finds_what_the_default_finds(method: str, name: str) -> None:
-    front = solve(asking(PROBLEMS[name], method))
+    front = solve(asking(PROBLEMS[name], method, **BUDGETS.get(method, {})))
     assert front.status == "done", front.message
     assert len(front) == 1
     # Nobody promises more than 1e-6; a target is met to 1e-8 of its value.
@@ -74,7 +75,7 @@ def test_the_longest_rod_without_offset_transmits_best(method: str) -> None:
     assert math.cos(-front.values[0, 0]) == pytest.approx(0.14 / 0.6, rel=1e-7)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("seed", [1, 2, 3])
 def test_an_equality_that_no_rule_eliminates_is_met(seed: int) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
     front, expected = solve(asking(given, "slsqp", seed=seed)), solve(given)
