@@ -91,12 +91,10 @@ class Sheet:
 
     def jacobian(self, u: Array) -> Array:
         """Return the derivatives (n, 3 + v, k) of the designs by the unit-box coordinates, by complex step."""
-        columns = []
-        for column in range(u.shape[1]):
-            stepped = u.astype(np.complex128)
-            stepped[:, column] += 1j * STEP
-            columns.append(self.dimensions(stepped).imag / STEP)
-        return np.stack(columns, axis=2) if columns else np.zeros((len(u), len(self.names), 0))
+        n, k = u.shape
+        stepped = u[:, None] + 1j * STEP * np.eye(k)
+        slopes = self.dimensions(stepped.reshape(n * k, k)).imag / STEP
+        return np.ascontiguousarray(slopes.reshape(n, k, len(self.names)).transpose(0, 2, 1))
 
 
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:

@@ -234,9 +234,10 @@ def _violation(constraint: Constraint, values: Array) -> Array:
 
 
 def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
-    low, top = _held(pieces, 1.0), _held(pieces, -1.0)
+    low = _held(pieces, 1.0)
     if objective.sense == "minimise":
         return [low]
+    top = _held(pieces, -1.0)
     if objective.target is None:
         # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
         there = np.isfinite(top.values)
@@ -260,14 +261,11 @@ def _held(pieces: Pieces, side: float) -> Pieces:
     To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
     to hold it up. Peaks come highest first, closed forms in any order.
     """
-    if pieces.least == (side < 0.0):
+    if pieces.least == (side < 0.0) or pieces.values.shape[1] == 1:
         return pieces
-    first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)[:, None]
-    return Pieces(
-        np.take_along_axis(pieces.values, first, axis=1),
-        np.take_along_axis(pieces.gradients, first[:, :, None], axis=1),
-        np.take_along_axis(pieces.labels, first, axis=1),
-    )
+    first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
+    rows, one = np.arange(len(first))[:, None], first[:, None]
+    return Pieces(pieces.values[rows, one], pieces.gradients[rows, one], pieces.labels[rows, one])
 
 
 def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:

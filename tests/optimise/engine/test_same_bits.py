@@ -30,7 +30,10 @@ from tests.optimise.problems import problem, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module
 from tests.optimise.test_robust import TOLERANT, plain
 
-JOB = robust(replace(plain(1), settings=replace(plain(1).settings, samples=200)), Robust(samples=1024))
+JOB = robust(
+    replace(plain(1), settings=replace(plain(1).settings, samples=200)),
+    Robust(samples=1024, quantities=("peak_torque", "time_ratio")),
+)
 CUTS = ([0, 1, 40], [0, 7, 16, 33, 40], [0, 39, 40])
 
 

@@ -58,7 +58,7 @@ def test_cma_es_finds_the_optimum_of_the_default(objective: str) -> None:
         offset=(-0.1, 0.2),
     )
     best = solve(given).values[0, 0]
-    found = solve(asked(given, "cmaes", 6000)).values[0, 0]
+    found = solve(asked(given, "cmaes", 4000)).values[0, 0]
     # A climb ends where a generation is 1e-10 of the box wide; objectives change by a few times their size over the
     # whole box, hence by less than 1e-9 in that. The rest is for optima on constraints, which draws meet from inside.
     assert found == pytest.approx(best, rel=1e-6)
@@ -70,7 +70,7 @@ def test_tpe_beats_random_points_on_a_small_budget() -> None:
     best = solve(given).values[0, 0]
 
     def loss(method: str, seed: int) -> float:
-        return float(solve(asked(given, method, 300, seed=seed, samples=20)).values[0, 0] / best - 1.0)
+        return float(solve(asked(given, method, 200, seed=seed, samples=20)).values[0, 0] / best - 1.0)
 
     for seed in (1, 2):
         assert 0.0 <= loss("tpe", seed) < 0.8 * loss("random", seed)
