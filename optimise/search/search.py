@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -55,11 +55,21 @@ class Archive(Candidates):
 
     def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
         """Evaluate points (n, k) of a sheet, take in those that are feasible within the band, return how many."""
-        _, values, violation = evaluator.screen(u, band=self.band)
-        good = violation <= self.band + FEASIBLE
-        self.feasible += int((violation <= FEASIBLE).sum())
-        self.take(index, u[good], values[good], violation[good] <= FEASIBLE)
-        return int(good.sum())
+        return self.screen_all([(index, evaluator, u)])
+
+    def screen_all(self, points: Iterable[tuple[int, Evaluator, Array]]) -> int:
+        """Screen points of several sheets, then compare them with the archive once: that is what takes time."""
+        fresh, count = Candidates.empty(self.values.shape[1]), 0
+        for index, evaluator, u in points:
+            _, values, violation = evaluator.screen(u, band=self.band)
+            good = violation <= self.band + FEASIBLE
+            met = violation <= FEASIBLE
+            self.feasible += int(met.sum())
+            count += int(good.sum())
+            own = Candidates(np.full(int(good.sum()), index), u[good], values[good], met[good])
+            fresh = fresh.join(own[_worth(own)])
+        self.put(fresh)
+        return count
 
     def take(self, index: int, u: Array, values: Array, met: NDArray[np.bool_] | None = None) -> None:
         """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
@@ -71,11 +81,16 @@ class Archive(Candidates):
     def put(self, others: Candidates) -> None:
         """Take in designs of any sheets."""
         both = self.join(others)
-        rows = _best(both.values)
-        if not both.met.all():
-            own = np.flatnonzero(both.met)
-            rows = np.concatenate([own[_best(both.values[own])], rows[~both.met[rows]]])
-        self.become(both[rows])
+        self.become(both[_worth(both)])
+
+
+def _worth(candidates: Candidates) -> NDArray[np.int64]:
+    """Return the rows of candidates worth keeping; others that meet every constraint displace these alone."""
+    rows = _best(candidates.values)
+    if candidates.met.all():
+        return rows
+    own = np.flatnonzero(candidates.met)
+    return np.concatenate([own[_best(candidates.values[own])], rows[~candidates.met[rows]]])
 
 
 def _best(values: Array) -> NDArray[np.int64]:
@@ -212,12 +227,12 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     loose = any(evaluator.loose for evaluator in evaluators)
     for attempt, band in enumerate(BANDS[1:] if loose else BANDS[:-1]):
         archive.band = band
-        found = 0
-        for index, evaluator in enumerate(evaluators):
-            # A small feasible region wants more points before it is given up.
-            count = share(samples * 4**attempt, evaluators)
-            points = first_samples(count, evaluator.dimension, problem.settings.seed, index)
-            found += archive.screen(index, evaluator, points)
+        # A small feasible region wants more points before it is given up.
+        count = share(samples * 4**attempt, evaluators)
+        found = archive.screen_all(
+            (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
+            for index, evaluator in enumerate(evaluators)
+        )
         if found >= min(ENOUGH, samples):
             break
     run.tell("sampling", evaluators, archive)
@@ -232,11 +247,19 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
     for step in range(len(WIDTHS)):
         random = generator(problem.settings.seed, 1000, step)
         some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
-        parents, values, of = archive.u[some], archive.values[some], archive.sheet[some]
-        for index, evaluator in enumerate(evaluators):
-            own = of == index
-            if own.any():
-                count = max(1, int(samples * own.mean()))
-                points = around(parents[own][:, : evaluator.dimension], values[own], count, WIDTHS[step], random)
-                archive.screen(index, evaluator, points)
+        parents = archive[some]
+        archive.screen_all(
+            (index, evaluator, _near(parents, index, evaluator.dimension, samples, WIDTHS[step], random))
+            for index, evaluator in enumerate(evaluators)
+            if (parents.sheet == index).any()
+        )
         run.tell("zooming", evaluators, archive)
+
+
+def _near(
+    parents: Candidates, index: int, dimension: int, samples: int, width: float, random: np.random.Generator
+) -> Array:
+    """Return points around the parents of a sheet, as many as is their share of the samples of all."""
+    own = parents.sheet == index
+    count = max(1, int(samples * own.mean()))
+    return around(parents.u[own][:, :dimension], parents.values[own], count, width, random)

@@ -5,6 +5,7 @@ The delivery polishes candidates, fills the gaps that they leave and chooses amo
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -156,14 +157,17 @@ def _sample(problem: Problem, evaluators: list[Evaluator], archive: Archive, bes
     """Screen points everywhere, and the polished designs, what is around them, and all that on other sheets."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
-    for index, evaluator in enumerate(evaluators):
-        count = share(problem.settings.samples or FIRST, evaluators)
-        archive.screen(index, evaluator, first_samples(count, evaluator.dimension, seed, 200 + k * attempt + index))
-        count = -(-(problem.settings.samples or SAMPLES) // k)
-        parents = stacked(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
-        near = around(parents, best.values, count, _WIDTH, random)
-        images = parents[best.sheet != index]
-        archive.screen(index, evaluator, np.concatenate([near, images]))
+    everywhere = share(problem.settings.samples or FIRST, evaluators)
+    nearby = -(-(problem.settings.samples or SAMPLES) // k)
+
+    def points() -> Iterator[tuple[int, Evaluator, Array]]:
+        for index, evaluator in enumerate(evaluators):
+            yield index, evaluator, first_samples(everywhere, evaluator.dimension, seed, 200 + k * attempt + index)
+            parents = stacked(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
+            near = around(parents, best.values, nearby, _WIDTH, random)
+            yield index, evaluator, np.concatenate([near, parents[best.sheet != index]])
+
+    archive.screen_all(points())
 
 
 def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
