@@ -7,11 +7,14 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job
+from slidercrank.optimise.methods.auto import auto
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 from slidercrank.optimise.solve import solve
@@ -81,6 +84,12 @@ def problem(
 def _range(ends: Ends) -> Range:
     lower, upper = ends if isinstance(ends, tuple) else (ends, ends)
     return Range(lower=lower, upper=upper)
+
+
+def polish_few(patch: pytest.MonkeyPatch) -> None:
+    """Polish few designs a search, for what does not depend on how near to the best they come."""
+    for name, count in (("_FEWEST", 6), ("_EXTREMES", 2), ("_STARTS", 6)):
+        patch.setattr(auto, name, count)
 
 
 @cache

@@ -17,7 +17,7 @@ from slidercrank.optimise.search import checkpoints, search
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
-from .problems import Bounds, degrees, problem
+from .problems import Bounds, degrees, polish_few, problem
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
 GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=4, samples=64)
@@ -25,9 +25,10 @@ GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, des
 
 @pytest.fixture(autouse=True)
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tell at every occasion, and keep every step at once."""
+    """Tell at every occasion, and keep every step at once; polish few designs."""
     monkeypatch.setattr(search, "TELL", 0.0)
     monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
+    polish_few(monkeypatch)
 
 
 def searched(**more: object) -> tuple[ParetoFront, list[Progress], list[Record]]:

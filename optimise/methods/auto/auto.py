@@ -28,6 +28,7 @@ ROUNDS = 4
 BATCH = 64
 """Designs polished together."""
 _POOL = 2000  # greedy choice among more would take longer than it gains
+_FEWEST = 16  # designs polished, however few are asked for: more of them reach the best
 _STARTS = 24  # for the best value of a single objective
 _EXTREMES = 6  # for the best value of one objective among several
 _WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
@@ -102,7 +103,7 @@ def move(finished: Finished, candidates: Candidates, evaluators: list[Evaluator]
 
 
 def _candidates(problem: Problem) -> int:
-    return max(16, int(1.3 * problem.settings.designs))
+    return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
 def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> NDArray[np.int64]:

@@ -26,8 +26,7 @@ STROKE: dict[str, Bounds] = {"stroke": (0.08, 0.09), "transmission_angle": (degr
 def best_end(wanted: Problem) -> tuple[Evaluator, Point, float]:
     """Return the best feasible end of the descents, its evaluator, and the scale of the objective."""
     evaluators = [Evaluator(wanted, sheet) for sheet in sheets(wanted)]
-    light = replace(wanted, settings=replace(wanted.settings, samples=1024))
-    scale, begin = starts(wanted, evaluators, explore(light, evaluators))
+    scale, begin = starts(wanted, evaluators, explore(wanted, evaluators))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     ends = [(evaluators[index], descents[index].run(u)) for index, u in begin]
     evaluator, end = min((item for item in ends if item[1].violation <= FEASIBLE), key=lambda item: item[1].top)

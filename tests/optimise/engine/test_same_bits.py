@@ -1,6 +1,6 @@
 """Whatever the engine, the workers and the chunks, a search finds the same bits."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -26,7 +26,7 @@ from slidercrank.optimise.search.judging import exactly, joined, quickly
 from slidercrank.optimise.search.polish import polish
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
-from tests.optimise.problems import problem, shipped
+from tests.optimise.problems import polish_few, problem, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module
 from tests.optimise.test_robust import TOLERANT, plain
 
@@ -35,6 +35,14 @@ JOB = robust(
     Robust(samples=1024, quantities=("peak_torque", "time_ratio")),
 )
 CUTS = ([0, 1, 40], [0, 7, 16, 33, 40], [0, 39, 40])
+
+
+@pytest.fixture(autouse=True, scope="module")
+def few() -> Iterator[None]:
+    """Polish few designs."""
+    with pytest.MonkeyPatch.context() as patch:
+        polish_few(patch)
+        yield
 
 
 @pytest.fixture(scope="module")
