@@ -30,7 +30,7 @@ def root(pytestconfig: pytest.Config) -> Path:
 def solved(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with a run in its `runs`."""
     folder = tmp_path_factory.mktemp("solved")
-    job = ["optimise", root / "runs/feeder.toml", "--no-figures", "--designs", "20"]
+    job = ["optimise", str(root / "runs/feeder.toml"), "--no-figures", "--designs", "20"]
     subprocess.run([sys.executable, "-m", "slidercrank", *job], cwd=folder, capture_output=True, check=True)
     return folder
 
