@@ -193,8 +193,11 @@ class Finished(Candidates):
                 theirs[len(kept)] = values[row]
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
-        theirs = theirs[: len(kept)]
-        alone = [row for row in kept if _as_good(theirs, values[row], equal).sum() == 1]
+        theirs, alone = theirs[: len(kept)], []
+        for row in kept:
+            stand(len(rows), len(rows))
+            if _as_good(theirs, values[row], equal).sum() == 1:
+                alone.append(row)
         return np.array(sorted(alone), dtype=np.int64)
 
 

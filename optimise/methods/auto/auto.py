@@ -140,8 +140,10 @@ def challengers(
     best = finished[finished.best(stand)]
     front = best.values / best.span
     _sample(problem, evaluators, archive, best, attempt)
+    stand(0, 1)
     screened = archive.values / best.span
     better, uncovered = _against(screened, front)
+    stand(0, 1)
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(better & archive.met)[:_FILLING]
     wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
