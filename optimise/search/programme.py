@@ -15,6 +15,7 @@ Without objectives the step is the shortest one that fulfils the constraints.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -63,51 +64,42 @@ def solve_step(
     ch. 23.4).
     """
     k, count = len(u), len(chosen)
-    size = k + 2 * count + 1
     low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
-    blocks: list[Array] = []  # rows a z <= b for z = (d, t, v, w)
-    bounds: list[Array] = []
-
-    def demand(bound: Array, *parts: tuple[int, Array]) -> slice:
-        block = np.zeros((len(bound), size))
-        for column, part in parts:
-            block[:, column : column + part.shape[1]] = part
-        begin = sum(len(known) for known in bounds)
-        blocks.append(block)
-        bounds.append(bound)
-        return slice(begin, begin + len(bound))
-
-    pieces = []
-    for place, owner in enumerate(chosen):
-        columns = np.flatnonzero((goals.owner == owner) & (goals.values > tops[owner] - _REACH))
-        bound = tops[owner] - goals.values[columns]
-        rows = demand(bound, (0, goals.gradients[columns]), (k + place, -np.ones((len(columns), 1))))
-        pieces.append((columns, rows))
-    one, none = np.eye(count), np.zeros(count)
-    losing = demand(np.full(count, ROUNDING), (k, one), (k + count, -one))
-    demand(none, (k + count, -one))
+    pieces = [np.flatnonzero((goals.owner == owner) & (goals.values > tops[owner] - _REACH)) for owner in chosen]
     near = np.flatnonzero(np.isfinite(limits.values))
-    limiting = demand(-limits.values[near], (0, limits.gradients[near]), (size - 1, -np.ones((len(near), 1))))
-    demand(np.zeros(1), (size - 1, -np.ones((1, 1))))
-    above = demand(high, (0, np.eye(k)))
-    below = demand(-low, (0, -np.eye(k)))
-    move, dual = _least_distance(
-        np.concatenate(blocks),
-        np.concatenate(bounds),
-        hessian,
-        np.concatenate([np.ones(count), np.full(count, LOSS), [violation]]),
-    )
+    counts = [*map(len, pieces), count, count, len(near), 1, k, k]
+    ends = [0, *accumulate(counts)]
+    *goal_rows, losing, gaining, limiting, violating, above, below = map(slice, ends[:-1], ends[1:])
+    size = k + 2 * count + 1
+    rows, bounds = np.zeros((ends[-1], size)), np.zeros(ends[-1])  # a z <= b for z = (d, t, v, w)
+    one, edge = np.eye(count), np.eye(k)
+    for place, (owner, columns, part) in enumerate(zip(chosen, pieces, goal_rows, strict=True)):
+        bounds[part] = tops[owner] - goals.values[columns]
+        rows[part, :k] = goals.gradients[columns]
+        rows[part, k + place] = -1.0
+    bounds[losing] = ROUNDING
+    rows[losing, k : k + count] = one
+    rows[losing, k + count : -1] = rows[gaining, k + count : -1] = -one
+    bounds[limiting] = -limits.values[near]
+    rows[limiting, :k] = limits.gradients[near]
+    rows[limiting, -1] = rows[violating, -1] = -1.0
+    bounds[above], bounds[below] = high, -low
+    rows[above, :k], rows[below, :k] = edge, -edge
+    weights = np.concatenate([np.ones(count), np.full(count, LOSS), [violation]])
+    move, dual = _least_distance(rows, bounds, hessian, weights)
+    held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
-    normals = [limits.gradients[near][dual[limiting] > 0.0]]
-    edge = np.eye(k)
-    normals.append(edge[(dual[above] > 0.0) & (high < radius)])
-    normals.append(edge[(dual[below] > 0.0) & (low > -radius)])
     limit_weight[near] = dual[limiting]
-    for place, (columns, rows) in enumerate(pieces):
-        goal_weight[columns] = dual[rows]
-        tied = goals.gradients[columns[dual[rows] > 0.0]]
+    normals = [
+        limits.gradients[near[held[limiting]]],
+        edge[held[above] & (high < radius)],
+        edge[held[below] & (low > -radius)],
+    ]
+    for loses, columns, part in zip(held[losing].tolist(), pieces, goal_rows, strict=True):
+        goal_weight[columns] = dual[part]
+        tied = goals.gradients[columns[held[part]]]
         normals.append(tied[1:] - tied[:1])
-        if dual[losing][place] > 0.0:
+        if loses:
             normals.append(tied[:1])
     return Step(np.clip(move, low, high), goal_weight, limit_weight, np.concatenate(normals))
 
