@@ -139,6 +139,7 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
     taken[: len(picked)] = scaled[picked]
     heap = [(-float(boxes[index]), index, -1) for index in sorted(set(range(n)) - set(picked))]
     heapq.heapify(heap)
+    volume = moocore.Hypervolume(ref=np.full(scaled.shape[1], REFERENCE))
     while len(picked) < count and heap:
         stand(len(picked), count)
         _, index, age = heapq.heappop(heap)
@@ -147,6 +148,6 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
             picked.append(index)
         else:
             shared = corners[: _shared(taken, len(picked), scaled[index], corners)]
-            gain = float(boxes[index]) - (float(moocore.hypervolume(shared, ref=REFERENCE)) if len(shared) else 0.0)
+            gain = float(boxes[index]) - (float(volume(shared)) if len(shared) else 0.0)
             heapq.heappush(heap, (-gain, index, len(picked)))
     return np.array(sorted(picked))
