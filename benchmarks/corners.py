@@ -95,6 +95,12 @@ def jobs() -> dict[str, tuple[Job, float]]:
         "six variables": job(lambda made: made["variables"].update({link: ["200 g", "1 kg"] for link in links})),
         "27 choices": job(lambda made: made["variables"].update({link: {"choices": [*options]} for link in links})),
         "nothing feasible": job(lambda made: made["constraints"].update(peak_torque={"max": "90 N m"})),
+        "nothing feasible, RMS torque": job(lambda made: made["constraints"].update(rms_torque={"max": "30 N m"})),
+        "nothing feasible, friction": job(
+            lambda made: made.update(
+                friction=rubs, constraints=made["constraints"] | {"peak_torque": {"max": "90 N m"}}
+            )
+        ),
         "own quantity, NumPy": job(own("in_numpy")),
         "own quantity, Python": job(own("in_python"), IN_PYTHON),
         "own quantity, peaks": job(own("of_motion")),

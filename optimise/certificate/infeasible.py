@@ -8,9 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ..problem.problem import Problem
-from ..search.elimination import sheets
+from ..search.elimination import Sheet, sheets
 from ..search.evaluation import FEASIBLE, Evaluator
-from .boxes import Boxes
+from .boxes import Boxes, usable
 from .tree import Tree, pool
 
 SECONDS = 5.0
@@ -21,15 +21,15 @@ _MOST = 400_000  # boxes bounded: the same job gives the same answer unless the 
 def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callable[[], None] = lambda: None) -> bool:
     """Return whether it is proven that no design of the job's ranges meets all its requirements.
 
-    False when a design meets them all, or when the budget ends first: then nothing is known. Requirements that cannot
-    be bounded over a range of designs are not used: the others must contradict each other. False, too, where more than
-    the three dimensions varies. poll: called many times a second; what it raises ends the search.
+    Requirements that cannot be bounded over a range of designs are not used: the others must contradict each other.
+    False when a design meets all of these, or when the budget ends first: then nothing is known. False, too, where more
+    than the three dimensions varies. poll: called many times a second; what it raises ends the search.
     """
     if problem.mechanism.varying or problem.choices:
         return False
     start = time.perf_counter()
     one = np.ones(len(problem.objectives))
-    tree = Tree.of([Boxes(Evaluator(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
+    tree = Tree.of([Boxes(_judging(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
     with pool() as threads:
         fresh = [(index, *tree.first(index)) for index in range(len(tree.sheets))]
         while fresh:
@@ -48,3 +48,10 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
                 return False
             fresh = tree.halved(rows)
     return not len(tree)
+
+
+def _judging(problem: Problem, sheet: Sheet) -> Evaluator:
+    """Return an evaluator that knows only the requirements that rule out boxes: what meets these is never ruled out."""
+    evaluator = Evaluator(problem, sheet)
+    evaluator.constraints = tuple(item for item in evaluator.constraints if usable(problem, item))
+    return evaluator

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..engine.engine import Engine
 from ..front.stationarity import Array
@@ -14,9 +13,8 @@ from ..problem.problem import Problem, Settings
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
 from ..search.evaluation import FEASIBLE, Evaluator, constraints_of
-from ..search.pieces import Rows
-from ..search.recorded import polished
-from ..search.sampling import apart, first_samples
+from ..search.sampling import first_samples
+from ..search.violation import least_violation
 from .best import Best
 from .relaxation import Relaxation, missed, relaxations
 
@@ -36,21 +34,6 @@ class Diagnosis:
     feasible: Array
     relaxations: tuple[Relaxation, ...]
     message: str
-
-
-class _Violations:
-    """Presents all constraint rows as the pieces of one objective, to be made as small as possible."""
-
-    def __init__(self, evaluator: Evaluator) -> None:
-        self.inner = evaluator
-
-    def valid(self, u: Array) -> NDArray[np.bool_]:
-        return self.inner.valid(u)
-
-    def exact(self, u: Array) -> tuple[Rows, Rows]:
-        _, limits = self.inner.exact(u)
-        goals = Rows(limits.values, limits.gradients, limits.labels, np.zeros(len(limits.owner), np.int64))
-        return goals, Rows.none(*u.shape)
 
 
 def diagnose(
@@ -109,13 +92,10 @@ def _least_violation(
     for index, sheet in enumerate(sheets(problem, eliminate=False)):
         evaluator = Evaluator(problem, sheet, checkpoints, engine)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
-        u = u[evaluator.valid(u)]
-        if not len(u):
+        found = least_violation(evaluator, u, ranked=_RANKED, starts=_STARTS)
+        if not len(found):
             continue
         turning = True
-        u = u[:: max(1, len(u) // _RANKED)]
-        starts = u[apart(_greatest(evaluator, u), u, np.zeros(len(u), np.int64), _STARTS)]
-        found = polished(evaluator, starts, np.ones(1), shown=_Violations(evaluator))
         dimensions = sheet.dimensions(found.u)
         feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
         row = int(np.argmin(found.values[:, 0]))
@@ -139,12 +119,3 @@ def _together(problem: Problem, variant: int, design: Array) -> str:
     chosen = "".join(f"{name} {label}, " for name, label in zip(problem.choices, labels, strict=True))
     sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
     return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
-
-
-def _greatest(evaluator: Evaluator, u: Array) -> Array:
-    """Return the greatest relative violation (n,) of points."""
-
-    def greatest() -> tuple[Array]:
-        return (evaluator.exact(u)[1].values.max(axis=1, initial=0.0),)
-
-    return evaluator.step("violation", (u,), greatest)[0]

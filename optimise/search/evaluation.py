@@ -165,20 +165,24 @@ class Evaluator:
         """Return which points give a linkage that turns fully."""
         return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
 
-    def exact(self, u: Array) -> tuple[Rows, Rows]:
-        """Return objective rows and constraint rows, in unit-box coordinates, of points where `valid` holds."""
+    def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
+        """Return objective rows, none if not asked for, and constraint rows of points where `valid` holds.
+
+        Gradients are by the coordinates of the unit box.
+        """
         self.checkpoints.poll()
         dimensions = self.sheet.dimensions(u)
         jacobian = self.sheet.jacobian(u)
         self.evaluations += len(u)
-        wanted = [objective.quantity for objective in self.problem.objectives]
+        objectives = self.problem.objectives if goals else ()
+        wanted = [objective.quantity for objective in objectives]
         names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
         found = joined(self.chunked(_exactly, names, dimensions))
         pieces = {name: _in_box(own, jacobian) for name, own in zip(names, found, strict=True)}
         parts: list[tuple[int, Pieces]] = []
-        for index, objective in enumerate(self.problem.objectives):
+        for index, objective in enumerate(objectives):
             parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
-        goals = _stack(parts, len(u), self.dimension)
+        aims = _stack(parts, len(u), self.dimension)
         parts = []
         for index, constraint in enumerate(self.constraints):
             own = pieces[constraint.quantity]
@@ -189,7 +193,7 @@ class Evaluator:
             value = sign * dimensions[:, column : column + 1]
             own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
             parts += [(index, _beyond(own, *side)) for side in _range_sides(self.sheet.bounds[name])]
-        return goals, _stack(parts, len(u), self.dimension)
+        return aims, _stack(parts, len(u), self.dimension)
 
 
 def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:

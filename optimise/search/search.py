@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...objectives.robust.quantity import RobustQuantity
 from ..front.hypervolume import Stand, nondominated
 from ..front.progress import REPEATING, Progress
 from ..front.stationarity import Array
@@ -19,6 +20,7 @@ from .evaluation import FEASIBLE, Evaluator
 from .growth import Growth
 from .recorded import polished
 from .sampling import around, first_samples, generator
+from .violation import least_violation
 
 FIRST = 16384
 """Designs of the first round, everywhere."""
@@ -35,6 +37,8 @@ LEAST = 1024
 """Designs of a round on each of many sheets."""
 _ROUND = 100  # of sheets that leave nothing free
 _CROWD = 2000  # parents of a round
+_RANKED, _LEAST_RANKED = 256, 64  # samples of which the best lead down, of all sheets and at least of each
+_STARTS = 8  # the same of those that do
 _BEST = 1000  # designs kept of a single objective
 _SHOWN = 400  # designs of a front so far, and of that of a round in the history
 TELL = 0.5
@@ -225,7 +229,8 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     archive = run.archive = Archive.empty(len(problem.objectives))
     samples = problem.settings.samples or FIRST
     loose = any(evaluator.loose for evaluator in evaluators)
-    for attempt, band in enumerate(BANDS[1:] if loose else BANDS[:-1]):
+    bands = BANDS[1:] if loose else BANDS[:-1]
+    for attempt, band in enumerate(bands):
         archive.band = band
         # A small feasible region wants more points before it is given up.
         count = share(samples * 4**attempt, evaluators)
@@ -233,7 +238,9 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
-        if found >= min(ENOUGH, samples):
+        if found >= min(ENOUGH, samples) or (
+            not attempt and not found and _out_of_reach(problem, evaluators, bands[-1])
+        ):
             break
     run.tell("sampling", evaluators, archive)
     if len(archive):
@@ -263,3 +270,21 @@ def _near(
     own = parents.sheet == index
     count = max(1, int(samples * own.mean()))
     return around(parents.u[own][:, :dimension], parents.values[own], count, width, random)
+
+
+def _out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
+    """Whether descent from the best samples stays farther from the requirements than the band of the last samples.
+
+    Sixteen times as many samples in that band would cost more, and say less: their best are no local optima. Not told
+    of robust quantities, which are estimated for samples at a small part of what descent takes.
+    """
+    robust = any(isinstance(own, RobustQuantity) for own in problem.own)
+    if robust or problem.without_gradient():
+        return False
+    k = len(evaluators)
+    for index, evaluator in enumerate(evaluators):
+        u = first_samples(FIRST // k, evaluator.dimension, problem.settings.seed, index)
+        found = least_violation(evaluator, u, ranked=max(_LEAST_RANKED, _RANKED // k), starts=max(2, _STARTS // k))
+        if (found.values <= band).any():
+            return False
+    return True
