@@ -37,6 +37,8 @@ RUNS = 10_000
 DESIGNS = 100
 LARGE = 10_000  # designs of the one large run
 MOST = 300.0  # ms
+FIRST_PAGE = 100.0  # ms
+ROW = 600.0  # bytes of a run in the list
 REPEATS = 50
 _STATES = ["done"] * 95 + ["infeasible"] * 2 + ["cancelled"] * 2 + ["failed"]
 _NAMES = [f"{machine} of line {number}" for number in range(1, 21) for machine in ("Feeder", "Sieve", "Press")]
@@ -58,7 +60,7 @@ def measure(address: str, *, runs: int = RUNS, large: int = LARGE, repeats: int 
         spare_imports()  # as the service does
         with asyncio.Runner() as loop:
             questions = [*_questions(store, tables, done, runs), *_requests(store, loop, done, runs)]
-            return [filled, *(_timed(what, ask, repeats) for what, ask in questions)]
+            return [filled, _row(store, loop), *(_timed(what, ask, repeats) for what, ask in questions)]
 
 
 def _questions(
@@ -92,8 +94,7 @@ def _questions(
 def _requests(
     store: Store, loop: asyncio.Runner, done: list[int], runs: int
 ) -> Iterator[tuple[str, Callable[[], object]]]:
-    chance = random.Random(3)
-    client = httpx.AsyncClient(transport=httpx.ASGITransport(create_app(store)), base_url="http://127.0.0.1/api/v1/")
+    chance, client = random.Random(3), _client(store)
 
     def get(path: str) -> None:
         answer = loop.run(client.get(path.format(chance.choice(done))))
@@ -119,13 +120,22 @@ def _requests(
         yield f"GET {shown}", partial(get, path)
 
 
+def _client(store: Store) -> httpx.AsyncClient:
+    return httpx.AsyncClient(transport=httpx.ASGITransport(create_app(store)), base_url="http://127.0.0.1/api/v1/")
+
+
+def _row(store: Store, loop: asyncio.Runner) -> Row:
+    answer = loop.run(_client(store).get("jobs"))
+    return Row("a run in the list, bytes", [len(answer.content) / len(answer.json()["jobs"])], at_most=ROW)
+
+
 def _timed(what: str, ask: Callable[[], object], repeats: int) -> Row:
     times = []
     for _ in range(repeats):
         begin = time.perf_counter()
         ask()
         times.append(1e3 * (time.perf_counter() - begin))
-    return Row(f"{what}, ms", times, at_most=MOST, worst=True)
+    return Row(f"{what}, ms", times, at_most=FIRST_PAGE if what == "GET jobs" else MOST, worst=True)
 
 
 def _feeder() -> tuple[dict[str, Any], Result]:
