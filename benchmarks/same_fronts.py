@@ -2,8 +2,10 @@
 
 Each checkout solves the shipped jobs and 50 random ones with the Python of its own `.venv`, on this machine. Compared
 are dimensions, objectives, every number of the table of designs and the hypervolume, or the message of a refusal.
-Columns that one checkout alone has are named and left out.
-Prints a line for each job that differs and a summary; ends with 1 where one differs.
+Columns that one checkout alone has are named and left out. A front that differs is no worse where none of its designs
+is dominated by one of the other front by more than 1e-9 of that one's range, and its hypervolume in the box of both
+together is lower by 1e-6 at most. Prints a line for each job that differs and a summary; ends with 1 where one differs,
+and with `--no-worse` only where one is worse.
 """
 
 from __future__ import annotations
@@ -22,9 +24,12 @@ from typing import Any
 
 import numpy as np
 
+from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+
 Table = dict[str, Any]
 
 COUNT = 50
+DOMINATED, LOWER = 1e-9, 1e-6  # of a range; of the hypervolume
 OBJECTIVES = {
     "peak_torque": "minimise",
     "transmission_angle": "maximise",
@@ -137,11 +142,31 @@ def fronts(checkout: Path, asked: Mapping[str, Table]) -> dict[str, Table]:
         return read
 
 
+def worse(ours: Table, theirs: Table) -> str:
+    """Return in which way our front is worse than the other one; empty where it is not."""
+    for part in ("error", "status"):
+        if ours.get(part) != theirs.get(part):
+            return f"another {part}"
+    fronts = [np.array([[*map(float.fromhex, row)] for row in front.get("values", ())]) for front in (ours, theirs)]
+    if not all(map(len, fronts)):
+        return "" if len(fronts[0]) == len(fronts[1]) else "no designs on one side"
+    our, their = fronts
+    apart = (our[:, None] - their) / scaling(their)[1]
+    beaten = ((apart >= 0.0).all(axis=2) & (apart.max(axis=2) > DOMINATED)).any(axis=1)
+    if beaten.any():
+        return f"{beaten.sum()} of {len(our)} designs dominated"
+    box = scaling(np.concatenate(fronts))
+    lost = hypervolume(their, *box) - hypervolume(our, *box)
+    return f"hypervolume lower by {lost:.2g}" if lost > LOWER else ""
+
+
 def main() -> int:
     """Compare and print; return 1 where a front differs."""
     parser = argparse.ArgumentParser(description="Fronts of two checkouts compared bit for bit.")
     parser.add_argument("other", type=Path, help="a checkout with an installed .venv; this one is the current folder")
-    here, other = Path.cwd(), parser.parse_args().other.absolute()
+    parser.add_argument("--no-worse", action="store_true", help="end with 1 only where a front of this one is worse")
+    given = parser.parse_args()
+    here, other = Path.cwd(), given.other.absolute()
     if not (other / ".venv/bin/python").exists():
         parser.error(f"a checkout to compare with must have an installed .venv; {other} has none; run make run in it")
     asked = jobs(here)
@@ -156,18 +181,20 @@ def main() -> int:
     if extra:
         print(f"not compared: {', '.join(sorted(extra))}")
     differing = [name for name in asked if ours[name] != theirs[name]]
+    lost = {name: why for name in differing if (why := worse(ours[name], theirs[name]))}
     for name in differing:
-        parts = sorted({*ours[name], *theirs[name]})
-        print(f"{name}: {', '.join(part for part in parts if ours[name].get(part) != theirs[name].get(part))} differ")
+        our, their = ours[name], theirs[name]
+        parts = [part for part in sorted({*our, *their}) if our.get(part) != their.get(part)]
+        print(f"{name}: {', '.join(parts)} differ; {lost.get(name, 'no worse')}")
         if "error" in ours[name] or "error" in theirs[name]:
             print(f"  {ours[name].get('error')}\n  {theirs[name].get('error')}")
     refused = sum("error" in front for front in ours.values())
     designs = sum(len(front.get("dimensions", ())) for front in ours.values())
     print(
         f"{len(asked)} jobs, {designs} designs, {refused} refused: {len(asked) - len(differing)} the same bit for bit, "
-        f"{len(differing)} not"
+        f"{len(differing)} not, of these {len(lost)} worse"
     )
-    return 1 if differing else 0
+    return 1 if (lost if given.no_worse else differing) else 0
 
 
 if __name__ == "__main__":
