@@ -63,12 +63,12 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     if mechanism.varying:
         names = ", ".join(item.name for item in mechanism.varying)
         raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
-    raw = np.zeros(Raw.END + LOAD_SLOTS * len(mechanism.loads))
+    raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # takes parts sooner than an array
     raw[Raw.BRANCH] = 1.0 if mechanism.branch == "open" else -1.0
     raw[Raw.SPEED] = mechanism.speed
     raw[Raw.ACCELERATION] = mechanism.acceleration
     raw[Raw.SLIDER_MASS] = mechanism.slider_mass
-    raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y]] = mechanism.gravity
+    raw[Raw.GRAVITY_X], raw[Raw.GRAVITY_Y] = mechanism.gravity
     raw[Raw.CRANK_WIDTH : Raw.CRANK_WIDTH + 9] = _link_numbers(mechanism.crank)
     raw[Raw.ROD_WIDTH : Raw.ROD_WIDTH + 9] = _link_numbers(mechanism.rod)
     weight = mechanism.counterweight
@@ -89,10 +89,12 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     friction = mechanism.friction
     raw[Raw.GUIDE_FRICTION] = friction.guide
     for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
-        raw[Raw.CRANK_PIVOT_RADIUS + 2 * index :][:2] = pin.radius, pin.coefficient
+        place = Raw.CRANK_PIVOT_RADIUS + 2 * index
+        raw[place : place + 2] = pin.radius, pin.coefficient
     for index, load in enumerate(mechanism.loads):
-        raw[Raw.END + LOAD_SLOTS * index :][:LOAD_SLOTS] = load.numbers()
-    return raw
+        place = Raw.END + LOAD_SLOTS * index
+        raw[place : place + LOAD_SLOTS] = load.numbers()
+    return np.array(raw, dtype=np.float64)
 
 
 def _link_numbers(link: Link) -> tuple[float, ...]:
