@@ -26,6 +26,18 @@ def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     """Return the digest of a kernel for arguments like the examples."""
     found = hashlib.sha256(_surroundings())
     found.update(_of(examples).encode())
+    for _, text in _reached(function):
+        found.update(text)
+    return found.hexdigest()[:24]
+
+
+def size(function: Callable[..., Any]) -> int:
+    """Return the length of the code of a kernel and all its formulas: the longer it is, the longer it compiles."""
+    return sum(len(each.__code__.co_code) for each, _ in _reached(function))
+
+
+def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
+    """Yield a function and all that it calls, each with what it is by itself."""
     seen: set[int] = set()
     waiting: list[Any] = [function]
     while waiting:
@@ -33,9 +45,8 @@ def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
         if id(value) not in seen:
             seen.add(id(value))
             text, more = _parts(value)
-            found.update(text)
+            yield value, text
             waiting.extend(more)
-    return found.hexdigest()[:24]
 
 
 @cache

@@ -10,6 +10,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+from .closure import size
 from .disk import INTO, MODEL, building, compile_beside, keep, locked, read, wanted_files
 from .folder import kernel_folder
 from .kernel import KERNELS
@@ -27,7 +28,7 @@ def compile_missing(folder: Path, package: str) -> None:
     asked = [kernel for kernel in KERNELS if kernel.function.__module__.startswith(package)]
     tasks = [(wanted, wanted.file(folder)) for kernel in asked for wanted in kernel.variants().values()]
     # First variants before second ones, and of these what takes long.
-    tasks.sort(key=lambda task: (task[0].name.count("-1"), -len(task[0].function.__code__.co_code)))
+    tasks.sort(key=lambda task: (task[0].name.count("-1"), -size(task[0].function)))
     count, parent = len(tasks), os.getppid()
     while tasks and os.getppid() == parent:  # it may have been killed
         names = wanted_files(folder)
