@@ -1,4 +1,4 @@
-"""Checks of single numbers: fields of a machine, and whatever else is given one by one."""
+"""Checks of fields of a machine, and of whatever else is given one by one."""
 
 from __future__ import annotations
 
@@ -38,3 +38,12 @@ def require_all_finite(what: str, values: Iterable[float], where: str = "") -> N
             raise InputError(f"{what} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
         if not finite:
             raise InputError(f"{what} must be finite{where and f' {where}'}; got {value}")
+
+
+def keep_tuples(owner: object, *names: str) -> None:
+    """Turn fields given as lists or arrays into tuples: machines and problems are compared and hashed."""
+    for name in names:
+        value = getattr(owner, name)
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, list):
+            object.__setattr__(owner, name, tuple(value))

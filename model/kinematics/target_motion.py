@@ -20,6 +20,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import keep_tuples
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
 from ..kernel.batches import in_chunks, turning
@@ -53,6 +54,7 @@ class TargetMotion:
     shift: Freedom = "fixed"
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "crank_angles", "positions")
         for name in ("phase", "shift"):
             if getattr(self, name) not in ("fixed", "free"):
                 raise InputError(f"{name} of a target motion must be 'fixed' or 'free'; got {getattr(self, name)!r}")

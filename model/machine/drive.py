@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import require_all_finite, require_numbers
+from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import InputError
 
 
@@ -85,6 +85,7 @@ class TorqueTable:
     torques: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "speeds", "torques")
         if len(self.speeds) != len(self.torques) or len(self.speeds) < 2:
             raise InputError(
                 "a torque table needs as many torques as speeds, two at least; "

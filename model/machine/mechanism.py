@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from ..checks import require_all_finite, require_numbers
+from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import InputError
 from .clearance import Clearance
 from .drive import Drive
@@ -117,6 +117,7 @@ class Mechanism:
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "gravity", "loads", "varying")
         require_numbers(self, "speed", "acceleration", what="{}")
         require_numbers(self, "slider_mass", what="the slider mass", least=0.0, unit="kg")
         require_all_finite("gravity", self.gravity)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
+from ..checks import keep_tuples
 from ..errors import InputError
 
 
@@ -26,6 +27,7 @@ class Varying:
     upper: float
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "sets")
         if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
             raise InputError(
                 f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"

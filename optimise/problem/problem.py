@@ -12,6 +12,7 @@ from typing import Literal, overload
 
 from numpy.typing import ArrayLike
 
+from ...model.checks import keep_tuples
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.machine.loads.load import require_word
@@ -74,6 +75,7 @@ class Variant:
     slow_stroke: SlowStroke | None = None
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "labels", "limits")
         _require_stroke(self.slow_stroke)
 
 
@@ -104,6 +106,7 @@ class Problem:
     slow_stroke: SlowStroke | None = None
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants")
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):

@@ -6,10 +6,12 @@ import dataclasses
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
+from tests.model.cases import random_machine
 
 
 @pytest.mark.parametrize(
@@ -61,3 +63,23 @@ def test_window_needs_a_known_stroke() -> None:
 def test_mechanism_is_immutable() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         Mechanism().speed = 3.0  # type: ignore[misc]
+
+
+def loosened(part: Any) -> Any:
+    """Return a part of a machine made anew, its tuples given as lists, those of numbers as arrays."""
+    if isinstance(part, tuple):
+        return np.array(part) if part and isinstance(part[0], float) else [loosened(each) for each in part]
+    if not dataclasses.is_dataclass(part) or isinstance(part, type):
+        return part
+    return type(part)(**{field.name: loosened(getattr(part, field.name)) for field in dataclasses.fields(part)})
+
+
+def test_lists_and_arrays_serve_as_tuples() -> None:
+    random = np.random.default_rng(17)
+    kinds = set()
+    for _ in range(60):
+        machine = random_machine(random)
+        kinds |= {type(load).__name__ for load in machine.loads}
+        assert loosened(machine) == machine
+        assert hash(loosened(machine)) == hash(machine)
+    assert {"AngleTable", "PositionTable"} <= kinds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -159,3 +160,12 @@ def test_settings_are_within_their_limits(name: str, value: int) -> None:
 def test_an_unknown_method_is_refused() -> None:
     with pytest.raises(InputError, match=r"must be one of auto, slsqp, .*; got 'guess'"):
         solve(replace(problem({"peak_torque": "minimise"}), settings=Settings(method="guess")))
+
+
+def test_lists_serve_as_tuples() -> None:
+    given = problem({"peak_torque": "minimise", "stroke": "maximise"}, {"transmission_angle": (0.7, None)})
+    names = ("objectives", "constraints", "own", "choices", "variants")
+    lists: dict[str, Any] = {name: list(getattr(given, name)) for name in names}
+    loose = replace(given, **lists)
+    assert loose == given
+    assert hash(loose) == hash(given)

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ...checks import keep_tuples
 from ...errors import InputError
 from .load import DURING, FORCES, During, Enters, Entry, Load, Passage, Table, require_table, require_word
 
@@ -28,6 +29,7 @@ class AngleTable(Load):
     enters: ClassVar = Enters.ANGLE_TABLE
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "angles", "forces")
         require_table("angles", self.angles, self.forces)
         require_word("during", self.during, During)
         span = self.angles[-1] - self.angles[0]

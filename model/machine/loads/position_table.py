@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ...checks import keep_tuples
 from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Passage, Table, require_table, require_word
 
 
@@ -26,6 +27,7 @@ class PositionTable(Load):
     enters: ClassVar = Enters.POSITION_TABLE
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "positions", "forces")
         require_table("positions", self.positions, self.forces)
         require_word("datum", self.datum, Datum)
         require_word("during", self.during, During)
