@@ -131,17 +131,16 @@ def test_debugging_shows_the_traceback_of_a_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
-def test_a_killed_run_is_marked_unfinished(tmp_path: Path) -> None:
+def test_a_killed_run_is_marked_unfinished(tmp_path: Path, command: Command) -> None:
     process = start(SLOW.format(stuck=False), "optimise", fronts.job_file(tmp_path), "--runs", tmp_path / "runs")
     run = under_way(tmp_path / "runs", process)
     process.send_signal(signal.SIGKILL)
     process.communicate()
     with pytest.raises(RunError, match="is unfinished"):
         read_run(run)
-    done = start("from slidercrank.service.cli import main; main()", "front", run)
-    _, message = done.communicate()
-    assert done.returncode == 2
-    assert "is unfinished" in message
+    done = command("front", run)
+    assert done.exit_code == 2
+    assert "is unfinished" in done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
