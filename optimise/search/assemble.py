@@ -53,7 +53,8 @@ def assemble(
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
     variants = np.array([evaluators[index].sheet.variant for index in best.sheet], dtype=np.int64)
-    table = table_of(problem, variants, dimensions, run.stage(FINISHING))
+    finishing = run.stage(FINISHING)
+    table = table_of(problem, variants, dimensions, finishing)
     table["residual"] = residual
     table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
@@ -69,7 +70,9 @@ def assemble(
         goals=tuple((owner, slopes * best.span[owner.astype(int)][:, None]) for owner, slopes in goals),
         active=tuple(active),
         hypervolume=hypervolume(values, ideal, span),
-        history=run.history(ideal, span, *((_GLIMPSE,) if status == "cancelled" else ())),
+        history=run.history(
+            ideal, span, _GLIMPSE if status == "cancelled" else None, lambda: finishing(len(best), len(best))
+        ),
         variants=tuple(variants.tolist()) if problem.variants else (),
     )
 

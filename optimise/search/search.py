@@ -190,15 +190,19 @@ class Run:
             hearing(entry)
         self._heard = time.monotonic()
 
-    def history(self, ideal: Array, span: Array, most: int | None = None) -> tuple[Progress, ...]:
+    def history(
+        self, ideal: Array, span: Array, most: int | None = None, poll: Callable[[], None] = lambda: None
+    ) -> tuple[Progress, ...]:
         """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.
 
-        most: designs of each round that count; the others would add little.
+        most: designs of each round that count; the others would add little. poll: called for each round.
         """
         growth = Growth(self._targets, box=(ideal, span), most=most)
-        return tuple(
-            replace(entry, hypervolume=growth.take(front)) for entry, front in zip(self.told, self.fronts, strict=True)
-        )
+        rounds: list[Progress] = []
+        for entry, front in zip(self.told, self.fronts, strict=True):
+            poll()
+            rounds.append(replace(entry, hypervolume=growth.take(front)))
+        return tuple(rounds)
 
 
 def searched(evaluators: list[Evaluator]) -> list[Evaluator]:
