@@ -17,7 +17,7 @@ export PYTHONDONTWRITEBYTECODE :=
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
 test: $(VENV)/.installed-test
-	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.model slidercrank.optimise
+	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.optimise slidercrank.model
 	$(PYTEST) -m 'not slow'
 
 # Faults, installed copies, long walks through API and documentation: minutes for a few tests.

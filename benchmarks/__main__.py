@@ -1,21 +1,67 @@
-"""Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder."""
+"""Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder.
 
-from . import corners, evaluation, many_designs, methods, page, page_design, peak_accuracy, search, startup
-from .report import machine, show
+Beside those of another version, on the same machine: save that one's first, with its own Python and these files.
+    OTHER/.venv/bin/python -m benchmarks --save before.json; python -m benchmarks --before before.json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import traceback
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from . import (
+    corners,
+    evaluation,
+    many_designs,
+    methods,
+    page,
+    page_design,
+    peak_accuracy,
+    search,
+    service_rest,
+    startup,
+)
+from .report import Row, machine, show
+
+_ALL: dict[str, tuple[str, Callable[[], Iterable[Row]]]] = {
+    "evaluation": ("Evaluation", lambda: [*evaluation.speed(), *evaluation.accuracy(), *evaluation.memory()]),
+    "public": ("Evaluation by a problem", evaluation.public),
+    "search": ("Search", lambda: [row for job in ("feeder", "sieve") for row in search.compare(f"runs/{job}.toml")]),
+    "methods": ("Methods: hypervolume of the designs delivered over that of the default's", methods.compare),
+    "many": ("Many designs", many_designs.grows),
+    "corners": ("Unusual jobs, each solved in a warm process", corners.corners),
+    "commands": ("Commands", startup.commands),
+    "service": ("A service at rest", service_rest.rest),
+    "page": (f"The page with a front of {page.DESIGNS} designs", page.measure),
+    "design": ("A design on the page", page_design.solved),
+    "accuracy": ("Greatest relative error of peak torque, 1,000 random linkages", peak_accuracy.accuracy),
+}
 
 
 def main() -> None:
     """Measure and print."""
+    parser = argparse.ArgumentParser(prog="benchmarks", description="Measure and print.")
+    parser.add_argument("parts", nargs="*", help=f"all by default: {', '.join(_ALL)}")
+    parser.add_argument("--save", type=Path, help="a JSON file for the medians")
+    parser.add_argument("--before", type=Path, help="one that another version has saved")
+    given = parser.parse_args()
+    if unknown := set(given.parts) - set(_ALL):
+        parser.error(f"no such part: {', '.join(sorted(unknown))}")
+    before = json.loads(given.before.read_text()) if given.before else None
     print(machine())
-    show("Evaluation", [*evaluation.speed(), *evaluation.accuracy(), *evaluation.memory()])
-    show("Search", [row for job in ("feeder", "sieve") for row in search.compare(f"runs/{job}.toml")])
-    show("Methods: hypervolume of the designs delivered over that of the default's", methods.compare())
-    show("Many designs", many_designs.grows())
-    show("Unusual jobs, each solved in a warm process", corners.corners())
-    show("Commands", startup.commands())
-    show(f"The page with a front of {page.DESIGNS} designs", page.measure())
-    show("A design on the page", page_design.solved())
-    show("Greatest relative error of peak torque, 1,000 random linkages", peak_accuracy.accuracy())
+    medians: dict[str, float] = {}
+    for title, rows in (_ALL[name] for name in given.parts or _ALL):
+        try:
+            medians |= show(title, rows(), before)
+        except Exception:  # of a version that these files do not fit, what does fit is measured
+            if not given.save:
+                raise
+            traceback.print_exc()
+    if given.save:
+        given.save.write_text(json.dumps(medians, indent=1))
 
 
 main()

@@ -1,7 +1,4 @@
-"""Hypervolume of every method over time, on the shipped jobs, against peers; one figure.
-
-The peers are NSGA-II and NSGA-III of pymoo and MOEA/D of pygmo.
-"""
+"""Hypervolume of every method over time, on the shipped jobs, against peers; one figure."""
 
 from __future__ import annotations
 
@@ -9,33 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 import numpy as np
-from pymoo.algorithms.moo.nsga2 import NSGA2
-from pymoo.algorithms.moo.nsga3 import NSGA3
-from pymoo.core.callback import Callback
-from pymoo.core.problem import Problem as PymooProblem
-from pymoo.optimize import minimize
-from pymoo.util.ref_dirs import get_reference_directions
 
 from slidercrank.optimise.front.hypervolume import choose, hypervolume, nondominated, scaling
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.registry import methods as known
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
 from slidercrank.optimise.solve import solve
 
 from .machines import Array
+from .peers import EVALUATIONS, PEERS, run_peer
 from .report import Row
 
 JOBS = ("feeder", "sieve", "support")
-EVALUATIONS = 20_000
-"""Of the peers; ours take their own budgets."""
 FIGURE = Path(__file__).parent / "output" / "methods.png"
-_PENALTY = 1e3  # of the objectives' range: MOEA/D takes no constraints, so that a violation is added to all objectives
 
 
 @dataclass(frozen=True)
@@ -72,8 +58,8 @@ def compare(
         for name in names:
             asked = replace(given, settings=replace(given.settings, method=name, evaluations=evaluations))
             courses[given.name].append(_ours(asked, ideal, span, whole))
-        for title, make in _PEERS.items():
-            courses[given.name].append(_peer(title, make, given, evaluations or EVALUATIONS, ideal, span, whole))
+        for title in PEERS:
+            courses[given.name].append(_peer(title, given, evaluations or EVALUATIONS, ideal, span, whole))
         rows += [
             Row(f"{given.name}: {course.method} ({course.seconds[-1]:.1f} s) / auto", [float(course.hypervolumes[-1])])
             for course in courses[given.name][1:]
@@ -97,39 +83,13 @@ def _ours(problem: Problem, ideal: Array, span: Array, whole: float) -> Course:
     return Course(problem.settings.method, *_course(points))
 
 
-class _Peer(PymooProblem):  # type: ignore[misc]
-    """The reduced problem as pymoo wants it, of the first sheet: the shipped jobs have one."""
-
-    def __init__(self, problem: Problem, *, penalised: Array | None) -> None:
-        self.evaluator = Evaluator(problem, sheets(problem)[0])
-        self.penalised = penalised
-        limits = 0 if penalised is not None else 1
-        super().__init__(
-            n_var=self.evaluator.dimension, n_obj=len(problem.objectives), n_ieq_constr=limits, xl=0.0, xu=1.0
-        )
-
-    def _evaluate(self, x: Array, out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
-        _, objectives, violation = self.evaluator.screen(x)
-        violation = np.where(np.isfinite(violation), np.maximum(violation, 0.0), 1e3)
-        if self.penalised is None:
-            out["F"] = np.where(np.isfinite(objectives), objectives, 1e9)
-            out["G"] = (violation - FEASIBLE)[:, None]
-        else:
-            worse = (1.0 + violation)[:, None] * _PENALTY * self.penalised
-            out["F"] = np.where((violation <= FEASIBLE)[:, None], objectives, worse)
-
-
-class _Watch(Callback):  # type: ignore[misc]
+class _Watch:
     """Notes time and feasible non-dominated designs of the population after every generation."""
 
     def __init__(self, measure: Callable[[Array], float], worst: Array) -> None:
-        super().__init__()
         self.measure, self.worst = measure, worst
         self.begin, self.watching = perf_counter(), 0.0
         self.points: list[tuple[float, float]] = []
-
-    def notify(self, algorithm: Any) -> None:
-        self.note(algorithm.pop.get("F")[algorithm.pop.get("CV")[:, 0] <= 0.0])
 
     def note(self, values: Array) -> None:
         now = perf_counter()
@@ -138,56 +98,8 @@ class _Watch(Callback):  # type: ignore[misc]
         self.watching += perf_counter() - now
 
 
-def _directions(objectives: int, partitions: int = 7) -> Array:
-    return np.asarray(get_reference_directions("das-dennis", objectives, n_partitions=partitions))
-
-
-_MOEAD = "pygmo MOEA/D"
-_PEERS: dict[str, Callable[[int], Any]] = {
-    "pymoo NSGA-II": lambda m: NSGA2(pop_size=100),
-    "pymoo NSGA-III": lambda m: NSGA3(_directions(m)),
-    _MOEAD: lambda m: None,
-}
-
-
-class _Pygmo:
-    """The reduced problem as pygmo wants it, penalised, and a generation at once."""
-
-    def __init__(self, reduced: _Peer) -> None:
-        self.reduced = reduced
-
-    def fitness(self, x: Array) -> Array:
-        return self.batch_fitness(x)
-
-    def batch_fitness(self, x: Array) -> Array:
-        out: dict[str, Any] = {}
-        self.reduced._evaluate(np.asarray(x).reshape(-1, self.reduced.n_var), out)
-        return np.asarray(out["F"]).ravel()
-
-    def get_nobj(self) -> int:
-        return int(self.reduced.n_obj)
-
-    def get_bounds(self) -> tuple[list[float], list[float]]:
-        return [0.0] * self.reduced.n_var, [1.0] * self.reduced.n_var
-
-
-def _pygmo(reduced: _Peer, evaluations: int, seed: int, watch: _Watch) -> None:
-    """Run MOEA/D of pygmo."""
-    import pygmo
-
-    size = len(_directions(reduced.n_obj))
-    population = pygmo.population(pygmo.problem(_Pygmo(reduced)), size=size, seed=seed, b=pygmo.bfe())
-    method = pygmo.moead_gen(gen=1, seed=seed)
-    method.set_bfe(pygmo.bfe())
-    algorithm = pygmo.algorithm(method)
-    while population.problem.get_fevals() < evaluations:
-        population = algorithm.evolve(population)
-        watch.note(population.get_f())
-
-
 def _peer(
     title: str,
-    make: Callable[[int], Any],
     problem: Problem,
     evaluations: int,
     ideal: Array,
@@ -200,15 +112,8 @@ def _peer(
         values = values[nondominated(values)]
         return hypervolume(values[choose(values, problem.settings.designs)], ideal, span) / whole
 
-    reduced = _Peer(problem, penalised=span if title == _MOEAD else None)
     watch = _Watch(measure, ideal + 100.0 * span)
-    seed = problem.settings.seed
-    if title == _MOEAD:
-        _pygmo(reduced, evaluations, seed, watch)
-    else:
-        minimize(
-            reduced, make(len(problem.objectives)), ("n_eval", evaluations), seed=seed, callback=watch, verbose=False
-        )
+    run_peer(title, problem, span, watch.note, seed=problem.settings.seed, evaluations=evaluations)
     return Course(title, *_course(watch.points))
 
 

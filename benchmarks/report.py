@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -47,9 +47,15 @@ def machine() -> str:
     return f"{os.cpu_count()} cores, {name}"
 
 
-def show(title: str, rows: Iterable[Row]) -> None:
-    """Print a table of figures."""
-    table = Table("figure", "median", "least - greatest", "limit", "", title=title, title_justify="left")
+def show(title: str, rows: Iterable[Row], before: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Print a table of figures, each beside that of another version if there is one, and return the medians."""
+    then = () if before is None else ("before",)
+    table = Table("figure", *then, "median", "least - greatest", "limit", "", title=title, title_justify="left")
+    medians = {}
     for row in rows:
-        table.add_row(*row.cells())
-    Console(width=140).print(table)
+        name, *cells = row.cells()
+        medians[name] = median(row.figures)
+        old = () if before is None else (f"{before[name]:.4g}" if name in before else "",)
+        table.add_row(name, *old, *cells)
+    Console(width=150).print(table)
+    return medians

@@ -106,6 +106,7 @@ def _requests(
         "jobs?before={0}",
         "jobs?state=failed",
         "jobs?name=press%20of%20line%207",
+        "front-points?job={0}&job=1&job=2&job=3",
         "jobs/{0}",
         "jobs/{0}/front",
         "jobs/{0}/designs",
@@ -153,7 +154,10 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     del record["designs"]
     record["columns"] = list(found.designs[0])
     stated, result, summary = text_of(tables), text_of(record), text_of(summary_of(found))
-    progress = asdict(Progress("polishing", 10, 10, 50_000, 900, 0.5, 9.0))
+    told = asdict(Progress("polishing", 10, 10, 50_000, 900, 0.5, 9.0))
+    columns = [wanted.column for wanted in found.objectives]
+    points = [[row[column] for column in columns] for row in found.designs[:64]]
+    progress = text_of({**told, "front": {"columns": columns, "points": points}})
     rows = []
     for number in range(1, runs + 1):
         state = chance.choice(_STATES) if number < runs else "done"
@@ -174,7 +178,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
                 "fence": 1,
                 "writes": _EVENTS,
                 "events": _EVENTS,
-                "progress": text_of(progress),
+                "progress": progress,
                 "summary": summary if state == "done" else None,
                 "result": result if state == "done" else None,
             }
@@ -198,10 +202,10 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
             "WITH RECURSIVE counted(number) AS "
             "(SELECT 1 UNION ALL SELECT number + 1 FROM counted WHERE number < :events) "
             "INSERT INTO events (job, number, at, kind, data) "
-            "SELECT jobs.id, counted.number, jobs.started + counted.number, 'progress', jobs.progress "
+            "SELECT jobs.id, counted.number, jobs.started + counted.number, 'progress', :told "
             "FROM jobs CROSS JOIN counted"
         ),
-        {"events": _EVENTS},
+        {"events": _EVENTS, "told": text_of(told)},
     )
     for name, content in (("job.json", json_text(tables)), ("versions.json", json.dumps({"slidercrank": "0.1.0"}))):
         connection.execute(

@@ -68,14 +68,15 @@ def solve(
             progress = shown.enter_context(progress_bar())
             stages = stages or progress
         told = progress or None
+        heard = fronts is not None or told is not None
 
         def with_front(entry: Progress) -> None:
             if fronts is not None:
-                fronts(run.latest)
+                fronts(run.latest())
             if told is not None:
                 told(entry)
 
-        run = Run(problem, 1, with_front, checkpoints, stages=stages)
+        run = Run(problem, 1, with_front if heard else None, checkpoints, stages=stages)
         if resume:
             run.stand(REPEATING, 0, 1, now=True)
         try:

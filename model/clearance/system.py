@@ -6,18 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..kernel.kernel import Table, kernel
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.derived import derived
+from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, Raw, load_structure, raw_vector
 from .equations import System
-
-
-@kernel
-def _derived(raw: Table, loads: Loads, block: Table) -> None:
-    derive(raw, loads.kind, loads.datum, block)
 
 
 def build(
@@ -46,8 +41,7 @@ def build(
     # Loads take the slider's velocity as velocity per radian times speed; unit speed lets them have it directly.
     raw[Raw.SPEED] = 1.0
     loads = load_structure(mechanism)
-    block = np.empty((DESIGN + 2 * len(loads.kind), 1))
-    _derived(raw[:, None], loads, block)
+    block = derived(raw, loads)[0][0]
     d = design_at(block, 0)
     crank_first = complex(d.crank_along, d.crank_across)
     rod_first = l * complex(d.rod_along, d.rod_across)

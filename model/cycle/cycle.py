@@ -15,7 +15,8 @@ from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
-from ..machine.design import DESIGN, Design, derive, design_at
+from ..machine.derived import derived
+from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
 from ..signals.position_error import influences, root_sum_square, worst_case
@@ -58,7 +59,7 @@ class Cycle:
 
 @kernel
 def _curves(
-    raw: Table,
+    block: Table,
     loads: Loads,
     watch: Watch,
     angles: Row,
@@ -67,9 +68,7 @@ def _curves(
     out: Table,
     rubbing: bool,
 ) -> None:
-    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    derive(raw, loads.kind, loads.datum, block)
     for i in range(angles.shape[0]):
         theta = angles[i]
         block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
@@ -126,15 +125,15 @@ def cycle(
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     out = np.empty((_COLUMNS, len(angles)))
     watch = Watch(0, 0.0, 1.0, False)
-    _curves(raw[:, None], load_structure(mechanism), watch, angles, speeds, accelerations, out, rubs(mechanism))
+    loads = load_structure(mechanism)
+    block = derived(raw, loads)[0][0]
+    _curves(block, loads, watch, angles, speeds, accelerations, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
 @kernel
-def _breakpoints(raw: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool) -> int:
-    block = np.empty((DESIGN + 2 * loads.kind.shape[0], 1))
+def _breakpoints(block: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool) -> int:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    derive(raw, loads.kind, loads.datum, block)
     d = design_at(block, 0)
     cuts = work_space(loads.at.shape[0])
     count = cut_cycle(d, block, 0, loads, watch, cuts)
@@ -160,5 +159,5 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
             "lengthen the rod, or reduce the offset or the friction"
         )
     out = np.empty(ROOM + 2 * len(loads.at))
-    count = _breakpoints(raw[:, None], loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
+    count = _breakpoints(derived(raw, loads)[0][0], loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
     return out[:count]

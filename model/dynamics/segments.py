@@ -168,10 +168,14 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
             at = theta + shift[k]
         else:
             at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
-        i = first
-        while i < last and loads.at[i] < at:
-            i += 1
-        piece[k] = i
+        low, high = first, last
+        while low < high:
+            middle = (low + high) // 2
+            if loads.at[middle] < at:
+                low = middle + 1
+            else:
+                high = middle
+        piece[k] = low
 
 
 @analytic

@@ -31,9 +31,9 @@ def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     return found.hexdigest()[:24]
 
 
-def size(function: Callable[..., Any]) -> int:
-    """Return the length of the code of a kernel and all its formulas: the longer it is, the longer it compiles."""
-    return sum(len(each.__code__.co_code) for each, _ in _reached(function))
+def codes(function: Callable[..., Any]) -> dict[int, int]:
+    """Return the length of the code of a kernel and of each of its formulas, by identity."""
+    return {id(each): len(each.__code__.co_code) for each, _ in _reached(function)}
 
 
 def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
@@ -54,7 +54,7 @@ def _surroundings() -> bytes:
     """Return what all kernels depend on: processor, versions, numba's own settings, and how formulas are compiled."""
     import llvmlite.binding as llvm
 
-    settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _PLACES)
+    settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _ASIDE)
     host = llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     own = Path(__file__).with_name("compiler.py").read_bytes()
     return repr(
@@ -62,7 +62,7 @@ def _surroundings() -> bytes:
     ).encode()
 
 
-_PLACES = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT")
+_ASIDE = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING")
 
 
 def _parts(function: Any) -> tuple[bytes, list[Any]]:

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from hashlib import sha256
 from pathlib import Path
 from threading import Thread
@@ -36,7 +36,7 @@ _STATES = 8
 
 
 class Wanted(NamedTuple):
-    """A kernel's variant: its name, its function, and example arguments that decide about their types."""
+    """A kernel to be compiled: its name, its function, and example arguments that decide about their types."""
 
     name: str
     function: Callable[..., Any]
@@ -58,10 +58,11 @@ class Wanted(NamedTuple):
         return compile_kernel(self.function, self.examples)
 
 
-def machine_code(wanted: Wanted) -> MachineCode:
-    """Return the machine code of a variant, compiled and kept if need be.
+def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
+    """Return the machine code of a kernel, compiled and kept if need be.
 
-    What is missing beside it is compiled too, in other processes, as long as this one lives.
+    What is missing of its package is compiled too, in other processes, as long as this one lives; and of its sister
+    packages among those of other kernels' modules, the last ones first.
     """
     folder = kernel_folder()
     if folder is None:
@@ -69,12 +70,19 @@ def machine_code(wanted: Wanted) -> MachineCode:
     file = wanted.file(folder)
     found = read(file)
     if found is None:
-        compile_beside(folder, ".".join(wanted.module.split(".")[:2]), file)
+        own, packages = _package(wanted.module), [_package(module) for module in modules]
+        root = own.partition(".")[0] + "."
+        sisters = [package for package in packages if package.startswith(root)]
+        compile_beside(folder, " ".join(dict.fromkeys([*reversed(sisters), own])), file)
         found = read(file)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()
         keep(file, found)
     return found
+
+
+def _package(module: str) -> str:
+    return ".".join(module.split(".")[:2])
 
 
 def read(file: Path) -> MachineCode | None:
@@ -104,10 +112,10 @@ def keep(file: Path, found: MachineCode) -> None:
             other.unlink(missing_ok=True)
 
 
-def compile_beside(folder: Path, package: str, file: Path | None = None) -> None:
-    """Have the missing kernels of a package compiled by other processes; return when there is a file, or they ended.
+def compile_beside(folder: Path, packages: str, file: Path | None = None) -> None:
+    """Have the missing kernels of packages compiled by other processes; return when there is a file, or they ended.
 
-    They do that file's next. Processes that are at it already are waited for.
+    packages: names with blanks between. They do that file's next. Processes that are at it already are waited for.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as wanted:
@@ -118,17 +126,18 @@ def compile_beside(folder: Path, package: str, file: Path | None = None) -> None
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
-            with locked(building(folder, package)) as lock:
+            with locked(building(folder, packages)) as lock:
                 if lock is not None:
-                    workers = _start(folder, package, lock)
+                    workers = _start(folder, packages, lock)
         if time.monotonic() > told + _TELL:
             told = time.monotonic()
             with contextlib.suppress(OSError):
-                _log.warning(f"slidercrank compiles its formulas: {building(folder, package).read_text()}")
+                if far := building(folder, packages).read_text():
+                    _log.warning(f"slidercrank compiles its formulas: {far}")
         time.sleep(_TICK)
 
 
-def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes]]:
+def _start(folder: Path, packages: str, lock: int) -> list[subprocess.Popen[bytes]]:
     """Start a process for each processor; they hold the lock as long as they live, and end with this one."""
     if not sys.executable:
         return []
@@ -136,7 +145,9 @@ def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes
     started: list[subprocess.Popen[bytes]] = []
     atexit.register(_end, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
-    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), package]
+    # numba makes messages of every formula that it tries in vain.
+    environment |= {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
+    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), packages]
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     options |= {"start_new_session": True, "pass_fds": [] if lock == _NO_LOCK else [lock]}
     with contextlib.suppress(OSError):
@@ -146,9 +157,9 @@ def _start(folder: Path, package: str, lock: int) -> list[subprocess.Popen[bytes
     return started
 
 
-def building(folder: Path, package: str) -> Path:
-    """Return the file that is locked while a package's kernels are compiled, and that says how far that is."""
-    return folder / f"{package}.building"
+def building(folder: Path, packages: str) -> Path:
+    """Return the file that is locked while kernels of packages are compiled, and that says how far that is."""
+    return folder / f"{packages.replace(' ', '+')}.building"
 
 
 def wanted_files(folder: Path) -> list[str]:

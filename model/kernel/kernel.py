@@ -5,11 +5,10 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable
-from itertools import product
 from struct import Struct
 from threading import Lock
-from types import NoneType, UnionType
-from typing import Annotated, Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from types import NoneType
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,8 +45,8 @@ Flat = tuple[Any, ...]
 def kernel(function: Function) -> Function:
     """Compile a function that Python calls, when it is called first; the machine code is kept on disk.
 
-    Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated; an
-    annotation of several types gives a compiled variant for each. It returns a number or nothing.
+    Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
+    returns a number or nothing.
     """
     compiled = Kernel(function)
     KERNELS.append(compiled)
@@ -61,72 +60,42 @@ class Kernel:
         """Take a function, that is not yet compiled."""
         self.function = function
         self.__doc__ = function.__doc__
-        self._parameters: list[_Parameter] = []
-        self._result: Any = None
-        self._variants: dict[tuple[int, ...], tuple[Callable[[bytes, int], int], Callable[..., bytes]]] = {}
+        self._flat: list[Callable[[Any], Flat]] = []
+        self._loaded: tuple[Callable[[bytes, int], int], Callable[..., bytes], Any] | None = None
 
     def __call__(self, *values: Any) -> Any:
         """Run it. Raises `TypeError` for an argument of another type, `MemoryError` where memory is short."""
         if _AS_PYTHON:
             return self.function(*values)
-        parameters = self._parameters or self._declared()
-        variant: tuple[int, ...] = ()
+        run, pack, kind = self._loaded or self._load()
         flat: list[Any] = []
-        for parameter, value in zip(parameters, values, strict=True):
-            which = 0
-            if parameter.several:
-                which = parameter.which(value)
-                variant += (which,)
-            flat += parameter.flat[which](value)
-        run, pack = self._variants.get(variant) or self._load(variant)
-        result = self._result()
+        for parameter, value in zip(self._flat, values, strict=True):
+            flat += parameter(value)
+        result = kind()
         if run(pack(*flat), ctypes.addressof(result)):
             raise MemoryError(f"not enough memory for {self.function.__qualname__}")
         return result.value
 
-    def variants(self) -> dict[tuple[int, ...], Wanted]:
-        """Return what can be compiled, by the numbers of the types of those parameters that may have several."""
-        parameters = self._parameters or self._declared()
-        name = f"{self.function.__module__}.{self.function.__name__}"
-        found = {}
-        for choice in product(*(range(len(parameter.options)) for parameter in parameters)):
-            both = list(zip(parameters, choice, strict=True))
-            key = tuple(which for parameter, which in both if parameter.several)
-            examples = tuple(_example(parameter.options[which]) for parameter, which in both)
-            found[key] = Wanted("-".join([name, *map(str, key)]), self.function, examples)
-        return found
+    def wanted(self) -> Wanted:
+        """Return what is to be compiled."""
+        examples = tuple(_example(hint) for name, hint in self._hints().items() if name != "return")
+        return Wanted(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
-    def _declared(self) -> list[_Parameter]:
-        """Return the parameters by their annotations."""
-        hints = get_type_hints(self.function, include_extras=True)
-        self._result = _RESULTS[hints.pop("return")]
-        self._parameters = [_Parameter(name, hint) for name, hint in hints.items()]
-        return self._parameters
+    def _hints(self) -> dict[str, Any]:
+        return get_type_hints(self.function, include_extras=True)
 
-    def _load(self, variant: tuple[int, ...]) -> tuple[Callable[[bytes, int], int], Callable[..., bytes]]:
-        """Return the machine code of a variant, and what packs its arguments."""
+    def _load(self) -> tuple[Callable[[bytes, int], int], Callable[..., bytes], Any]:
+        """Return the machine code, what packs its arguments, and the type of its result."""
         with _loading:
-            if variant not in self._variants:
-                wanted = self.variants()[variant]
+            if self._loaded is None:
+                wanted, hints = self.wanted(), self._hints()
                 leaves = [leaf for example in wanted.examples for leaf in _leaves(example)]
                 packed = Struct("".join("d" if leaf.type == "double" else "q" for leaf in leaves)).pack
-                self._variants[variant] = load(machine_code(wanted), leaves), packed
-        return self._variants[variant]
-
-
-class _Parameter:
-    """A parameter of a kernel: the types it may have, and how a value of each is handed over."""
-
-    def __init__(self, name: str, hint: Any) -> None:
-        options = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
-        self.options = tuple(sorted(options, key=lambda option: option is not NoneType))
-        self.several = len(self.options) > 1
-        self.flat = [_flattener(name, option) for option in self.options]
-        self._types = tuple(get_origin(option) or option for option in self.options)
-
-    def which(self, value: Any) -> int:
-        """Return the number of the type that a value has."""
-        return next((i for i, kind in enumerate(self._types) if isinstance(value, kind)), 0)
+                code = machine_code(wanted, [other.function.__module__ for other in KERNELS])
+                result = _RESULTS[hints.pop("return")]
+                self._flat = [_flattener(name, hint) for name, hint in hints.items()]
+                self._loaded = load(code, leaves), packed, result
+        return self._loaded
 
 
 def _members(kind: Any) -> list[Any] | None:
@@ -164,8 +133,6 @@ def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
     if get_origin(kind) is Annotated:
         array, dimensions = get_args(kind)
         return _flat_array(name, _item(array), dimensions)
-    if kind is NoneType:
-        return lambda value: (0,)
     if kind is complex:
         return lambda value: (value.real, value.imag)
     return lambda value: (kind(value),)
@@ -205,4 +172,4 @@ def _leaves(example: Any) -> list[Leaf]:
         return [Leaf("ptr", example.ndim, example.itemsize)]
     if isinstance(example, complex):
         return [Leaf("double"), Leaf("double")]
-    return [Leaf({bool: "i8", int: "i64", float: "double", NoneType: "ptr"}[type(example)])]
+    return [Leaf({bool: "i8", int: "i64", float: "double"}[type(example)])]

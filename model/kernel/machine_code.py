@@ -33,7 +33,7 @@ class MachineCode(NamedTuple):
 
 
 class Leaf(NamedTuple):
-    """A number, an array or nothing in the arguments: type in the machine, dimensions and bytes of an item."""
+    """A number or an array in the arguments: type in the machine, dimensions and bytes of an item."""
 
     type: str
     dimensions: int = 0
@@ -75,7 +75,7 @@ def _entry(found: MachineCode, leaves: list[Leaf]) -> str:
     head = object.__basicsize__  # of every Python object; an array's address, dimensions, shape and strides follow
     for number, leaf in enumerate(leaves):
         if not leaf.item:
-            given.append((leaf.type, "null" if leaf.type == "ptr" else read(leaf.type, "%block", 8 * number)))
+            given.append((leaf.type, read(leaf.type, "%block", 8 * number)))
             continue
         array = read("ptr", "%block", 8 * number)
         shape, strides = read("ptr", array, head + 16), read("ptr", array, head + 24)

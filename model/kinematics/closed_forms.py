@@ -29,6 +29,7 @@ class ClosedForm(IntEnum):
     FOOTPRINT_OF_OFFSET = 6
 
 
+_LANES = 16  # designs a loop
 _TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK = range(6)
 
 
@@ -55,15 +56,39 @@ def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
     return (outer_dead_centre(r, l, a) + r) * (r + a)
 
 
+@analytic
+def _lanes(kind: Any, work: Any, slopes: Any) -> None:
+    """Fill value and, if asked for, slopes (rows 3 to 6) of designs (rows 0 to 2)."""
+    for j in range(_LANES):
+        work[3, j] = closed_form(kind, work[0, j], work[1, j], work[2, j])
+    for j in range(_LANES if slopes else 0):
+        r, l, e = work[0, j], work[1, j], work[2, j]
+        work[4, j] = closed_form(kind, complex(r, STEP), complex(l, 0.0), complex(e, 0.0)).imag / STEP
+        work[5, j] = closed_form(kind, complex(r, 0.0), complex(l, STEP), complex(e, 0.0)).imag / STEP
+        work[6, j] = closed_form(kind, complex(r, 0.0), complex(l, 0.0), complex(e, STEP)).imag / STEP
+
+
 @kernel
 def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
-    for n in range(designs.shape[0]):
-        r, l, e = designs[n, 0], designs[n, 1], designs[n, 2]
-        values[n] = closed_form(kind, r, l, e)
-        if gradients.shape[0]:
-            gradients[n, 0] = closed_form(kind, complex(r, STEP), complex(l, 0.0), complex(e, 0.0)).imag / STEP
-            gradients[n, 1] = closed_form(kind, complex(r, 0.0), complex(l, STEP), complex(e, 0.0)).imag / STEP
-            gradients[n, 2] = closed_form(kind, complex(r, 0.0), complex(l, 0.0), complex(e, STEP)).imag / STEP
+    n, slopes = designs.shape[0], gradients.shape[0] > 0
+    work = np.empty((7, _LANES))
+    for begin in range(0, n, _LANES):
+        for j in range(_LANES):
+            for i in range(3):
+                work[i, j] = designs[min(begin + j, n - 1), i]
+        # Each its own loop: one that chose the kind inside would be no vector instructions.
+        if kind == _TIME_RATIO:
+            _lanes(_TIME_RATIO, work, slopes)
+        elif kind == _TRANSMISSION:
+            _lanes(_TRANSMISSION, work, slopes)
+        else:
+            _lanes(kind, work, slopes)
+        last = min(_LANES, n - begin)
+        for j in range(last):
+            values[begin + j] = work[3, j]
+        for j in range(last if slopes else 0):
+            for i in range(3):
+                gradients[begin + j, i] = work[4 + i, j]
 
 
 def evaluate_closed_form(kind: ClosedForm, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:

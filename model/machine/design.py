@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..kernel.arithmetic import STEP, analytic, magnitude, root
+from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
 
 _CRANK, _ROD, _OFFSET = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
+_COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
 _END = int(Raw.END)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
 _FORMULA = int(Enters.FORMULA)
@@ -117,15 +118,11 @@ def link_properties(
 
 
 @analytic
-def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
-    """Fill `out` (DESIGN + 2 k, n) from raw numbers (END + 4 k, n), real or complex."""
+def _derive_crank(raw: Any, out: Any) -> None:
+    c, w, t = _CRANK_LINK, _COUNTERWEIGHT, _TOLERANCES
     for j in range(raw.shape[1]):
-        r, l, e = raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j]
-        for i in range(9):
-            out[i, j] = raw[i, j]
-        c = _CRANK_LINK
         m, along, across, inertia = link_properties(
-            r,
+            raw[_CRANK, j],
             raw[c, j],
             raw[c + 1, j],
             raw[c + 2, j],
@@ -136,13 +133,19 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
             raw[c + 7, j],
             raw[c + 8, j],
         )
-        w = c + 18
         weight, x, y = raw[w, j], raw[w + 1, j], raw[w + 2, j]
         out[9, j] = m + weight
         out[10, j] = along + weight * x
         out[11, j] = across + weight * y
         out[12, j] = inertia + raw[w + 3, j] + weight * (x * x + y * y)
-        c = _ROD_LINK
+        out[17, j] = raw[t, j] + raw[t + 1, j] * raw[_CRANK, j]
+
+
+@analytic
+def _derive_rod(raw: Any, out: Any) -> None:
+    c, t = _ROD_LINK, _TOLERANCES
+    for j in range(raw.shape[1]):
+        l = raw[_ROD, j]
         m, along, across, inertia = link_properties(
             l,
             raw[c, j],
@@ -159,21 +162,46 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
         out[14, j] = along / l
         out[15, j] = across / l
         out[16, j] = inertia
-        t = w + 4
-        out[17, j] = raw[t, j] + raw[t + 1, j] * r
-        rod, offset = raw[t + 2, j] + raw[t + 3, j] * l, raw[t + 4, j] + raw[t + 5, j] * magnitude(e)
-        pivot, pin, end, guide = raw[t + 7, j], raw[t + 8, j], raw[t + 9, j], raw[t + 10, j]
+        rod = raw[t + 2, j] + raw[t + 3, j] * l
+        pivot, pin, end = raw[t + 7, j], raw[t + 8, j], raw[t + 9, j]
         out[18, j] = rod + (pivot + pin + end)
-        out[19, j] = offset + guide
         out[_ROD_RSS, j] = root(rod * rod + (pivot * pivot + pin * pin + end * end))
+
+
+@analytic
+def _derive_offset(raw: Any, out: Any) -> None:
+    t = _TOLERANCES
+    for j in range(raw.shape[1]):
+        offset, guide = raw[t + 4, j] + raw[t + 5, j] * magnitude(raw[_OFFSET, j]), raw[t + 10, j]
+        out[19, j] = offset + guide
         out[_OFFSET_RSS, j] = root(offset * offset + guide * guide)
-        out[20, j] = raw[t + 6, j]
-        out[21, j] = inner_dead_centre(r, l, e)
-        out[22, j] = outer_dead_centre(r, l, e)
-        f = t + 11
-        out[_RUBBING, j] = raw[f, j]
-        for i in range(3):
-            out[_RUBBING + 1 + i, j] = raw[f + 1 + 2 * i, j] * raw[f + 2 + 2 * i, j]
+
+
+@analytic
+def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
+    """Fill `out` (DESIGN + 2 k, n) from raw numbers (END + 4 k, n), real or complex.
+
+    moved: the one raw number that has changed since `out` was filled; where it is a dimension, less is done.
+    """
+    for i in range(9):
+        for j in range(raw.shape[1]):
+            out[i, j] = raw[i, j]
+    if moved != _ROD and moved != _OFFSET:
+        _derive_crank(raw, out)
+    if moved != _CRANK and moved != _OFFSET:
+        _derive_rod(raw, out)
+    if moved != _CRANK and moved != _ROD:
+        _derive_offset(raw, out)
+    for j in range(raw.shape[1]):
+        out[21, j] = inner_dead_centre(raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j])
+        out[22, j] = outer_dead_centre(raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j])
+    if moved < 0 or moved > _OFFSET:
+        f = _TOLERANCES + 11
+        for j in range(raw.shape[1]):
+            out[20, j] = raw[_TOLERANCES + 6, j]
+            out[_RUBBING, j] = raw[f, j]
+            for i in range(3):
+                out[_RUBBING + 1 + i, j] = raw[f + 1 + 2 * i, j] * raw[f + 2 + 2 * i, j]
     for i in range(_OUTWARD, _OUTWARD + 5):
         for j in range(raw.shape[1]):
             out[i, j] = 0.0
@@ -199,23 +227,3 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any) -> None:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
             elif kind[k] >= _FORMULA:
                 out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]
-
-
-@analytic
-def derive_design(raw: Any, columns: Any, values: Any, kind: Any, datum: Any, own: Any, out: Any) -> None:
-    """Fill `out` (DESIGN + 2 k, 1) for raw numbers, of which those in `columns` are `values`; own: room for them."""
-    for i in range(raw.shape[0]):
-        own[i, 0] = raw[i]
-    for i in range(columns.shape[0]):
-        own[columns[i], 0] = values[i]
-    derive(own, kind, datum, out)
-
-
-@analytic
-def derive_steps(own: Any, columns: Any, kind: Any, datum: Any, room: Any, out: Any) -> None:
-    """Fill `out` (v, DESIGN + 2 k, 1), one for an imaginary step of each of the first v numbers in `columns`."""
-    for v in range(out.shape[0]):
-        for i in range(own.shape[0]):
-            room[i, 0] = own[i, 0]
-        room[columns[v], 0] += complex(0.0, STEP)
-        derive(room, kind, datum, out[v])

@@ -97,6 +97,23 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     return np.array(raw, dtype=np.float64)
 
 
+_last: tuple[Mechanism | None, NDArray[np.float64], Loads | None] = (None, np.zeros(0), None)
+
+
+def fullest_inputs(mechanism: Mechanism) -> tuple[NDArray[np.float64], Loads]:
+    """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has.
+
+    A search asks for the same machine thousands of times: the last answer is kept.
+    """
+    global _last
+    before, raw, loads = _last
+    if before is not mechanism or loads is None:
+        raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+        raw.flags.writeable = False
+        _last = mechanism, raw, loads
+    return raw, loads
+
+
 def _link_numbers(link: Link) -> tuple[float, ...]:
     if isinstance(link, Bar):
         return (link.width, link.depth, link.density, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -26,9 +26,10 @@ from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Watch, crowded, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
 from ..kernel.arithmetic import STEP, analytic, root
 from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import Integers, Row, Table, kernel
+from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
 from ..kinematics.position import motion_of
-from ..machine.design import DESIGN, derive_design, derive_steps, design_at
+from ..machine.derived import derived
+from ..machine.design import design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
@@ -107,9 +108,8 @@ def _rough(values: Any, tail: Any, allowed: Any) -> bool:
 @kernel
 def _average(
     kind: int,
-    raw: Row,
-    variables: Integers,
-    designs: Table,
+    blocks: Cube,
+    steps: ComplexCube,
     gaps: Row,
     loads: Loads,
     watch: Watch,
@@ -122,19 +122,14 @@ def _average(
     rubbing: bool,
 ) -> None:
     nodes, weights, tail = rule
-    rows = DESIGN + 2 * loads.kind.shape[0]
     cuts = work_space(loads.at.shape[0])
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    real, block = np.empty((raw.shape[0], 1)), np.empty((rows, 1))
-    nv = variables.shape[0] if wanted else 0
-    imaginary = np.empty((raw.shape[0], 1), np.complex128)
-    stepped = np.empty((nv, rows, 1), np.complex128)
+    nv = mean_slope.shape[1] if wanted else 0
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
     greatest = np.zeros(nv + 1)
     stack = np.empty((_DEEPEST + 2, 3))
-    for n in range(designs.shape[0]):
-        derive_design(raw, variables, designs[n], loads.kind, loads.datum, real, block)
-        derive_steps(real, variables, loads.kind, loads.datum, imaginary, stepped)
+    for n in range(blocks.shape[0]):
+        block, stepped = blocks[n], steps[n * nv : (n + 1) * nv]
         for v in range(nv):
             mean_slope[n, v] = rms_slope[n, v] = 0.0
         d = design_at(block, 0)
@@ -257,11 +252,11 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
 
     def work(begin: int, end: int) -> None:
         part = slice(begin, end) if gradients else slice(0, 0)
+        blocks, steps = derived(raw, loads, columns, designs[begin:end], steps=gradients)
         _average(
             int(kind),
-            raw,
-            columns,
-            designs[begin:end],
+            blocks,
+            steps,
             gaps[begin:end],
             loads,
             watch,

@@ -33,17 +33,16 @@ def _follow(
     watch = Watch(0, 0.0, 1.0, False)
     rows = DESIGN + 2 * loads.kind.shape[0]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    real, block = np.empty((raw.shape[0], 1)), np.empty((rows, 1))
+    block = np.empty((rows, 1))
     stepped, curved = np.empty((raw.shape[0], 1), np.complex128), np.empty((rows, 1), np.complex128)
     for n in range(designs.shape[0]):
         for i in range(raw.shape[0]):
-            real[i, 0] = raw[i]
             stepped[i, 0] = complex(raw[i], 0.0)
         for v in range(3):
-            real[v, 0] = designs[n, v].real
             stepped[v, 0] = designs[n, v]
-        derive(real, loads.kind, loads.datum, block)
         derive(stepped, loads.kind, loads.datum, curved)
+        for i in range(rows):
+            block[i, 0] = curved[i, 0].real
         d, z = design_at(block, 0), design_at(curved, 0)
         for k in range(angles.shape[1]):
             theta = angles[n, k].real

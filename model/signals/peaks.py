@@ -30,8 +30,9 @@ from ..dynamics.segments import (
 )
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.design import DESIGN, derive_design, derive_steps, design_at
+from ..kernel.kernel import ComplexCube, Cube, Table, kernel
+from ..machine.derived import derived
+from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
@@ -182,9 +183,8 @@ def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: A
 @kernel
 def _find(
     kind: int,
-    raw: Row,
-    variables: Integers,
-    designs: Table,
+    blocks: Cube,
+    steps: ComplexCube,
     loads: Loads,
     watch: Watch,
     angles: int,
@@ -193,17 +193,11 @@ def _find(
     gradients: Cube,
     rubbing: bool,
 ) -> None:
-    rows = DESIGN + 2 * loads.kind.shape[0]
-    knots = loads.at.shape[0]
-    cuts = work_space(knots)
+    cuts = work_space(loads.at.shape[0])
     room = cuts.angle.shape[0]
     piece = np.zeros(loads.kind.shape[0], np.int64)
     shift = np.zeros(loads.kind.shape[0])
-    real = np.empty((raw.shape[0], 1))
-    block = np.empty((rows, 1))
-    nv = variables.shape[0] if gradients.shape[0] else 0
-    imaginary = np.empty((raw.shape[0], 1), np.complex128)
-    stepped = np.empty((nv, rows, 1), np.complex128)
+    nv = gradients.shape[2] if gradients.shape[0] else 0
     kept = values.shape[1]
     peak, at = np.empty(kept), np.empty(kept)
     segment, pin = np.empty(kept, np.int64), np.empty(kept, np.int64)
@@ -211,8 +205,8 @@ def _find(
     live, thin = np.empty(room, np.bool_), np.empty(room, np.bool_)
     theta = np.empty(angles + 8)
     f = np.empty(angles + 8)
-    for n in range(designs.shape[0]):
-        derive_design(raw, variables, designs[n], loads.kind, loads.datum, real, block)
+    for n in range(blocks.shape[0]):
+        block = blocks[n]
         d = design_at(block, 0)
         kappa = crowding(d.r, d.l, d.e)
         if rubbing and not always_drives(d) > 0.0:
@@ -236,17 +230,22 @@ def _find(
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low = crowded(a, kappa)
             high = crowded(b, kappa)
-            points = min(angles + 8, max(5, int(angles * (high - low) / _TURN) + 2))
-            for i in range(points):
+            spacings = int(angles * (high - low) / _TURN)
+            # What is shorter than the spacing, as between the knots of a long table, has no samples of its own: the
+            # slopes at its ends tell whether there is a peak.
+            points = min(angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
+            for i in range(1, points - 1):
                 theta[i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
             theta[0], theta[points - 1] = a, b
-            for i in range(points):
-                f[i] = _value(kind, theta[i], d, block, 0, outward, loads, piece, shift, sides)
-                if f[i] > best:
-                    best, best_at, best_segment = f[i], theta[i], s
             for end in range(2):
                 value, slope = _slope(kind, b if end else a, d, block, 0, outward, loads, piece, shift, sides)
                 edge[s, 2 * end], edge[s, 2 * end + 1] = value, slope
+            f[0], f[points - 1] = edge[s, 0], edge[s, 2]
+            for i in range(1, points - 1):
+                f[i] = _value(kind, theta[i], d, block, 0, outward, loads, piece, shift, sides)
+            for i in range(points):
+                if f[i] > best:
+                    best, best_at, best_segment = f[i], theta[i], s
             for i in range(points):
                 if i == 0:
                     top = edge[s, 1] > 0.0 and f[0] >= f[1]
@@ -288,7 +287,6 @@ def _find(
                 found = _keep(peak, at, segment, pin, found, right, cuts.angle[s], s, s)
         if found == 0 and best_segment >= 0:  # a constant curve
             found = _keep(peak, at, segment, pin, found, best, best_at, best_segment, -1)
-        derive_steps(real, variables, loads.kind, loads.datum, imaginary, stepped)
         for i in range(kept):
             if i >= found:
                 values[n, i], where[n, i] = -np.inf, np.nan
@@ -306,13 +304,14 @@ def _find(
             angle = at[i] if pin[i] < 0 or pin[i] == s else cuts.angle[s + 1]
             sine, cosine = math.sin(angle), math.cos(angle)
             for v in range(nv):
-                z = design_at(stepped[v], 0)
+                stepped = steps[n * nv + v]
+                z = design_at(stepped, 0)
                 slip = 0.0
                 if pin[i] >= 0:
-                    slip = shift_of(z, stepped[v], d, block, angle, cuts, pin[i], outward, loads, piece, shift, sides)
+                    slip = shift_of(z, stepped, d, block, angle, cuts, pin[i], outward, loads, piece, shift, sides)
                 zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
                 m = design_motion(zs, zc, z)
-                load = load_on_slider(m, z, stepped[v], 0, complex(angle, slip), outward, loads, piece, shift)
+                load = load_on_slider(m, z, stepped, 0, complex(angle, slip), outward, loads, piece, shift)
                 gradients[n, i, v] = signal(kind, zs, zc, m, z, load, sides).imag / STEP
 
 
@@ -344,11 +343,11 @@ def find_peaks(
     rubbing = kind.needs_forces and rubs(mechanism)
 
     def work(begin: int, end: int) -> None:
+        blocks, steps = derived(raw, loads, columns, designs[begin:end], steps=gradients)
         _find(
             int(kind),
-            raw,
-            columns,
-            designs[begin:end],
+            blocks,
+            steps,
             loads,
             watch,
             angles,

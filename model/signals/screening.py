@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.segments import crowding
-from ..dynamics.torque import smooth_load
+from ..dynamics.torque import forces, smooth_load
 from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
@@ -26,7 +26,7 @@ from ..machine.design import DESIGN, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
-from ..machine.raw import load_structure, raw_vector
+from ..machine.raw import fullest_inputs
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .signals import Signal, design_motion, signal
@@ -45,10 +45,15 @@ _FLAT = 1e-13
 
 @dataclass(frozen=True)
 class Screened:
-    """Greatest value over the cycle: values (n,), angles (n,) in rad, gradients (n, 3 + k) or None."""
+    """Greatest value over the cycle: values (n,), gradients (n, 3 + k) or None.
+
+    angles: its crank angles (n,), rad, or (0,). still: greater size of the drive torque at the dead centres (n,), N m,
+    or (0,); where a load changes there, a peak that is no more than this may be a kink.
+    """
 
     values: Array
     angles: Array
+    still: Array
     gradients: Array | None
 
 
@@ -188,6 +193,17 @@ def _refine(
             break
 
 
+@analytic
+def _still(d: Any) -> Any:
+    """Size of the torque at the dead centres, the greater one: there loads along the stroke take none."""
+    outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
+    sine, cosine = outer, d.branch * root(1.0 - outer * outer)
+    one = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    sine, cosine = inner, -d.branch * root(1.0 - inner * inner)
+    two = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    return max(abs(one), abs(two))
+
+
 @kernel
 def _screen(
     kinds: Integers,
@@ -201,6 +217,7 @@ def _screen(
     first: int,
     values: Table,
     where: Table,
+    still: Row,
     gradients: Cube,
 ) -> None:
     n, signals = designs.shape[0], kinds.shape[0]
@@ -231,6 +248,11 @@ def _screen(
         prepare(block, kappa, direction, scaled)
         sweep(kinds, coarse, crowd, scaled, samples)
         last = min(LANES, n - begin)
+        if still.shape[0]:
+            for j in range(LANES):
+                slope[j] = _still(design_at(block, j))
+            for j in range(last):
+                still[first + begin + j] = slope[j]
         for i in range(raw.shape[0] if gradients.shape[0] else 0):
             for j in range(LANES):
                 stepped[i, j] = lanes[i, j]
@@ -250,13 +272,17 @@ def _screen(
                 found[0, q, j], found[1, q, j] = x * scale, -y * scale
             for j in range(last):
                 values[q, first + begin + j] = value[0, j]
+            for j in range(last if where.shape[1] else 0):
                 angle = math.atan2(found[0, q, j], found[1, q, j])
                 where[q, first + begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
         if gradients.shape[0]:
             for v in range(columns.shape[0]):
                 for j in range(LANES):
                     stepped[columns[v], j] += complex(0.0, STEP)
-                derive(stepped, load_kind, load_datum, complex_block)
+                for i in range(rows):
+                    for j in range(LANES):
+                        complex_block[i, j] = block[i, j]
+                derive(stepped, load_kind, load_datum, complex_block, columns[v])
                 for q in range(signals):
                     _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
                     for j in range(last):
@@ -271,6 +297,8 @@ def screen(
     designs: Array,
     *,
     gradients: bool = False,
+    places: bool = False,
+    still: bool = False,
     angles: int = ANGLES,
     crowd: bool = True,
 ) -> tuple[Screened, ...]:
@@ -278,13 +306,15 @@ def screen(
 
     The k columns more are the values of the machine's varying numbers.
 
-    kinds: signals that `screens` accepts; evaluated together they share the motion. angles: samples a turn, a multiple
-    of 4. crowd: concentrate them where the linkage comes close to locking.
+    kinds: signals that `screens` accepts; evaluated together they share the motion. places, still: whether to give
+    these, see `Screened`. angles: samples a turn, a multiple of 4. crowd: concentrate them where the linkage
+    comes close to locking.
     """
     designs = turning(designs)
     n, signals = len(designs), len(kinds)
-    values, where = np.empty((signals, n)), np.empty((signals, n))
-    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+    values, where = np.empty((signals, n)), np.empty((signals, n if places else 0))
+    standing = np.empty(n if still else 0)
+    raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))
@@ -304,8 +334,11 @@ def screen(
             begin,
             values,
             where,
+            standing,
             slopes,
         )
 
     in_chunks(n, work, size=16 * LANES)
-    return tuple(Screened(values[q], where[q], numbers.chain(slopes[q]) if gradients else None) for q in range(signals))
+    return tuple(
+        Screened(values[q], where[q], standing, numbers.chain(slopes[q]) if gradients else None) for q in range(signals)
+    )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.segments import Watch
 from ..machine.mechanism import Mechanism
-from ..machine.raw import LOAD_SLOTS, Loads, load_structure, raw_vector
+from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
 from .signals import Signal
 
 Array = NDArray[np.float64]
@@ -27,10 +29,15 @@ def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Wa
 
 def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
-    raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
+    raw, loads = fullest_inputs(mechanism)
     if kind.needs_forces:
         return raw, loads
-    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], load_structure(Mechanism())
+    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], _no_loads()
+
+
+@cache
+def _no_loads() -> Loads:
+    return load_structure(Mechanism())
 
 
 def stroke_dependent(mechanism: Mechanism) -> bool:

@@ -28,7 +28,8 @@ from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.derived import derived
+from ..machine.design import design_at
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
@@ -69,11 +70,6 @@ class Terms:
     def torque(self, speed: Any, acceleration: Any) -> Any:
         """Return the torque, N m, that the motion needs."""
         return self.inertia * acceleration + (self.spin + self.square) * speed**2 + self.static + self.drag * speed
-
-
-@kernel
-def _derive(raw: Table, loads: Loads, block: Table) -> None:
-    derive(raw, loads.kind, loads.datum, block)
 
 
 @kernel
@@ -148,8 +144,7 @@ class CrankEquation:
             for column, power in _KEPT.items():
                 if load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
-        self.block = np.empty((DESIGN + 2 * len(mechanism.loads), 5))
-        _derive(raw, self.loads, self.block)
+        self.block = np.hstack([derived(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
         self.dead_centres = linkage.dead_centre_angles
         self.breakpoints = self._breakpoints(marks)
         self._stretches: dict[tuple[int, float], Stretch] = {}

@@ -63,17 +63,15 @@ class Archive(Candidates):
 
     def screen_all(self, points: Iterable[tuple[int, Evaluator, Array]]) -> int:
         """Screen points of several sheets, then compare them with the archive once: that is what takes time."""
-        fresh, count = Candidates.empty(self.values.shape[1]), 0
+        fresh: list[Candidates] = []
         for index, evaluator, u in points:
             _, values, violation = evaluator.screen(u, band=self.band)
             good = violation <= self.band + FEASIBLE
             met = violation <= FEASIBLE
             self.feasible += int(met.sum())
-            count += int(good.sum())
-            own = Candidates(np.full(int(good.sum()), index), u[good], values[good], met[good])
-            fresh = fresh.join(own[_worth(own)])
-        self.put(fresh)
-        return count
+            fresh.append(Candidates(np.full(int(good.sum()), index), u[good], values[good], met[good]))
+        self.put(*fresh)
+        return sum(map(len, fresh))
 
     def take(self, index: int, u: Array, values: Array, met: NDArray[np.bool_] | None = None) -> None:
         """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
@@ -82,10 +80,14 @@ class Archive(Candidates):
         """
         self.put(Candidates(np.full(len(u), index), u, values, np.ones(len(u), np.bool_) if met is None else met))
 
-    def put(self, others: Candidates) -> None:
+    def put(self, *others: Candidates) -> None:
         """Take in designs of any sheets."""
-        both = self.join(others)
-        self.become(both[_worth(both)])
+        together = self.join(*others)
+        self.become(together[_worth(together)])
+
+
+def _some(values: Array) -> Array:
+    return values[:: 1 + len(values) // _SHOWN]
 
 
 def _worth(candidates: Candidates) -> NDArray[np.int64]:
@@ -116,9 +118,9 @@ class Run:
 
     checkpoints: of its steps, which its evaluators have too. settled: evaluators of the sheets that leave nothing free.
     archive: what the search has found on the others. finished: the designs of the settled ones, and what the polish
-    has made of the archive. fronts: of each round, feasible designs that its hypervolume is told of. latest: objectives
-    (n, m) of the front after the last round, SI, as minimised; of many some hundreds. progress: called after every
-    round. stages: called in long stages between two.
+    has made of the archive. fronts: objectives of feasible designs of each round, of many some hundreds. progress:
+    called after every round. stages: called in long stages between two. Where neither is given, a round's hypervolume
+    is not computed, and told as 0.
     """
 
     problem: Problem
@@ -135,7 +137,6 @@ class Run:
         self.archive, self.finished = Archive.empty(count), Finished.none(np.ones(count))
         self._targets = np.array([objective.target or 0.0 for objective in self.problem.objectives])
         self._growth = Growth(self._targets)
-        self.latest: Array = np.zeros((0, count))
         self._heard = time.monotonic()
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
@@ -145,25 +146,29 @@ class Run:
         told is not told again, only that it is repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        polished = self.finished.values
-        values = np.concatenate([archive.values, polished])
-        values = values[nondominated(values)]
-        self.latest = values[:: 1 + len(values) // _SHOWN]
+        feasible = np.concatenate([archive.values[archive.met], self.finished.values])
         entry = Progress(
             stage,
             len(self.told) + 1,
             max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
             archive.feasible + int((~self.finished.free).sum()),
-            self._growth.take(np.concatenate([archive.values[archive.met], polished])),
+            self._growth.take(feasible) if self.progress or self.stages else 0.0,
             self.checkpoints.seconds,
         )
         self.told.append(entry)
-        self.fronts.append(self._growth.front[:: 1 + len(self._growth.front) // _SHOWN])
+        self.fronts.append(_some(feasible))
         if self.checkpoints.turn():
             self._say(entry, self.progress)
         else:
             self.stand(stage, 0, 1)
+
+    def latest(self) -> Array:
+        """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
+        if self.archive.met.all() and not len(self.finished):
+            return _some(self.archive.values)
+        values = np.concatenate([self.archive.values, self.finished.values])
+        return _some(values[nondominated(values)])
 
     def stage(self, name: str) -> Stand:
         """Return the callback of a long stage, many times a second: it ends a cancelled search and tells progress."""

@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
 from ..jobs.submission import job_json
-from ..store import State, Store
+from ..store import Job, State, Store
 from .exports import formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
@@ -55,10 +55,10 @@ def list_jobs(
     before: Annotated[Whole | None, Query(ge=1, le=LARGEST, description="older than the job of this number")] = None,
     limit: Annotated[Whole, Query(ge=1, le=1000, description="at most so many")] = 100,
 ) -> dict[str, Any]:
-    """Return jobs, latest first."""
+    """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
     page = found[:limit]
-    return {"jobs": [job.record() for job in page], "next": page[-1].id if len(found) > limit else None}
+    return {"jobs": [_row(job) for job in page], "next": page[-1].id if len(found) > limit else None}
 
 
 @router.get("/jobs/{number}", response_model=JobShown)
@@ -126,6 +126,11 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     saved_as = re.sub(r"[^A-Za-z0-9._-]", "_", file.name)
     headers = {"Content-Disposition": f'attachment; filename="{saved_as}"'}
     return Response(file.content, media_type=file.media_type, headers=headers)
+
+
+def _row(job: Job) -> dict[str, Any]:
+    """Return a job of which `JobRow` takes its part."""
+    return job.record() if job.state == "running" else {**job.record(), "progress": None}
 
 
 def _submitted(asked: Asked, store: Store, settings: Settings, response: Response, key: str | None) -> dict[str, Any]:

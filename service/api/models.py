@@ -54,58 +54,75 @@ class FrontSoFar(Shown):
     )
 
 
-class JobProgress(Shown):
-    """Progress of a search."""
+class RowProgress(Shown):
+    """Progress of a search in a list."""
 
     stage: str
     round: int
     rounds: int = Field(description="how many are planned")
-    evaluations: int
     feasible: int = Field(description="designs that meet every constraint")
+    step: int = Field(default=0, description="how far the stage is, in a long one between two rounds")
+    steps: int = Field(default=0, description="how far it goes; 0 at the end of a round")
+
+
+class JobProgress(RowProgress):
+    """Progress of a search."""
+
+    evaluations: int
     hypervolume: float | None = Field(
         description="what the feasible designs so far dominate, in boxes that the first of them span; it never falls; "
         "not comparable between jobs"
     )
     seconds: float | None
-    step: int = Field(default=0, description="how far the stage is, in a long one between two rounds")
-    steps: int = Field(default=0, description="how far it goes; 0 at the end of a round")
     front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
 
 
-class JobSummary(Shown):
-    """Summary of the result of a job."""
+class RowSummary(Shown):
+    """Summary of the result of a job in a list."""
 
     designs: Count
+    best: dict[str, float | str | None] = Field(description="the best value of each objective, by column")
+
+
+class JobSummary(RowSummary):
+    """Summary of the result of a job."""
+
     hypervolume: float | None
     evaluations: Count
     seconds: float | None
-    best: dict[str, float | str | None] = Field(description="the best value of each objective, by column")
     axes: list[str] = Field(description="the columns of the points")
     points: list[list[float | str | None]] = Field(description="at most 64 designs of the front")
 
 
-class JobShown(Shown, title="Job"):
-    """State of a job. Times are seconds since 1970, UTC."""
+class JobRow(Shown):
+    """State of a job in a list. Times are seconds since 1970, UTC."""
 
     id: int = Field(ge=1, description="its number", examples=[1])
-    key: str | None = Field(description="of its submission")
     name: str = Field(examples=["Feeder"])
-    run: str = Field(description="the name of its run folder, wherever it is exported")
     state: State
     reason: str = Field(description="why it is in this state, in a sentence, or empty")
     priority: int = Field(description="higher ones are solved first")
-    attempts: Count = Field(description="since it last went forward")
-    most_attempts: Count
-    limits: JobLimits
     cancel_asked: bool
     submitted: float
-    due: float = Field(description="it is not started before")
     started: float | None
     finished: float | None
     worker: str | None = Field(description="who solves it")
+    events: Count = Field(description="the number of its last event")
+    progress: RowProgress | None = Field(description="while it runs")
+    summary: RowSummary | None
+
+
+class JobShown(JobRow, title="Job"):
+    """State of a job. Times are seconds since 1970, UTC."""
+
+    key: str | None = Field(description="of its submission")
+    run: str = Field(description="the name of its run folder, wherever it is exported")
+    attempts: Count = Field(description="since it last went forward")
+    most_attempts: Count
+    limits: JobLimits
+    due: float = Field(description="it is not started before")
     lease_until: float | None
     records: Count = Field(description="that it can go on from")
-    events: Count = Field(description="the number of its last event")
     progress: JobProgress | None
     summary: JobSummary | None
 
@@ -113,8 +130,24 @@ class JobShown(Shown, title="Job"):
 class JobPage(Shown):
     """Some jobs, latest first."""
 
-    jobs: list[JobShown]
+    jobs: list[JobRow]
     next: int | None = Field(description="`before` of the next page; null on the last one")
+
+
+class FrontPoints(Shown):
+    """Some designs of the front of a job, for a small picture; no points where no front is known."""
+
+    job: int = Field(examples=[1])
+    columns: list[str] = Field(description="of the first two objectives, or of the only one", examples=[["time_ratio"]])
+    points: list[list[float | str | None]] = Field(
+        description="at most 64 designs: values by column, while it runs as in its progress", examples=[[[1.25]]]
+    )
+
+
+class FrontPointsList(Shown):
+    """Points of the fronts of jobs, in the order of their numbers; jobs that are gone are left out."""
+
+    fronts: list[FrontPoints]
 
 
 class EventShown(Shown, title="Event"):

@@ -94,7 +94,10 @@ class Client:
     def jobs(
         self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
     ) -> list[Record]:
-        """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this."""
+        """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this.
+
+        Each has what a list shows; `job` gives all of one, `front_points` some designs of several.
+        """
         query = {"state": list(states), "name": name, "limit": limit, **_given(before=before)}
         found: list[Record] = self._get("jobs", query)["jobs"]
         return found
@@ -102,6 +105,15 @@ class Client:
     def job(self, number: int) -> Record:
         """Return where a job stands."""
         return self._get(f"jobs/{number}")
+
+    def front_points(self, numbers: Collection[int]) -> list[Record]:
+        """Return some designs of the fronts of at most 100 jobs, or of their fronts so far: job, columns, points.
+
+        At most 64 designs of each, in the first two objectives; in the order of their numbers, without jobs that are
+        gone.
+        """
+        found: list[Record] = self._get("front-points", {"job": list(numbers)})["fronts"]
+        return found
 
     def tables(self, number: int) -> Record:
         """Return the tables of a job's file."""

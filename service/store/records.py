@@ -108,6 +108,16 @@ class Job:
             record["progress"] = {"step": 0, "steps": 0, **self.progress, "front": self.progress.get("front")}
         return record
 
+    def front_points(self) -> dict[str, Any]:
+        """Return columns of at most two objectives, and points of at most 64 designs: of its front, or of that so far.
+
+        None of either where no front is known.
+        """
+        if self.summary is not None and self.summary["points"]:
+            return {"columns": self.summary["axes"], "points": self.summary["points"]}
+        front = (self.progress or {}).get("front") or {"columns": [], "points": []}
+        return {"columns": front["columns"][:2], "points": [point[:2] for point in front["points"]]}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Event:

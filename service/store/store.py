@@ -132,13 +132,22 @@ class Store(Database):
         return None if row is None else Job.of(row)
 
     def jobs(
-        self, *, states: Collection[State] = (), name: str = "", before: int | None = None, limit: int = 100
+        self,
+        *,
+        states: Collection[State] = (),
+        name: str = "",
+        before: int | None = None,
+        numbers: Collection[int] = (),
+        limit: int = 100,
     ) -> list[Job]:
         """Return jobs, latest first. states: of these; all if empty. name: contains this, in any case of letters.
 
-        before: older than the job of this number, to turn pages. limit: at most so many.
+        before: older than the job of this number, to turn pages. numbers: of these; all if empty. limit: at most so
+        many.
         """
         query = select(*SHOWN).order_by(jobs.c.id.desc()).limit(limit)
+        if numbers:
+            query = query.where(jobs.c.id.in_(numbers))
         if states:
             query = query.where(jobs.c.state.in_(states))
         if name:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from typing import Any
 
@@ -246,6 +247,30 @@ def test_more_tables_than_peaks_kept() -> None:
     designs = DESIGNS[:100]
     swept = greatest(lambda designs, theta: drive_torque(machine, designs, theta), designs)
     np.testing.assert_allclose(highest(machine, Signal.TORQUE, designs), swept, rtol=EXACT)
+
+
+@pytest.mark.parametrize("over", ["positions", "crank angles"])
+def test_peaks_of_tables_of_any_length_are_those_of_a_dense_sweep(over: str) -> None:
+    # Segments between the knots are longer than the spacing of the samples, or up to sixty times shorter.
+    random = np.random.default_rng(17)
+    for count in (2, 3, 7, 40, 120, 300):
+        designs = random_designs(6, seed=count)
+        rough = np.cumsum(random.normal(0.0, 1.0 / math.sqrt(count), count))
+        smooth = np.sin(random.uniform(1.0, 6.0) * np.linspace(0.0, 1.0, count) + random.uniform(0.0, 6.0))
+        for shape in (rough, smooth, random.normal(0.0, 1.0, count)):
+            forces = tuple(400.0 * shape)
+            steps = np.cumsum(random.uniform(0.1, 1.0, count))
+            if over == "positions":
+                load: Any = PositionTable(
+                    positions=tuple(0.12 * steps / steps[-1]), forces=forces, datum="inner dead centre"
+                )
+            else:
+                load = AngleTable(angles=tuple(6.28 * steps / steps[-1]), forces=forces)
+            machine = dataclasses.replace(TABLES, loads=(load,))
+            swept = greatest(functools.partial(drive_torque, machine), designs)
+            found = highest(machine, Signal.TORQUE, designs)
+            assert (found >= swept * (1.0 - EXACT)).all(), "a peak is missed"
+            np.testing.assert_allclose(found, swept, rtol=1e-9)
 
 
 def test_tolerance_of_the_crank_angle_alone_gives_the_slider_speed() -> None:

@@ -22,7 +22,7 @@ SCREENED = (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
 
 def screen(machine: Mechanism, signal: Signal, designs: Array, *, gradients: bool = False) -> Screened:
-    return screening.screen(machine, (signal,), designs, gradients=gradients)[0]
+    return screening.screen(machine, (signal,), designs, gradients=gradients, places=True)[0]
 
 
 @pytest.mark.parametrize("signal", SCREENED, ids=lambda signal: signal.name)

@@ -73,7 +73,7 @@ def test_nothing_one_design_ties_and_what_is_not_defined() -> None:
 
 def test_designs_that_violate_a_requirement_a_little_do_not_count() -> None:
     given = problem({"peak_torque": "minimise", "time_ratio": "maximise"})
-    run, archive = Run(given, 2), Archive.empty(2)
+    run, archive = Run(given, 2, lambda entry: None), Archive.empty(2)
     archive.take(0, np.zeros((2, 3)), np.array([[1.0, 2.0], [2.0, 1.0]]), met=np.zeros(2, dtype=bool))
     run.tell("sampling", [], archive)
     archive.take(0, np.zeros((1, 3)), np.array([[3.0, 3.0]]))

@@ -46,8 +46,10 @@ declare global {
     type Event = Schemas["EventShown"];
     type Example = Schemas["ExampleModel"];
     type Front = Schemas["FrontModel"];
+    type FrontPoints = Schemas["FrontPoints"];
     type FrontSoFar = Schemas["FrontSoFar"];
     type Job = Schemas["JobShown"];
+    type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];
     type Objective = Schemas["ObjectiveModel"];
     type Preset = Schemas["PresetModel"];

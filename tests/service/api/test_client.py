@@ -114,6 +114,10 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     assert reader.figure(number, "knee", tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
     assert reader.analyse(TABLES, crank="120 mm", rod="400 mm", offset="50 mm")["crank_mm"] == 120.0
     assert reader.check(TABLES)["name"] == TABLES["name"]
+    listed = [[row["time_ratio"], row["least_transmission_angle_deg"]] for row in front.designs]
+    assert reader.front_points([number, 99]) == [
+        {"job": number, "columns": ["time_ratio", "least_transmission_angle_deg"], "points": listed}
+    ]
     assert reader.schema()["$schema"].endswith("2020-12/schema")
     with pytest.raises(NotFound, match="no figure 'none'; choose from"):
         reader.figure(number, "none", tmp_path / "b.png")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
+from urllib.parse import parse_qs, urlsplit
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Request, expect
 
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
@@ -16,6 +17,9 @@ from tests.service.page.conftest import Open
 from tests.service.store.contents import ROWS, add, progress, result, taken
 
 TABLES = tomllib.loads(fronts.JOB)
+# Of each answer with points, bytes that were sent, and those of its body.
+_SENT = """() => performance.getEntriesByType("resource").filter(({ name }) => name.includes("front-points"))
+  .map(({ transferSize, encodedBodySize }) => [transferSize, encodedBodySize])"""
 
 
 def run(page: Page, name: str) -> object:
@@ -51,9 +55,12 @@ def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
     item = page.get_by_role("listitem")
     expect(item).to_contain_text("queued")
     claim = taken(store)
-    claim.tell(progress(3), {"columns": ["time_ratio", "crank_mm"], "points": [[1.2, 30.0], [1.3, 40.0]]})
+    columns, points = ["time_ratio", "crank_mm"], [[1.2, 30.0], [1.3, 40.0], [1.4, 60.0]]
+    claim.tell(progress(3), {"columns": columns, "points": points[:2]})
     expect(item).to_contain_text("round 3 of 9")
     expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
+    claim.tell(progress(4), {"columns": columns, "points": points})
+    expect(item.get_by_role("img", name="the front: 3 designs")).to_be_visible()
     claim.finish(result())
     expect(item).to_contain_text("done")
     store.delete(claim.job.id)
@@ -125,6 +132,121 @@ def test_older_runs_are_on_further_pages(open_page: Open, store: Store) -> None:
     expect(page.get_by_text("Feeder 0", exact=True)).to_be_visible()
     page.get_by_role("button", name="Newest").click()
     expect(page.get_by_text("Feeder 29", exact=True)).to_be_visible()
+
+
+def pictures_asked_for(page: Page) -> list[list[int]]:
+    """Return a list that gets the numbers of the runs in each request for pictures from now on."""
+    asked: list[list[int]] = []
+
+    def note(request: Request) -> None:
+        if "/front-points?" in request.url:
+            asked.append([int(number) for number in parse_qs(urlsplit(request.url).query)["job"]])
+
+    page.on("request", note)
+    return asked
+
+
+def in_sight(page: Page) -> set[int]:
+    """Return the numbers of the runs of whose pictures something is seen."""
+    return set(
+        page.evaluate(
+            """() => [...document.querySelectorAll("li.run")].filter((row) => {
+              const { top, bottom } = row.querySelector(".thumbnail").getBoundingClientRect();
+              return bottom > 0 && top < innerHeight;
+            }).map((row) => Number(row.textContent.match(/run (\\d+)/)[1]))"""
+        )
+    )
+
+
+def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: Open, store: Store) -> None:
+    for _ in range(200):
+        put_in(store, result(), TABLES)
+    page = open_page(store, "#/help")
+    page.route(
+        "**/api/v1/jobs?*", lambda route: route.continue_(url=route.request.url.replace("limit=25", "limit=200"))
+    )
+    asked = pictures_asked_for(page)
+    page.get_by_role("link", name="Runs").first.click()
+    pictures = page.get_by_role("img", name="the front: 2 designs")
+    expect(page.get_by_role("listitem").filter(has_text="Compare run")).to_have_count(200)
+    expect(pictures.first).to_be_visible()
+    first = in_sight(page)
+    assert 4 < len(first) < 20
+    assert asked == [sorted(first, reverse=True)]
+    expect(pictures).to_have_count(len(first))
+    page.mouse.move(600, 400)
+    seen = set(first)
+    for _ in range(12):
+        page.mouse.wheel(0, 150)
+        page.wait_for_function(
+            "() => new Promise((done) => requestAnimationFrame(() => setTimeout(() => done(true), 50)))"
+        )
+        seen |= in_sight(page)
+    expect(pictures).to_have_count(len(seen))
+    assert sorted(number for request in asked for number in request) == sorted(seen)  # each once
+    page.get_by_role("listitem").filter(has_text="run 1 ·").scroll_into_view_if_needed()
+    expect(page.get_by_role("listitem").filter(has_text="run 1 ·").get_by_role("img")).to_be_visible()
+    asked_for = {number for request in asked for number in request}
+    assert asked_for <= seen | in_sight(page)
+    assert len(asked_for) < 60
+
+
+def test_pictures_stay_while_rows_are_drawn_anew(open_page: Open, store: Store) -> None:
+    for _ in range(3):
+        put_in(store, result(), TABLES)
+    page = open_page(store, "#/help")
+    page.clock.install()
+    asked = pictures_asked_for(page)
+    page.get_by_role("link", name="Runs").first.click()
+    expect(page.get_by_role("img", name="the front: 2 designs")).to_have_count(3)
+    page.clock.run_for(130_000)
+    expect(page.get_by_text("2 minutes ago").first).to_be_visible()
+    expect(page.get_by_role("img", name="the front: 2 designs")).to_have_count(3)
+    assert asked == [[3, 2, 1]]
+
+
+def test_points_of_pictures_are_sent_once(open_page: Open, store: Store) -> None:
+    put_in(store, result(rows=ROWS * 50), TABLES)
+    page = open_page(store)
+    sent: list[list[int]] = []
+    for _ in range(2):
+        expect(page.get_by_role("img", name="the front: 64 designs")).to_be_visible()
+        page.wait_for_function(f"() => ({_SENT})().length === {len(sent) + 1}")
+        sent = page.evaluate(_SENT)
+        page.get_by_role("link", name="Help").first.click()
+        expect(page.get_by_role("heading", level=1)).not_to_have_text("Runs")
+        page.get_by_role("link", name="Runs").first.click()
+    (first, body), (second, same) = sent
+    assert body == same
+    assert second < body < first, "the second time only that nothing has changed"
+
+
+def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, store: Store) -> None:
+    put_in(store, result(), TABLES)
+    page = open_page(store, "#/help", expected=("503",))
+    page.clock.install()
+    page.route("**/front-points?*", lambda route: route.fulfill(status=503, json={"detail": "away"}))
+    with page.expect_response("**/front-points?*"):
+        page.get_by_role("link", name="Runs").first.click()
+    expect(page.get_by_role("listitem")).to_contain_text("2 designs")
+    expect(page.get_by_role("img", name="the front")).to_have_count(0)
+    page.unroute("**/front-points?*")
+    page.clock.run_for(65_000)
+    expect(page.get_by_role("img", name="the front: 2 designs")).to_be_visible()
+
+
+def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> None:
+    add(store)
+    taken(store).fail("its worker was killed", again=False)
+    put_in(store, result("infeasible", rows=[]), TABLES)
+    add(store)
+    page = open_page(store, "#/help")
+    asked = pictures_asked_for(page)
+    page.get_by_role("link", name="Runs").first.click()
+    with page.expect_response("**/api/v1/jobs?*"):  # the second look: nothing has changed
+        expect(page.get_by_role("listitem").filter(has_text="Compare run")).to_have_count(3)
+    expect(page.get_by_role("img", name="the front")).to_have_count(0)
+    assert asked == [[3, 2, 1]]
 
 
 def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) -> None:

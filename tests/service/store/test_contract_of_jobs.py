@@ -41,6 +41,8 @@ def test_jobs_are_listed_latest_first_in_pages_by_state_and_by_name(store: Store
     assert [job.id for job in store.jobs(states=["queued"])] == numbers[:0:-1]
     assert [job.id for job in store.jobs(name="FEED")] == [numbers[2], numbers[0]]
     assert [job.id for job in store.jobs(name="0 %")] == [numbers[2]]
+    assert [job.id for job in store.jobs(numbers=[numbers[0], 99, numbers[2]])] == [numbers[2], numbers[0]]
+    assert store.jobs(numbers=[numbers[2]], before=numbers[2]) == []
     assert store.counts() == {"queued": 2, "running": 1}
 
 

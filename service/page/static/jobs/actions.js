@@ -9,7 +9,7 @@ import { ENDED } from "./states.js";
 /**
  * Return the buttons of a job. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
  * whoever deleted it.
- * @param {Api.Job} job @param {(job: Api.Job | null) => unknown} changed
+ * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed
  */
 export function actions(job, changed) {
   const of = `run ${job.id}, ${job.name}`;

@@ -1,6 +1,5 @@
 /** A run in the list. */
 
-import { thumbnail } from "../charts/thumbnail.js";
 import { named } from "../front/columns.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
@@ -10,26 +9,25 @@ import { badge } from "./states.js";
 import { ago } from "./times.js";
 
 /**
- * Return a run as an item of the list. compare(number, yes): it is ticked or not; changed(): something was done with it.
- * @param {Api.Job} job @param {{ chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.Job | null) => unknown }} given
+ * Return a run as an item of the list. picture: its front; compare(number, yes): it is ticked or not; changed(): something was done with it.
+ * @param {Api.JobRow} job
+ * @param {{ picture: Element, chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.JobRow | null) => unknown }} given
  */
-export function runRow(job, { chosen, compare, changed }) {
-  const { summary, progress } = job;
-  const points = summary?.points.length ? summary.points : progress?.front?.points.map((point) => point.slice(0, 2)) ?? [];
+export function runRow(job, { picture, chosen, compare, changed }) {
   return h("li", { class: "panel run" },
     h("label", { class: "tick" },
-      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !summary?.designs && !chosen, onchange: (event) => compare(job.id, event.currentTarget.checked) }),
+      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !job.summary?.designs && !chosen, onchange: (event) => compare(job.id, event.currentTarget.checked) }),
       h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`)),
     h("div", { class: "what" },
       h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
       h("div", { class: "quiet" }, `run ${job.id} · `, ago(job.finished ?? job.started ?? job.submitted)),
       badge(job)),
-    points.length ? thumbnail(points, `the front: ${points.length} designs`) : h("span", { class: "thumbnail" }),
+    picture,
     h("div", { class: "found" }, standing(job)),
     h("div", { class: "row acts" }, actions(job, changed)));
 }
 
-/** Return how far a job is, or what it found. @param {Api.Job} job */
+/** Return how far a job is, or what it found. @param {Api.JobRow} job */
 function standing(job) {
   if (job.summary?.designs) {
     const { designs, best } = job.summary;

@@ -16,7 +16,7 @@ export function stateWord(state) {
   return WORDS[state] ?? state;
 }
 
-/** Return a badge that says in which state a job is. @param {Api.Job} job */
+/** Return a badge that says in which state a job is. @param {Api.JobRow} job */
 export function badge(job) {
   const state = job.state === "running" && job.cancel_asked ? "stopping" : job.state;
   return h("span", { class: `state ${state}` }, h("span", { "aria-hidden": "true" }, SIGNS[state] ?? ""), ` ${stateWord(state)}`);

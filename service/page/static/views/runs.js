@@ -2,6 +2,7 @@ import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { keep, link } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { STATES, stateWord } from "../jobs/states.js";
+import { pictures } from "../jobs/pictures.js";
 import { runRow } from "../jobs/row.js";
 
 export const title = "Runs";
@@ -16,6 +17,7 @@ export async function show(place, { query, signal }) {
   const compared = new Set((query.get("jobs") ?? "").split(",").filter(Boolean).map(Number));
   /** @type {Map<number, { text: string, node: HTMLElement, held: string | null }>} */
   const rows = new Map(); // number: {text, node}
+  const { picture, forget } = pictures(signal);
   const list = h("ul", { class: "runs" });
   const said = h("p", { class: "quiet", role: "status" });
   const pages = h("nav", { class: "row", "aria-label": "Pages" });
@@ -83,7 +85,7 @@ export async function show(place, { query, signal }) {
       const known = rows.get(job.id);
       if (known?.text === text) return known.node;
       const held = (known && focused(known.node)?.dataset.act) ?? null;
-      const node = runRow(job, { chosen: compared.has(job.id), compare, changed: look });
+      const node = runRow(job, { picture: picture(job), chosen: compared.has(job.id), compare, changed: look });
       rows.set(job.id, { text, node, held });
       return node;
     });
@@ -94,7 +96,11 @@ export async function show(place, { query, signal }) {
       if (held) (first(held.node, `[data-act="${held.held}"]`) ?? first(held.node, "a"))?.focus();
       for (const row of rows.values()) row.held = null;
     }
-    for (const number of rows.keys()) if (!page.jobs.some(({ id }) => id === number)) rows.delete(number);
+    for (const number of rows.keys()) {
+      if (page.jobs.some(({ id }) => id === number)) continue;
+      rows.delete(number);
+      forget(number);
+    }
     const some = asked.name || asked.state || asked.before;
     const empty = !page.jobs.length && !some;
     place.classList.toggle("empty", empty);

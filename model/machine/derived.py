@@ -1,0 +1,59 @@
+"""Designs derived from raw numbers beforehand, for kernels that follow one design at a time: compiled once for all."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import STEP
+from ..kernel.kernel import ComplexCube, Cube, Integers, Row, Table, kernel
+from .design import DESIGN, derive
+from .raw import Loads
+
+Array = NDArray[np.float64]
+
+_ONE, _NONE = np.zeros((1, 0)), np.zeros(0, np.int64)
+
+
+@kernel
+def _derive(
+    raw: Row, columns: Integers, designs: Table, kind: Integers, datum: Integers, blocks: Cube, steps: ComplexCube
+) -> None:
+    # Complex throughout: the real formulas would take as long to compile again.
+    stepped, block = np.empty((raw.shape[0], 1), np.complex128), np.empty((blocks.shape[1], 1), np.complex128)
+    count = steps.shape[0] // blocks.shape[0]
+    for n in range(blocks.shape[0]):
+        for i in range(raw.shape[0]):
+            stepped[i, 0] = raw[i]
+        for i in range(columns.shape[0]):
+            stepped[columns[i], 0] = designs[n, i]
+        for v in range(-1, count):
+            own = stepped[columns[max(v, 0)], 0] if count else 0j
+            if v >= 0:
+                stepped[columns[v], 0] = own + complex(0.0, STEP)
+            derive(stepped, kind, datum, block)
+            if v >= 0:
+                stepped[columns[v], 0] = own
+            for i in range(blocks.shape[1]):
+                if v < 0:
+                    blocks[n, i, 0] = block[i, 0].real
+                else:
+                    steps[n * count + v, i, 0] = block[i, 0]
+
+
+def derived(
+    raw: Array, loads: Loads, columns: NDArray[np.int64] = _NONE, designs: Array = _ONE, *, steps: bool = False
+) -> tuple[Array, NDArray[Any]]:
+    """Return blocks (n, DESIGN + 2 k, 1) of raw numbers (END + 4 k,), of which each design (n, c) sets `columns` (c,).
+
+    By default there is one design, which sets none. steps: whether to give blocks (n c, DESIGN + 2 k, 1) for an
+    imaginary step of each of the columns too; else there are none of these.
+    """
+    rows, n = DESIGN + 2 * len(loads.kind), len(designs)
+    blocks = np.empty((n, rows, 1))
+    stepped = np.empty((n * len(columns) if steps else 0, rows, 1), np.complex128)
+    if n:
+        _derive(raw, columns, designs, loads.kind, loads.datum, blocks, stepped)
+    return blocks, stepped
