@@ -3,7 +3,8 @@
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
 feasible, or no design that meets the conditions; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
-Nothing that is slow to import is imported here or at the top of the command modules: `--help` stays quick.
+A command is imported when it is named. Nothing that is slow to import is imported here or at the top of the command
+modules: `--help`, which names all, stays quick.
 """
 
 from __future__ import annotations
@@ -13,32 +14,14 @@ import os
 import sys
 import tempfile
 import traceback
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from ..model.errors import OutputLost, SlidercrankError
-from .commands.allocate import allocate
-from .commands.analyse import analyse
-from .commands.balance import balance
-from .commands.cases import cases
-from .commands.certify import certify
-from .commands.compare import compare
-from .commands.doctor import doctor
 from .commands.ending import FAULT, INTERRUPTED, WRONG_INPUT
-from .commands.export import export
-from .commands.job import check, schema
-from .commands.like import like
-from .commands.optimise import optimise
-from .commands.queue import cancel, delete, jobs, resume
-from .commands.report import report
-from .commands.runs import front
-from .commands.sections import sections
-from .commands.serve import serve
-from .commands.submit import submit, watch
-from .commands.sweep import sweep
-from .commands.worker import worker
 from .resources.disk import full_places, is_full
 from .text.options import for_typer
 from .text.screen import give, say
@@ -52,8 +35,32 @@ _MORE_MEMORY = (
 )
 
 
+_COMMANDS = (
+    *("optimise", "analyse", "sweep", "allocate", "balance", "sections", "certify", "compare", "like"),
+    *("check", "schema", "front", "export", "report", "cases"),
+    *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
+)
+_MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
+_MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
+"""Modules of the commands that have none of their own name."""
+
+
 class Commands(TyperGroup):
-    """Runs a command and turns its exceptions into one message and an exit code."""
+    """Loads and runs the command that was named, and turns its exceptions into one message and an exit code."""
+
+    def __init__(self, **given: Any) -> None:
+        """Take what typer gives, and the names of the commands."""
+        super().__init__(**given)
+        self.commands = dict.fromkeys(_COMMANDS)  # type: ignore[assignment]
+
+    def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:  # type: ignore[override]
+        """Return a command, None if there is none of that name."""
+        if cmd_name in self.commands and self.commands[cmd_name] is None:
+            module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
+            alone = typer.Typer(rich_markup_mode=None, add_completion=False)
+            alone.command(cmd_name)(for_typer(getattr(module, cmd_name)))
+            self.commands[cmd_name] = typer.main.get_command(alone)
+        return self.commands.get(cmd_name)
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
         """Run the command that was named."""
@@ -142,17 +149,10 @@ def slidercrank(
     """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
 
 
-COMMANDS = (
-    *(optimise, analyse, sweep, allocate, balance, sections, certify, compare, like),
-    *(check, schema, front, export, report, cases),
-    *(serve, submit, jobs, watch, cancel, resume, delete, worker, doctor),
-)
-for command in COMMANDS:
-    app.command()(for_typer(command))
-
-
 def main() -> None:
     """Run the command line and exit."""
+    # Before NumPy is loaded: its other threads wait for matrices that are never large enough, at full speed.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     guard_streams()
     try:
         app(prog_name="slidercrank")

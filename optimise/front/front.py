@@ -5,8 +5,9 @@ from __future__ import annotations
 import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from html import escape
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
 from ..problem.requirements import Objective
 from .constant import spread
+from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .picture import figure, svg
 from .progress import Progress
@@ -28,8 +30,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+Columns = dict[str, NDArray[Any]]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
 _LEAST = 1e-4  # of a range: a step that is worth telling
+_UNMET = 1e-7  # what counts as no solution, rows being of size one
 Status = Literal["done", "cancelled", "infeasible"]
 
 
@@ -37,9 +41,9 @@ Status = Literal["done", "cancelled", "infeasible"]
 class ParetoFront:
     """The Pareto front of a problem and the evidence for it.
 
-    designs: one row a design, all quantities under their JSON names with units, then `slack_<field>` for every
-    constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual` (stationarity)
-    and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
+    columns: of the table of designs, each (n,): all quantities under their JSON names with units, then `slack_<field>`
+    for every constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual`
+    (stationarity) and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
     dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary besides them, SI, exactly.
     variants: of each design, which of the problem's variants it is; empty if nothing was to be chosen.
     values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
@@ -52,7 +56,7 @@ class ParetoFront:
     problem: Problem
     status: Status
     message: str
-    designs: pd.DataFrame
+    columns: Columns
     dimensions: Array
     values: Array
     goals: tuple[tuple[Array, Array], ...]
@@ -65,8 +69,15 @@ class ParetoFront:
     versions: dict[str, str] = field(default_factory=dict)
     variants: tuple[int, ...] = ()
 
+    @cached_property
+    def designs(self) -> pd.DataFrame:
+        """The designs as a table of pandas, one row a design: the columns under their names."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns)
+
     def __len__(self) -> int:
-        return len(self.designs)
+        return len(self.values)
 
     def __repr__(self) -> str:
         found = f"{len(self)} design" + ("" if len(self) == 1 else "s")
@@ -77,7 +88,7 @@ class ParetoFront:
         if not len(self):
             return f"<p>{escape(self.problem.name)}: {escape(self.message)}</p>"
         columns = [quantity.field for quantity in self._quantities]
-        sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.designs.columns]
+        sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.columns]
         table = self.designs[list(dict.fromkeys([*columns, *sizes]))].to_html(max_rows=8, float_format="{:.5g}".format)
         return f"<div><p>{escape(repr(self))}</p>{svg(self._shown(), self._labels())}{table}</div>"
 
@@ -91,7 +102,7 @@ class ParetoFront:
         return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in self._quantities]
 
     def _shown(self) -> Array:
-        return self.designs[[quantity.field for quantity in self._quantities]].to_numpy(dtype=np.float64)
+        return np.stack([self.columns[quantity.field] for quantity in self._quantities], axis=1)
 
     @property
     def _quantities(self) -> list[Quantity]:
@@ -172,9 +183,9 @@ class ParetoFront:
         objective = self._column(best)
         keep = np.ones(len(self), dtype=bool)
         for column, (least, greatest) in bounds.items():
-            if column not in self.designs.columns:
+            if column not in self.columns:
                 raise InputError(f"the table has no column {column!r}; see front.designs.columns")
-            values = self.designs[column].to_numpy()
+            values = self.columns[column]
             if least is not None:
                 keep &= values >= least
             if greatest is not None:
@@ -264,15 +275,29 @@ class ParetoFront:
 
 
 def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
-    """Return the losses (m,) of the cheapest direction in which objective b gains one; None if there is none."""
-    from scipy.optimize import linprog
+    """Return the losses (m,) of the cheapest direction in which objective b gains one; None if there is none.
 
+    A linear programme, min c x subject to G x <= h with some x >= 0, by its optimality conditions: with multipliers y,
+
+        G x + s = h,   G' y + c = t,   c x + h y = 0,   s, y >= 0,   t >= 0 where x >= 0, else t = 0.
+    """
     k = slopes.shape[1]
     pays = np.where(owner == b, 0.0, 1.0)[:, None] * (owner[:, None] == np.arange(m))
     rows = np.concatenate([np.column_stack([slopes, -pays]), np.pad(active, ((0, 0), (0, m)))])
     limits = np.concatenate([np.where(owner == b, -1.0, 0.0), np.zeros(len(active))])
     size = np.maximum(np.abs(rows).max(axis=1, initial=0.0), 1e-300)
+    rows, limits = rows / size[:, None], limits / size
     cost = np.concatenate([np.zeros(k), np.ones(m)])
-    bounds = [(None, None)] * k + [(0.0, None)] * m
-    found = linprog(cost, rows / size[:, None], limits / size, bounds=bounds, method="highs")
-    return np.asarray(found.x[k:]) if found.status == 0 and found.x is not None else None
+    r, split = len(rows), np.hstack([np.eye(k + m), -np.eye(k + m)[:, :k]])  # a move is a difference of positive ones
+    matrix = np.block(
+        [
+            [rows @ split, np.eye(r), np.zeros((r, r)), np.zeros((r, m))],
+            [np.zeros((k + m, 2 * k + m + r)), rows.T, np.eye(k + m)[:, k:] * -1.0],
+            [(cost @ split)[None], np.zeros((1, r)), limits[None], np.zeros((1, m))],
+        ]
+    )
+    target = np.concatenate([limits, -cost, [0.0]])
+    found = nonnegative_least_squares(matrix, target)
+    if found is None or np.abs(matrix @ found - target).max() > _UNMET:
+        return None
+    return found[k : k + m]

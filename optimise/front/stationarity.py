@@ -14,6 +14,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .nonnegative import nonnegative_least_squares
+
 Array = NDArray[np.float64]
 
 STATIONARY = 1e-6
@@ -23,8 +25,6 @@ _STIFF = 1e3  # weight of the rows that fix the sums of weights, against gradien
 
 def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,), mu (q,) for gradients (p, k) of objectives and (q, k) of active constraints."""
-    from scipy.optimize import nnls
-
     p, q = len(goals), len(active)
     size, lengths = _sizes(goals, active)
     matrix = np.zeros((goals.shape[1] + 1, p + q))
@@ -33,9 +33,9 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     matrix[-1, :p] = 1.0
     target = np.zeros(goals.shape[1] + 1)
     target[-1] = 1.0
-    solution, _ = nnls(matrix, target)
-    total = solution[:p].sum()
-    if total <= 0.0:
+    solution = nonnegative_least_squares(matrix, target)
+    total = 0.0 if solution is None else solution[:p].sum()
+    if solution is None or total <= 0.0:
         return float("inf"), np.full(p, 1.0 / p), np.zeros(q)
     convex, pushing = solution[:p] / total, solution[p:] / total
     residual = float(np.linalg.norm(matrix[:-1] @ np.concatenate([convex, pushing]))) * size
@@ -52,8 +52,6 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
     A design that only a zero weight makes stationary (two objectives oppose each other, a third could still be had for
     nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound.
     """
-    from scipy.optimize import nnls
-
     names = np.unique(owner)
     p, q, m = len(goals), len(active), len(names)
     size, lengths = _sizes(goals, active)
@@ -66,9 +64,8 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
         matrix[k + row, p + q + row] = -_STIFF
     target = np.zeros(k + m)
     target[k:] = _STIFF
-    try:
-        solution, _ = nnls(matrix, target, maxiter=50 * matrix.shape[1])
-    except RuntimeError:
+    solution = nonnegative_least_squares(matrix, target)
+    if solution is None:
         return float("inf"), np.full(p, 1.0 / p), np.zeros(q)
     residual = float(np.linalg.norm(matrix[:k, : p + q] @ solution[: p + q])) * size
     return residual, solution[:p], solution[p : p + q] * size / lengths

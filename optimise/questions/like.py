@@ -94,7 +94,7 @@ def like_design(
     `like_design(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
     """
     front.part(row)  # refuses what is no row
-    table = {str(key): value for key, value in front.designs.iloc[row].items()}
+    table = {name: values[row] for name, values in front.columns.items()}
     return like(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
 
 
@@ -216,7 +216,7 @@ def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:
     return replace(
         front,
         message=f"1 design, {front.evaluations} evaluated",
-        designs=front.designs.iloc[[row]].reset_index(drop=True),
+        columns={name: values[[row]] for name, values in front.columns.items()},
         dimensions=front.dimensions[[row]],
         values=front.values[[row]],
         goals=(front.goals[row],),

@@ -54,7 +54,7 @@ def front_warnings(front: ParetoFront) -> list[str]:
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
-    slow, loaded = (front.designs[name].to_numpy(dtype=str) for name in ("slow_stroke", "loaded_stroke"))
+    slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
     found = free & _fast(slow, loaded)
     if not found.any():
         return _left_out(front.problem)

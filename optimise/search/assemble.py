@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...model.kinematics.in_line import without_rounding
+from ...objectives.proportions import STROKE
 from ..front.constant import is_constant
-from ..front.front import ParetoFront, Status
+from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.stationarity import STATIONARY, Array, multipliers
 from ..problem.problem import Problem, choice_field
@@ -18,9 +20,6 @@ from .candidates import Finished
 from .evaluation import Evaluator, constraints_of, sides
 from .fingerprint import versions
 from .search import Run
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
 """Stages after the rounds: the best designs are chosen, then all that is to be known of each is computed."""
@@ -54,9 +53,9 @@ def assemble(
         active = [edges[:, :0] for edges in active]
     variants = np.array([evaluators[index].sheet.variant for index in best.sheet], dtype=np.int64)
     finishing = run.stage(FINISHING)
-    table = table_of(problem, variants, dimensions, finishing)
-    table["residual"] = residual
-    table["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
+    columns = columns_of(problem, variants, dimensions, finishing)
+    columns["residual"] = residual
+    columns["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
     message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluated} evaluated"
     if status == "cancelled":
@@ -64,7 +63,7 @@ def assemble(
     ideal = values.min(axis=0)
     return replace(
         empty(problem, evaluators, run, status, message),
-        designs=table,
+        columns=columns,
         dimensions=dimensions,
         values=values,
         goals=tuple((owner, slopes * best.span[owner.astype(int)][:, None]) for owner, slopes in goals),
@@ -85,16 +84,15 @@ def _best(problem: Problem, finished: Finished, stand: Stand) -> NDArray[np.int6
     return rows[choose(finished.values[rows], problem.settings.designs, always=best, stand=stand)]
 
 
-def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> pd.DataFrame:
+def columns_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> Columns:
     """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
 
     variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
     """
-    import pandas as pd
+    from ...objectives.tables import analysis
 
-    from ...objectives.tables.analysis import analyse
-
-    parts, done = [], 0
+    parts: list[Columns] = []
+    order, done = [], 0
     alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
     for variant in np.unique(variants).tolist():
         part = problem.part(variant)
@@ -104,18 +102,31 @@ def table_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, s
         part = problem.part(same[0])
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
             stand(done, len(dimensions))
-            table = analyse(part.mechanism, dimensions[rows], own=problem.own)
+            columns = analysis.columns_of(part.mechanism, dimensions[rows], own=problem.own)
             stand(done, len(dimensions))
-            _slacks(table, part, dimensions[rows])
+            chosen = {
+                choice_field(name): np.array([problem.variants[variant].labels[place] for variant in variants[rows]])
+                for place, name in enumerate(problem.choices)
+            }
+            before = list(columns).index(STROKE.field)
+            of_size, others = dict(islice(columns.items(), before)), dict(islice(columns.items(), before, None))
+            parts.append(of_size | chosen | others | _slacks(part, dimensions[rows]))
             done += len(rows)
-            for place, name in enumerate(problem.choices):
-                labels = [problem.variants[variant].labels[place] for variant in variants[rows]]
-                table.insert(list(table.columns).index("stroke_mm"), choice_field(name), labels)
-            parts.append(table.set_index(rows))
-    return parts[0] if len(parts) == 1 else pd.concat(parts).sort_index()
+            order.append(rows)
+    if len(parts) == 1:
+        return parts[0]
+    place = np.argsort(np.concatenate(order))
+    names = dict.fromkeys(name for part in parts for name in part)
+    return {name: np.concatenate([_column(part, name) for part in parts])[place] for name in names}
 
 
-def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
+def _column(part: Columns, name: str) -> NDArray[Any]:
+    """Return a column of one machine's designs; NaN where only other machines have it."""
+    return part.get(name, np.full(len(part[STROKE.field]), np.nan))
+
+
+def _slacks(problem: Problem, dimensions: Array) -> Columns:
+    slacks: Columns = {}
     for constraint in constraints_of(problem):
         quantity = problem.quantity(constraint.quantity)
         values = quantity.evaluate(problem.mechanism, dimensions).values
@@ -125,7 +136,8 @@ def _slacks(table: pd.DataFrame, problem: Problem, dimensions: Array) -> None:
         else:
             for side, bound, _ in sides(constraint):
                 slack = np.minimum(slack, _clear(values, bound, side * (bound - values)))
-        table[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+        slacks[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+    return slacks
 
 
 def _clear(values: Array, bound: float | None, slack: Array) -> Array:
@@ -136,14 +148,12 @@ def _clear(values: Array, bound: float | None, slack: Array) -> Array:
 
 def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
     """Return a front without designs, which says why."""
-    import pandas as pd
-
     m = len(problem.objectives)
     return ParetoFront(
         problem=problem,
         status=status,
         message=message,
-        designs=pd.DataFrame(),
+        columns={},
         dimensions=np.zeros((0, 3)),
         values=np.zeros((0, m)),
         goals=(),

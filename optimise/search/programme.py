@@ -19,6 +19,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from ..front.nonnegative import nonnegative_least_squares
 from ..front.stationarity import Array
 from .pieces import Rows
 
@@ -106,8 +107,6 @@ def solve_step(
 
 def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) -> tuple[Array, Array]:
     """Return d and the multipliers of all rows; zeros where rounding leaves no solution."""
-    from scipy.optimize import nnls
-
     k, size = len(hessian), rows.shape[1]
     scale = np.zeros((size, size))  # z = scale x + shift
     scale[:k, :k] = np.linalg.inv(np.linalg.cholesky(hessian)).T
@@ -119,9 +118,8 @@ def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) 
     matrix = np.vstack([(g / lengths[:, None]).T, h / lengths])
     target = np.zeros(size + 1)
     target[-1] = 1.0
-    try:
-        dual, _ = nnls(matrix, target, maxiter=50 * matrix.shape[1])
-    except RuntimeError:
+    dual = nonnegative_least_squares(matrix, target)
+    if dual is None:
         return np.zeros(k), np.zeros(len(rows))
     rest = matrix @ dual - target
     if rest[-1] == 0.0:

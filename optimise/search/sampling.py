@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..front.hypervolume import scaling
+from ..front.neighbours import neighbours
 from ..front.stationarity import Array
 from .sobol import sobol
 
@@ -54,13 +55,11 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
     values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound mostly
     stays there.
     """
-    from scipy.spatial import cKDTree
-
     ideal, span = scaling(values)
     scaled = (values - ideal) / span
-    neighbours = min(len(parents), values.shape[1] + 1)
-    if neighbours > 1:
-        distance = np.asarray(cKDTree(scaled).query(scaled, k=neighbours)[0])
+    nearest = min(len(parents), values.shape[1] + 1)
+    if nearest > 1:
+        distance, _ = neighbours(scaled, nearest)
         sparse = distance[:, 1:].mean(axis=1) + 1e-9
     else:
         sparse = np.ones(len(parents))

@@ -65,7 +65,7 @@ def like(
             give(json_text({"run": str(folder), "number": number, "status": found.status, "message": found.message}))
         end_without_design(found.message)
     apart = float(distance(found.values, given, span)[0])
-    after = rows_of(found.designs.to_dict("list"))[0]
+    after = rows_of(found.columns)[0]
     if json:
         give(json_text(record_in(_record(str(folder), number, found, apart, row, after), units)))
     else:

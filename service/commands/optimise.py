@@ -8,7 +8,6 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -95,6 +94,8 @@ def optimise(
         result = result_of(front, str(run.path))
         versions = dict(front.versions)
         if is_installed("matplotlib"):
+            from importlib.metadata import version
+
             versions["matplotlib"] = version("matplotlib")
         run.keep_result(result, versions)
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])

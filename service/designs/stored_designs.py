@@ -66,18 +66,17 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, of the slopes at the designs nothing is known."""
-    import pandas as pd
-
     from ...optimise.front.front import ParetoFront
     from .picking_options import minimised_values
 
+    rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]
     exact = result.exact or _reconstructed(problem, result.designs)
     factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     return ParetoFront(
         problem=problem,
         status="done",
         message=result.message,
-        designs=pd.DataFrame(result.designs),
+        columns={name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())},
         dimensions=exact.dimensions,
         values=minimised_values(result) / factors,
         goals=exact.goals,

@@ -48,10 +48,10 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
     minimised: of `minimised_values(result)`, so that it is made once for many.
     """
-    from ...optimise.search.assemble import table_of
+    from ...optimise.search.assemble import columns_of
 
-    table = table_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
-    row = rows_of(table.to_dict("list"))[0]
+    columns = columns_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
+    row = rows_of(columns)[0]
     return Variation(
         row=row,
         design=design,

@@ -16,6 +16,7 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..designs.stored_designs import StoredDesign
 from ..designs.variation import Variation
+from ..resources.garbage import uncollected
 from .comparison import robustness_figure
 from .marks import marks
 from .parallel import parallel_coordinates
@@ -63,7 +64,8 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
     folder.mkdir(parents=True, exist_ok=True)
     for item in front_figures(front, system):
         first, *others = (folder / f"{name}.png" for name in item.names)
-        save(item.draw(), first)
+        with uncollected():
+            save(item.draw(), first)
         yield first
         for other in others:
             shutil.copyfile(first, other)
@@ -84,7 +86,7 @@ def sheet_of(
     """
     if changed is None:
         design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))
-        numbers: Mapping[str, Any] = {str(key): value for key, value in front.designs.iloc[row].items()}
+        numbers: Mapping[str, Any] = {name: values[row] for name, values in front.columns.items()}
         subtitle = f"design {row + 1} of {len(front)}"
     else:
         design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"

@@ -98,7 +98,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
     """Return the axis of an objective, in the units of a system."""
     of = front.problem.quantity(objective.quantity)
     symbol, factor = shown_in(of.unit.symbol, system)
-    values = front.designs[of.field].to_numpy(dtype=np.float64) * factor
+    values = front.columns[of.field] * factor
     target = None if objective.target is None else objective.target * of.unit.factor * factor
     return Axis(with_unit(of.short_title, symbol, target), symbol, values, BETTER[objective.sense])
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from ...optimise.front.front import ParetoFront
     from ...optimise.front.stationarity import Array
 
@@ -131,7 +133,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         status=front.status,
         message=front.message,
         objectives=tuple(wanted_of(front)),
-        designs=rows_of(front.designs.to_dict("list")),
+        designs=rows_of(front.columns),
         hypervolume=float(front.hypervolume),
         evaluations=int(front.evaluations),
         seconds=float(front.seconds),
@@ -144,7 +146,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
     )
 
 
-def rows_of(columns: Mapping[Any, Sequence[Any]]) -> list[Row]:
+def rows_of(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:
     """Return the rows of a table given by columns, with Python's own numbers and strings in them."""
     keys = [str(key) for key in columns]
     cells = zip(*columns.values(), strict=True)

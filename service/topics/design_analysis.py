@@ -38,7 +38,7 @@ def numbers_of(mechanism: Mechanism, values: Sequence[float], own: Sequence[Quan
     from ...objectives.tables.analysis import columns_of
 
     columns = columns_of(mechanism, np.array([values]), own=own)
-    return rows_of({name: column.tolist() for name, column in columns.items()})[0]
+    return rows_of(columns)[0]
 
 
 def analysis_of(

@@ -12,7 +12,7 @@ import pytest
 from slidercrank.optimise.front.constant import SAME, is_constant, spread
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling, unheard
 from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
-from slidercrank.optimise.search.assemble import table_of
+from slidercrank.optimise.search.assemble import columns_of
 from slidercrank.optimise.search.evaluation import constraints_of
 from tests.optimise.problems import problem
 
@@ -84,11 +84,11 @@ def test_a_slack_of_rounding_is_zero(bits: int) -> None:
     bound = stroke + bits * np.spacing(stroke)
     for held in ((bound, bound), (bound, None), (None, bound), (bound, 2.0 * bound)):
         asked = problem({"peak_torque": "minimise"}, {"stroke": held}, crank=0.1, rod=0.3, offset=0.05)
-        table = table_of(asked, np.zeros(1, dtype=np.int64), design, unheard)
+        table = columns_of(asked, np.zeros(1, dtype=np.int64), design, unheard)
         assert table["slack_stroke_mm"].tolist() == [0.0]
         assert len(constraints_of(asked)) == 2
     apart = replace(
         given, constraints=problem({"peak_torque": "minimise"}, {"stroke": (stroke - 1e-7, None)}).constraints
     )
-    table = table_of(apart, np.zeros(1, dtype=np.int64), design, unheard)
+    table = columns_of(apart, np.zeros(1, dtype=np.int64), design, unheard)
     assert table["slack_stroke_mm"][0] == pytest.approx(1e-4, rel=1e-6)

@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from slidercrank.model.errors import InputError
@@ -34,7 +33,7 @@ def with_values(values: list[list[float]]) -> ParetoFront:
     """Return a front with other objective values, as they are minimised."""
     table = np.array(values)
     first = pair()
-    return replace(first, values=table, designs=first.designs.iloc[: len(table)])
+    return replace(first, values=table, columns={name: column[: len(table)] for name, column in first.columns.items()})
 
 
 def test_the_table_is_sorted_by_the_first_objective() -> None:
@@ -83,7 +82,7 @@ def test_a_pick_says_what_is_wrong_with_it() -> None:
 
 
 def test_an_empty_front_points_to_its_message() -> None:
-    front = replace(pair(), values=np.zeros((0, 2)), designs=pd.DataFrame(), dimensions=np.zeros((0, 3)))
+    front = replace(pair(), values=np.zeros((0, 2)), columns={}, dimensions=np.zeros((0, 3)))
     for ask in (front.extremes, front.knee):
         with pytest.raises(InputError, match="see its message"):
             ask()

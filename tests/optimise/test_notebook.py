@@ -71,7 +71,7 @@ def test_what_has_no_picture_says_so(front: sc.ParetoFront) -> None:
     assert arms._repr_html_() is None
     with pytest.raises(InputError, match="one linkage"):
         arms.plot()
-    empty = replace(front, designs=front.designs.iloc[:0], message="nothing <b>fits</b>")
+    empty = replace(front, values=front.values[:0], message="nothing <b>fits</b>")
     assert "&lt;b&gt;" in empty._repr_html_()
     with pytest.raises(InputError, match="got none: nothing"):
         empty.plot()

@@ -13,7 +13,7 @@ from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.analysis import columns_of
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
@@ -87,17 +87,17 @@ def front(names: tuple[str, ...] = FOUR, *, designs: int = 20, mechanism: Mechan
     better = np.all(values[:, None] <= values, axis=2) & np.any(values[:, None] < values, axis=2)
     rows = np.flatnonzero(~better.any(axis=0))[:designs]
     rows = rows[np.argsort(values[rows, 0])]
-    table = analyse(mechanism, dimensions[rows])
-    table["slack_least_transmission_angle_deg"] = table["least_transmission_angle_deg"] - 30.0
-    table["residual"] = 1e-9
-    table["status"] = "stationary"
+    columns = columns_of(mechanism, dimensions[rows])
+    columns["slack_least_transmission_angle_deg"] = columns["least_transmission_angle_deg"] - 30.0
+    columns["residual"] = np.full(len(rows), 1e-9)
+    columns["status"] = np.full(len(rows), "stationary")
     m = len(names)
     slopes = np.concatenate([np.eye(m - 1), -np.ones((1, m - 1))])
     return ParetoFront(
         problem=asked,
         status="done",
         message=f"{len(rows)} designs, 400 evaluated",
-        designs=table,
+        columns=columns,
         dimensions=dimensions[rows],
         values=values[rows],
         goals=tuple((np.arange(m, dtype=np.float64), slopes) for _ in rows),
@@ -120,7 +120,7 @@ def empty_front(status: str, message: str) -> ParetoFront:
         full,
         status=status,  # type: ignore[arg-type]
         message=message,
-        designs=full.designs.iloc[:0, :0],
+        columns={},
         dimensions=np.zeros((0, 3)),
         values=np.zeros((0, 4)),
         goals=(),

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem
@@ -23,15 +22,13 @@ def found(problem: Problem, status: str) -> ParetoFront:
         problem=problem,
         status=status,  # type: ignore[arg-type]
         message="1 design",
-        designs=pd.DataFrame(
-            {
-                "crank_mm": [140.0],
-                "time_ratio": [1.5],
-                "slow_stroke": ["outward"],
-                "loaded_stroke": ["equal"],
-                "least_transmission_angle_deg": [45.0],
-            }
-        ),
+        columns={
+            "crank_mm": np.array([140.0]),
+            "time_ratio": np.array([1.5]),
+            "slow_stroke": np.array(["outward"]),
+            "loaded_stroke": np.array(["equal"]),
+            "least_transmission_angle_deg": np.array([45.0]),
+        },
         dimensions=np.array([[0.14, 0.4, 0.05]]),
         values=np.array([[-1.5, -0.8]]),
         goals=((np.array([0.0, 1.0]), np.array([[1.0], [-1.0]])),),

@@ -25,7 +25,7 @@ def part(rows: slice, seed: int = 1, names: tuple[str, ...] = fronts.FOUR) -> Pa
     whole = fronts.front(names, designs=30)
     return replace(
         whole,
-        designs=whole.designs.iloc[rows].reset_index(drop=True),
+        columns={name: column[rows] for name, column in whole.columns.items()},
         dimensions=whole.dimensions[rows],
         values=whole.values[rows],
         goals=whole.goals[rows],

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...front.front import ParetoFront
 from ...front.hypervolume import Stand, beating, choose, nondominated
+from ...front.neighbours import neighbours
 from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import SELECTING, assemble, span_of
@@ -197,9 +198,7 @@ def _half_way(evaluators: list[Evaluator], best: Finished, count: int) -> list[t
     n, m = scaled.shape
     if n < 2:
         return []
-    from scipy.spatial import cKDTree
-
-    nearest = cKDTree(scaled).query(scaled, k=min(n, 1 + _NEIGHBOURS * m))[1]
+    _, nearest = neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
     both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
     pairs = np.unique(np.sort(both), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]

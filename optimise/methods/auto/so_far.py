@@ -13,7 +13,7 @@ from ....objectives.own.quantity import runs_own
 from ...front.front import ParetoFront
 from ...front.stationarity import Array
 from ...problem.problem import Problem
-from ...search.assemble import assemble, empty, span_of, table_of
+from ...search.assemble import assemble, columns_of, empty, span_of
 from ...search.candidates import Finished
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
@@ -90,7 +90,7 @@ def _soon(
     some = finished[rows[:: -(-len(rows) // _TRIED)]]
     variants = np.array([evaluators[index].sheet.variant for index in some.sheet], dtype=np.int64)
     begin = time.perf_counter()
-    table_of(problem, variants, some.dimensions(evaluators))
+    columns_of(problem, variants, some.dimensions(evaluators))
     each = (time.perf_counter() - begin) / len(some)
     return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]
 

@@ -12,6 +12,7 @@ from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 from matplotlib.text import Text
 
@@ -276,8 +277,8 @@ def test_lines_are_broken_where_they_have_to_be() -> None:
 def test_no_word_of_a_table_is_broken() -> None:
     found = fronts.front(designs=6)
     below = found.dimensions * (1.0, 1.0, -1.0)  # signs are a letter more
-    table = found.designs.assign(offset_mm=-found.designs["offset_mm"], slack_least_transmission_angle_deg=-1.5e-14)
-    result = result_of(replace(found, designs=table, dimensions=below), "kept")
+    shown = {"offset_mm": -found.columns["offset_mm"], "slack_least_transmission_angle_deg": np.full(6, -1.5e-14)}
+    result = result_of(replace(found, columns=found.columns | shown, dimensions=below), "kept")
     of = subject_of(replace(found.problem, offset=Range(lower=-0.15, upper=0.0)), result, 2, run="kept", versions={})
     sections = [
         replace(part, blocks=tuple(block for block in part.blocks if isinstance(block, Table)))

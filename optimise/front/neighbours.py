@@ -1,0 +1,49 @@
+"""Nearest neighbours of points in the space of objectives."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.kernel.kernel import Integers, Table, kernel
+
+Array = NDArray[np.float64]
+
+
+def neighbours(points: Array, count: int) -> tuple[Array, NDArray[np.int64]]:
+    """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, each its own first one.
+
+    count: n at most.
+    """
+    order = np.argsort(points[:, 0], kind="stable")
+    distance = np.full((len(points), count), np.inf)
+    found = np.zeros(len(points) * count, dtype=np.int64)
+    _search(points[order], distance, found)
+    rows = np.empty_like(order)
+    rows[order] = np.arange(len(order))
+    return distance[rows], order[found.reshape(-1, count)[rows]]
+
+
+@kernel
+def _search(points: Table, distance: Table, found: Integers) -> None:
+    """Points in the order of their first coordinate: beyond the farthest of the nearest there, none is nearer."""
+    n, m = points.shape
+    count = distance.shape[1]
+    for i in range(n):
+        distance[i, 0], found[i * count] = 0.0, i
+        for way in range(2):
+            k = i + 1 if way else i - 1
+            while 0 <= k < n and (points[k, 0] - points[i, 0]) ** 2 < distance[i, count - 1]:
+                square = 0.0
+                for column in range(m):
+                    square += (points[k, column] - points[i, column]) ** 2
+                if square < distance[i, count - 1]:
+                    place = count - 1
+                    while place > 1 and distance[i, place - 1] > square:
+                        distance[i, place] = distance[i, place - 1]
+                        found[i * count + place] = found[i * count + place - 1]
+                        place -= 1
+                    distance[i, place], found[i * count + place] = square, k
+                k += 1 if way else -1
+        for place in range(count):
+            distance[i, place] = np.sqrt(distance[i, place])

@@ -1,0 +1,145 @@
+"""Non-negative least squares: the active-set method of Lawson and Hanson, compiled.
+
+min |A x - b| with x >= 0 (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, algorithm 23.10).
+Every polishing step, multiplier and trade-off rate is such a problem, of some dozen rows and columns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.kernel.arithmetic import analytic
+from ...model.kernel.kernel import Row, Table, kernel
+
+Array = NDArray[np.float64]
+
+_STEPS = 50
+"""Changes of the active set at most, for each column."""
+_INDEPENDENT = 1e-2  # a column counts as independent of others if this share of what is left of it changes their length
+
+
+def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
+    """Return the x >= 0 (n,) of least |A x - b| for A (m, n), b (m,); None where rounding leaves no end in sight."""
+    columns = np.array(matrix.T, order="C")
+    solution = np.zeros(len(columns))
+    ended = _solve(columns, target.astype(np.float64), _STEPS * len(columns), solution)
+    return solution if ended else None
+
+
+@analytic
+def _reflect(mirror: Row, pivot: int, up: float, column: Row) -> None:
+    """Reflect a column by the mirror whose entry `pivot` is `up`, and whose later entries are kept."""
+    scale = up * mirror[pivot]
+    if scale >= 0.0:
+        return
+    share = column[pivot] * up
+    for row in range(pivot + 1, len(column)):
+        share += column[row] * mirror[row]
+    share /= scale
+    column[pivot] += share * up
+    for row in range(pivot + 1, len(column)):
+        column[row] += share * mirror[row]
+
+
+@kernel
+def _solve(columns: Table, target: Row, most: int, solution: Row) -> bool:
+    n, m = columns.shape
+    order = np.arange(n)  # first the columns whose x may be positive, by which the others are made triangular
+    free, steps = 0, 0
+    trial, slope, kept = np.zeros(m), np.zeros(n), np.zeros(m)
+    while free < min(n, m):
+        for place in range(free, n):
+            column = order[place]
+            slope[column] = 0.0
+            for row in range(free, m):
+                slope[column] += columns[column, row] * target[row]
+        entered = False
+        while not entered:
+            chosen, steepest = -1, 0.0
+            for place in range(free, n):
+                if slope[order[place]] > steepest:
+                    chosen, steepest = place, slope[order[place]]
+            if chosen < 0:
+                return True
+            column = order[chosen]
+            mirror = columns[column]
+            largest = 0.0
+            for row in range(free, m):
+                largest = max(largest, abs(mirror[row]))
+            above, below = 0.0, 0.0
+            for row in range(free):
+                above += mirror[row] * mirror[row]
+            above = np.sqrt(above)
+            if largest > 0.0:
+                for row in range(free, m):
+                    below += (mirror[row] / largest) * (mirror[row] / largest)
+            pivot = mirror[free]
+            mirror[free] = -largest * np.sqrt(below) if pivot > 0.0 else largest * np.sqrt(below)
+            up = pivot - mirror[free]
+            if above + abs(mirror[free]) * _INDEPENDENT > above:
+                for row in range(m):
+                    trial[row] = target[row]
+                _reflect(mirror, free, up, trial)
+                entered = trial[free] / mirror[free] > 0.0
+            if not entered:
+                mirror[free] = pivot
+                slope[column] = 0.0
+        for row in range(m):
+            target[row] = trial[row]
+        order[chosen], order[free] = order[free], column
+        for place in range(free + 1, n):
+            _reflect(mirror, free, up, columns[order[place]])
+        for row in range(free + 1, m):
+            mirror[row] = 0.0
+        slope[column] = 0.0
+        free += 1
+        while True:
+            steps += 1
+            if steps > most:
+                return False
+            for row in range(free):
+                kept[row] = target[row]
+            for place in range(free - 1, -1, -1):
+                kept[place] /= columns[order[place], place]
+                for row in range(place):
+                    kept[row] -= kept[place] * columns[order[place], row]
+            share, leaving = 2.0, -1
+            for place in range(free):
+                if kept[place] <= 0.0:
+                    old = solution[order[place]]
+                    part = old / (old - kept[place])
+                    if part < share:
+                        share, leaving = part, place
+            if leaving < 0:
+                break
+            for place in range(free):
+                column = order[place]
+                solution[column] += share * (kept[place] - solution[column])
+            while leaving >= 0:
+                column = order[leaving]
+                solution[column] = 0.0
+                for place in range(leaving + 1, free):
+                    moved = order[place]
+                    order[place - 1] = moved
+                    above, below = columns[moved, place - 1], columns[moved, place]
+                    length = np.hypot(above, below)
+                    if length > 0.0:
+                        cosine, sine = above / length, below / length
+                        for other in range(n):
+                            above, below = columns[other, place - 1], columns[other, place]
+                            columns[other, place - 1] = cosine * above + sine * below
+                            columns[other, place] = cosine * below - sine * above
+                        above, below = target[place - 1], target[place]
+                        target[place - 1], target[place] = cosine * above + sine * below, cosine * below - sine * above
+                        columns[moved, place] = 0.0
+                free -= 1
+                order[free] = column
+                leaving = -1
+                for place in range(free):
+                    if solution[order[place]] <= 0.0:
+                        leaving = place
+                        break
+        for place in range(free):
+            solution[order[place]] = kept[place]
+    return True
