@@ -169,11 +169,12 @@ def accelerate(
 
 
 @analytic
-def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, loads: Any) -> float:
-    """Return the loads on the slider at its actual position and velocity, along x."""
+def load_along_x(
+    time: float, p: Place, outward: bool, s: System, block: Any, loads: Any, piece: Any, shift: Any
+) -> float:
+    """Return the loads on the slider at its actual position and velocity, along x. piece, shift: room (loads,)."""
     d = design_at(block, 0)
     theta = s.start + s.speed * time
-    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
     # The block was derived for unit speed: velocity per unit of crank angle is then the velocity.
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
@@ -188,7 +189,8 @@ def load_along_x(time: float, p: Place, outward: bool, s: System, block: Any, lo
 def _rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads, out: Row) -> None:
     gap, gap_t = complex(y[0], y[1]), complex(y[2], y[3])
     p = locate(time, gap, gap_t, s)
-    load = load_along_x(time, p, outward, s, block, loads)
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    load = load_along_x(time, p, outward, s, block, loads, piece, shift)
     c = touch(gap, gap_t, p.rod_t, rate, s)
     gap_tt, _, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
     out[0], out[1] = gap_t.real, gap_t.imag
@@ -207,10 +209,11 @@ def rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Tab
 def _observe(
     times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads, out: Table
 ) -> None:
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     for i in range(times.shape[0]):
         gap, gap_t = complex(y[0, i], y[1, i]), complex(y[2, i], y[3, i])
         p = locate(times[i], gap, gap_t, s)
-        load = load_along_x(times[i], p, outward[i], s, block, loads)
+        load = load_along_x(times[i], p, outward[i], s, block, loads, piece, shift)
         c = touch(gap, gap_t, p.rod_t, rate[i], s)
         _, x_tt, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
         out[0, i], out[1, i], out[2, i] = p.x, p.x_t, x_tt

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, sides_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import ROOM, Watch, cut_cycle, enter, load_on_slider, work_space
+from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
@@ -135,7 +135,8 @@ def cycle(
 def _breakpoints(block: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool) -> int:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     d = design_at(block, 0)
-    cuts = work_space(loads.at.shape[0])
+    room = room_for(loads)
+    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
     count = cut_cycle(d, block, 0, loads, watch, cuts)
     if rubbing:
         count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
@@ -158,6 +159,6 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
             f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
             "lengthen the rod, or reduce the offset or the friction"
         )
-    out = np.empty(ROOM + 2 * len(loads.at))
+    out = np.empty(room_for(loads))
     count = _breakpoints(derived(raw, loads)[0][0], loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
     return out[:count]

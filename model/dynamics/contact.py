@@ -62,11 +62,12 @@ def cut_contacts(
     over; the curves follow the one side there, off by no more than the friction of that force.
     """
     kappa = crowding(d.r, d.l, d.e)
-    start = cuts.angle[:count].copy()
-    n = count
-    for s in range(count):
-        a = start[s]
-        b = start[s + 1] if s + 1 < count else start[0] + _TURN
+    first, ahead, n = cuts.angle[0], 0, count
+    for s in range(count - 1, -1, -1):  # backwards: what is added moves only cuts that have been looked at
+        while cuts.angle[ahead] < first:  # but for those after the last one that are before the first one
+            ahead += 1
+        a = cuts.angle[ahead + s]
+        b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
         if b - a < 1e-12:
             continue
         _, outward = enter(d, block, j, within(a, b), loads, watch, piece, shift)

@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Integers, Row
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
@@ -68,10 +66,9 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 
 
 @analytic
-def work_space(knots: int) -> Cuts:
-    """Return room for the breakpoints of a design whose tables have so many knots in all."""
-    room = ROOM + 2 * knots
-    return Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+def room_for(loads: Loads) -> int:
+    """Return how many breakpoints a design has at most."""
+    return int(ROOM + 2 * loads.at.shape[0])
 
 
 @analytic

@@ -32,44 +32,74 @@ class _Task(NamedTuple):
     def cheap_after(self, compiled: Iterable[int]) -> bool:
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
+    def follows(self, other: _Task) -> bool:
+        """Whether it is left to who compiles the other one, which is larger."""
+        return self.size() < other.size() and self.cheap_after(other.codes)
 
-def compile_missing(folder: Path, packages: str) -> None:
+    def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
+        """Return the less, the sooner it should be begun: what takes long, or many wait for; of the rest the small."""
+        if 2 * self.size() < max(task.size() for task in tasks):
+            return True, self.size()
+        return False, -sum(task.size() for task in tasks if task is self or task.follows(self))
+
+
+def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
     """Compile the kernels of packages, or modules, that are missing and that no other process is at.
 
-    What somebody waits for comes first, then what has mostly formulas of kernels that this process has compiled, then
-    one package after the other. How far it is stands in the file of `building`.
+    What somebody waits for comes first, then those of `modules`; of these what has mostly formulas of kernels that this
+    process has compiled, then what is urgent. How far it is stands in the file of `building`.
     """
-    tasks: list[_Task] = []
-    for package in packages.split():
-        module = import_module(package)
-        for found in pkgutil.walk_packages(getattr(module, "__path__", []), f"{package}."):
-            import_module(found.name)
-        asked = [kernel.wanted() for kernel in KERNELS if kernel.function.__module__.startswith(package)]
-        own = [_Task(wanted, wanted.file(folder), codes(wanted.function)) for wanted in asked]
-        tasks += sorted(own, key=lambda task: -task.size())  # first what takes long
-    # Left to who compiles the larger one.
-    later = {one.file for one in tasks for other in tasks if other.size() > one.size() and one.cheap_after(other.codes)}
+    everything = _tasks(folder, packages, modules)
+    tasks = [*everything]
     compiled: set[int] = set()
-    count, parent = len(tasks), os.getppid()
-    while tasks and os.getppid() == parent:  # it may have been killed
+    parent, complete = os.getppid(), False
+    while os.getppid() == parent:  # it may have been killed
         names = wanted_files(folder)
+        known = {task.file.name for task in everything}
+        if not complete and (not tasks or not known.issuperset(names)):
+            found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
+            new = [task for task in found if task.file.name not in known]
+            tasks, everything, complete = [*tasks, *new], [*everything, *new], True
+        if not tasks:
+            return
         task = min(
             tasks,
-            key=lambda task: (task.file.name not in names, not task.cheap_after(compiled), task.file in later),
+            key=lambda task: (
+                task.file.name not in names,
+                not task.cheap_after(compiled),
+                any(task.follows(other) for other in everything),
+                task.urgency(everything),
+            ),
         )
         tasks.remove(task)
         with locked(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read(task.file) is None:
                 with contextlib.suppress(OSError):
-                    progress = f"{count - len(tasks)} of {count}, {task.wanted.name.rpartition('.')[2]}"
+                    progress = (
+                        f"{len(everything) - len(tasks)} of {len(everything)}, {task.wanted.name.rpartition('.')[2]}"
+                    )
                     building(folder, packages).write_text(progress)
                 keep(task.file, task.wanted.compile())
                 compiled.update(task.codes)
 
 
+def _modules(package: str) -> list[str]:
+    """Return the names of a package and of all that is in it."""
+    parts = getattr(import_module(package), "__path__", [])
+    return [package, *(found.name for found in pkgutil.walk_packages(parts, f"{package}."))]
+
+
+def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
+    """Return the kernels of packages that modules have, or import."""
+    for name in modules:
+        import_module(name)
+    asked = [kernel.wanted() for kernel in KERNELS if kernel.function.__module__.startswith(tuple(packages.split()))]
+    return [_Task(wanted, wanted.file(folder), codes(wanted.function)) for wanted in asked]
+
+
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
         gc.set_threshold(50_000, 20, 20)  # a fifth sooner, for 60 MB
-        compile_missing(Path(sys.argv[2]), sys.argv[3])
+        compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:
         compile_beside(place, " ".join(sys.argv[1:]) or MODEL)

@@ -13,6 +13,7 @@ from typing import Any, cast
 
 import numba
 from numba import njit, typeof, types
+from numba.core import event
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from numba.extending import overload, register_jitable
 
@@ -26,7 +27,8 @@ _OPTIONS: Any = {
     "no_cpython_wrapper": True,  # nobody calls them from outside
     "no_cfunc_wrapper": True,
 }
-_FORMULA: Any = _OPTIONS | {"forceinline": True}
+# Formulas neither make arrays nor return any: counting who refers to one would be half of their code.
+_FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
 _TRIED = "0.68."  # of numba: `_linked` reaches into it
@@ -73,12 +75,26 @@ def _linked(kernel: str) -> Iterator[None]:
         libraries.finalize, engine.set_env = whole, set_env
 
 
+class _NoArrays(event.Listener):
+    """Refuses formulas that return arrays: as nobody counts who refers to them, they would be gone too soon."""
+
+    def on_start(self, event: Any) -> None:
+        """Look at what a function returns, before it is compiled."""
+        given = event.data
+        own = given["name"].startswith("native_lowering") and not given["module"].startswith("numba")
+        if own and "array(" in given["return_type"]:
+            raise TypeError(f"a formula must return no array; got one of {given['qualname']}; let the kernel make it")
+
+    def on_end(self, event: Any) -> None:
+        """Do nothing."""
+
+
 def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> MachineCode:
     """Return the machine code of a function for arguments like the examples, which decide about their types."""
     know_formulas()
     signature = tuple(map(typeof, examples))
     dispatcher: Any = njit(**_KERNEL)(function)
-    with _linked(function.__qualname__):
+    with _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     symbol = compiled.fndesc.llvm_func_name

@@ -62,7 +62,8 @@ def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
     """Return the machine code of a kernel, compiled and kept if need be.
 
     What is missing of its package is compiled too, in other processes, as long as this one lives; and of its sister
-    packages among those of other kernels' modules, the last ones first.
+    packages among those of other kernels' modules, the last ones first: of both what is in these modules before the
+    rest.
     """
     folder = kernel_folder()
     if folder is None:
@@ -70,10 +71,10 @@ def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
     file = wanted.file(folder)
     found = read(file)
     if found is None:
-        own, packages = _package(wanted.module), [_package(module) for module in modules]
-        root = own.partition(".")[0] + "."
-        sisters = [package for package in packages if package.startswith(root)]
-        compile_beside(folder, " ".join(dict.fromkeys([*reversed(sisters), own])), file)
+        own, root = _package(wanted.module), wanted.module.partition(".")[0] + "."
+        related = [module for module in reversed(list(modules)) if module.startswith(root)]
+        packages = dict.fromkeys([*map(_package, related), own])
+        compile_beside(folder, " ".join(packages), file, dict.fromkeys([*related, wanted.module]))
         found = read(file)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()
@@ -112,23 +113,27 @@ def keep(file: Path, found: MachineCode) -> None:
             other.unlink(missing_ok=True)
 
 
-def compile_beside(folder: Path, packages: str, file: Path | None = None) -> None:
+def compile_beside(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
     """Have the missing kernels of packages compiled by other processes; return when there is a file, or they ended.
 
-    packages: names with blanks between. They do that file's next. Processes that are at it already are waited for.
+    packages: names with blanks between. They do that file's next, and those of modules before the others. Processes
+    that are at it already are waited for.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as wanted:
             wanted.write(f"{file.name}\n")
     begun = told = time.monotonic()
-    workers: list[subprocess.Popen[bytes]] | None = None
+    workers = _ahead.pop(packages, None)
+    if workers:
+        _log.warning(_ONCE)
     while (file is None or read(file) is None) and time.monotonic() < begun + _PATIENCE:
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
             with locked(building(folder, packages)) as lock:
                 if lock is not None:
-                    workers = _start(folder, packages, lock)
+                    _log.warning(_ONCE)
+                    workers = _start(folder, packages, modules, lock)
         if time.monotonic() > told + _TELL:
             told = time.monotonic()
             with contextlib.suppress(OSError):
@@ -137,17 +142,30 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None) -> Non
         time.sleep(_TICK)
 
 
-def _start(folder: Path, packages: str, lock: int) -> list[subprocess.Popen[bytes]]:
+def compile_ahead(packages: str, modules: Iterable[str]) -> None:
+    """Begin to compile what modules need, if no kernel is compiled yet, and leave it to who waits for it to say so."""
+    folder = kernel_folder()
+    if folder is not None and not any(folder.glob(f"{packages.partition('.')[0]}.*.*")):
+        with locked(building(folder, packages)) as lock:
+            if lock is not None:
+                _ahead[packages] = _start(folder, packages, modules, lock)
+
+
+_ONCE = "slidercrank compiles its formulas, once after installation"
+_ahead: dict[str, list[subprocess.Popen[bytes]]] = {}
+"""Processes that `compile_ahead` has started, and that nobody has waited for yet."""
+
+
+def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> list[subprocess.Popen[bytes]]:
     """Start a process for each processor; they hold the lock as long as they live, and end with this one."""
     if not sys.executable:
         return []
-    _log.warning("slidercrank compiles its formulas, once after installation")
     started: list[subprocess.Popen[bytes]] = []
     atexit.register(_end, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
     # numba makes messages of every formula that it tries in vain.
     environment |= {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
-    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), packages]
+    command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), packages, *modules]
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     options |= {"start_new_session": True, "pass_fds": [] if lock == _NO_LOCK else [lock]}
     with contextlib.suppress(OSError):

@@ -112,13 +112,14 @@ def _measure(
 
 
 @analytic
-def _newton(phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+def _newton(
+    phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any, bend: Any
+) -> float:
     """Return Newton's step of the phase for the mean square of `d`, the deviations there; zero where not convex."""
     sines, cosines, at = points
     n = at.shape[0]
     p, q = math.sin(phase), math.cos(phase)
     mean = one = 0.0
-    slope, bend = np.empty(n), np.empty(n)
     for i in range(n):
         m = motion(sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p, r, l, e, b)
         slope[i], bend[i] = b * m.x_1, b * m.x_2
@@ -189,14 +190,15 @@ def _bound(
 
 
 @analytic
-def _branch_and_bound(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, cells: Any, d: Any) -> float:
+def _branch_and_bound(
+    shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, cells: Any, d: Any, slope: Any
+) -> float:
     """Return the phase of the least greatest deviation.
 
     A deviation bends by no more than the slider's greatest acceleration per turn, so that cells of the phase whose
     bound exceeds the best value so far can be left out; the others are halved until what is in one is as good as
     convex.
     """
-    slope = np.empty(d.shape[0])
     bend, half = 0.0, math.pi / _PHASES
     for j in range(_PHASES):
         theta = 2.0 * half * j
@@ -222,23 +224,29 @@ def _branch_and_bound(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, 
 
 
 @analytic
-def _least_square(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+def _least_square(
+    shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any, bend: Any, grid: Any
+) -> float:
     """Return the phase of the least root mean square deviation: the best of the grid's best stretches."""
-    grid = np.empty(_PHASES)
     for j in range(_PHASES):
         grid[j], _ = _measure(_TURN * j / _PHASES, True, shifts, r, l, e, b, points, d)
-    found, least, done = 0.0, math.inf, 0
-    for j in np.argsort(grid, kind="mergesort"):
-        if done == _STRETCHES:
+    found, least, last, j = 0.0, math.inf, -math.inf, -1
+    for _ in range(_STRETCHES):
+        best = -1
+        for k in range(_PHASES):
+            if grid[k] > grid[k - 1] or grid[k] > grid[(k + 1) % _PHASES]:
+                continue
+            later = grid[k] > last or (grid[k] == last and k > j)
+            if later and (best < 0 or grid[k] < grid[best]):
+                best = k
+        if best < 0:
             break
-        if grid[j] > grid[j - 1] or grid[j] > grid[(j + 1) % _PHASES]:
-            continue
-        done += 1
+        j, last = best, grid[best]
         low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
         phase = _section(low, high, True, shifts, r, l, e, b, points, d)
         for turn in range(_NEWTON + 1):
             value, _ = _measure(phase, True, shifts, r, l, e, b, points, d)
-            step = _newton(phase, shifts, r, l, e, b, points, d)
+            step = _newton(phase, shifts, r, l, e, b, points, d, slope, bend)
             if abs(step) > 1e-5 or turn == _NEWTON:  # golden section is not off by more where the square is convex
                 break
             phase += step
@@ -250,13 +258,14 @@ def _least_square(shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: A
 @kernel
 def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool, shifts: bool, out: Table) -> None:
     d, cells, points = np.empty(at.shape[0]), np.empty((3, 4 * _PHASES)), (np.sin(angles), np.cos(angles), at)
+    slope, bend, grid = np.empty(at.shape[0]), np.empty(at.shape[0]), np.empty(_PHASES)
     for row in range(designs.shape[0]):
         r, l, e = designs[row, 0], designs[row, 1], designs[row, 2]
         phase = 0.0
         if turns and rms:
-            phase = _least_square(shifts, r, l, e, b, points, d)
+            phase = _least_square(shifts, r, l, e, b, points, d, slope, bend, grid)
         elif turns:
-            phase = _branch_and_bound(shifts, r, l, e, b, points, cells, d)
+            phase = _branch_and_bound(shifts, r, l, e, b, points, cells, d, slope)
         out[row, 0], out[row, 2] = _measure(phase, rms, shifts, r, l, e, b, points, d)
         out[row, 1] = phase
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives, joint_forces
-from ..dynamics.segments import Watch, crowded, cut_cycle, enter, load_on_slider, uncrowded, within, work_space
+from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
 from ..kernel.arithmetic import STEP, analytic, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
@@ -122,7 +122,8 @@ def _average(
     rubbing: bool,
 ) -> None:
     nodes, weights, tail = rule
-    cuts = work_space(loads.at.shape[0])
+    room = room_for(loads)
+    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     nv = mean_slope.shape[1] if wanted else 0
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)

@@ -18,15 +18,16 @@ from numpy.typing import NDArray
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import (
+    Cuts,
     Watch,
     crowded,
     crowding,
     cut_cycle,
     enter,
     load_on_slider,
+    room_for,
     uncrowded,
     within,
-    work_space,
 )
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.batches import in_chunks, turning
@@ -193,8 +194,8 @@ def _find(
     gradients: Cube,
     rubbing: bool,
 ) -> None:
-    cuts = work_space(loads.at.shape[0])
-    room = cuts.angle.shape[0]
+    room = room_for(loads)
+    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
     piece = np.zeros(loads.kind.shape[0], np.int64)
     shift = np.zeros(loads.kind.shape[0])
     nv = gradients.shape[2] if gradients.shape[0] else 0

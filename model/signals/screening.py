@@ -139,15 +139,24 @@ def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slo
 
 @analytic
 def _refine(
-    kind: Any, tau: Any, h: Any, top: Any, kappa: Any, block: Any, direction: Any, best: Any, sines: Any, cosines: Any
+    kind: Any,
+    tau: Any,
+    h: Any,
+    top: Any,
+    kappa: Any,
+    block: Any,
+    direction: Any,
+    work: Any,
+    best: Any,
+    sines: Any,
+    cosines: Any,
 ) -> Any:
     """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
 
-    top: place, vertex and curvature of `locate.two_highest`. A lane that has settled stays where it is, however many
-    steps the others take: what it gives does not depend on them.
+    top: place, vertex and curvature of `locate.two_highest`. work: room (12, lanes). A lane that has settled stays
+    where it is, however many steps the others take: what it gives does not depend on them.
     """
     share = 0.5 if kind == _RSS else 1.0  # `locate` samples its square, which curves twice as much
-    work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
         work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h
@@ -237,6 +246,7 @@ def _screen(
     samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
     value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
+    work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
     for begin in range(0, n, LANES):
         for i in range(columns.shape[0]):
             for j in range(LANES):
@@ -259,9 +269,8 @@ def _screen(
         for q in range(signals):
             rivals = two_highest(samples[row_of(kinds[q])], scaled, mark, top)
             for i in range(2 if rivals else 1):
-                _refine(
-                    kinds[q], tau, h, top[3 * i : 3 * i + 3], kappa, block, direction, value[i], sines[i], cosines[i]
-                )
+                part = top[3 * i : 3 * i + 3]
+                _refine(kinds[q], tau, h, part, kappa, block, direction, work, value[i], sines[i], cosines[i])
             for j in range(LANES):
                 one, two = value[0, j], (value[1, j] if rivals else -1.0)
                 x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, with_formulas, within
+from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
@@ -150,7 +150,7 @@ class CrankEquation:
         self._stretches: dict[tuple[int, float], Stretch] = {}
 
     def _breakpoints(self, marks: tuple[float, ...]) -> Array:
-        room = 8 + 2 * len(self.loads.at)
+        room = room_for(self.loads)
         cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
         count = _cut(self.block, self.loads, self.watch, cuts)
         found = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...model.errors import InputError, StoreError
+from ...model.errors import InputError, OutputLost, StoreError
 from ...model.extras import is_installed, required
 from ...objectives.kinds import System
 from ..designs.shown_units import result_in
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from ..store import Claim, Store
 
 _FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
+_SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
+"""Packages whose kernels a search needs, and modules that import them."""
 _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
 
 
@@ -62,6 +64,9 @@ def optimise(
     and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
     The run is in the store too, where `jobs` and the service see it.
     """
+    from ...model.kernel.disk import compile_ahead
+
+    compile_ahead(*_SEARCH)
     from ..jobs.own_run import told
     from ..store.database import without_secrets
     from ..workers.heartbeat import Heartbeat
@@ -101,15 +106,22 @@ def optimise(
         claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
-        if drawn:
+        shown, lost = result_in(result, units, problem), None
+        try:
+            if json:
+                give(json_text(shown.record()))
+            else:
+                show_result(shown)
+        except OutputLost as error:
+            lost = error
+        if drawn:  # while the front is read
             _draw(front, run, interruption, units)
-    shown = result_in(result, units, problem)
-    if json:
-        give(json_text(shown.record()))
-        if result.status != "done":
-            say(f"slidercrank: {result.message}")
-    else:
-        show_result(shown)
+    if lost is not None:
+        raise lost
+    if not json:
+        show_files(shown)
+    elif result.status != "done":
+        say(f"slidercrank: {result.message}")
     if figures is None and result.status == "done" and not drawn:
         say('without figures, which need the extra "figures": pip install "slidercrank[figures]"')
     if result.status == "cancelled" and again:
@@ -169,7 +181,7 @@ def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Pr
 
 
 def show_result(result: Result) -> None:
-    """Write what a run found: the front as a table, what the knee costs, where the files are."""
+    """Write what a run found: the front as a table, and what the knee costs."""
     screen = console()
     screen.print(f"{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
     if len(result.designs) == 1:
@@ -182,6 +194,12 @@ def show_result(result: Result) -> None:
             screen.print(f"  {sentence}", soft_wrap=True)
     for sentence in result.warnings:
         screen.print(f"\nWarning: {sentence}.", style="yellow", soft_wrap=True)
+    sys.stdout.flush()
+
+
+def show_files(result: Result) -> None:
+    """Write where the files of a run are."""
+    screen = console()
     screen.print(f"\nFiles: {result.run}", soft_wrap=True)
     listed = [name for name in _FILES if (Path(result.run) / name).exists()]
     pictures = len(list(Path(result.run, "figures").glob("*.png")))

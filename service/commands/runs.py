@@ -11,7 +11,7 @@ from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give
 from ..text.tables import ROWS, show_design, show_front
 from .ending import end_without_design
-from .optimise import show_result
+from .optimise import show_files, show_result
 from .run_choice import run_of, shown_result
 
 
@@ -88,6 +88,7 @@ def front(
         show_design(screen, result.designs[one], only=names)
     elif not (where or sort or reverse or columns or rows != ROWS):
         show_result(result)
+        show_files(result)
     elif chosen:
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "

@@ -117,7 +117,7 @@ def test_a_kernel_that_takes_other_arguments_is_said_and_not_called() -> None:
 
 
 def of_source(source: str) -> Kernel:
-    names: dict[str, Any] = {"kernel": kernel}
+    names: dict[str, Any] = {"kernel": kernel, "Row": Row}
     exec(source, names)
     found: Kernel = names["f"]
     KERNELS.remove(found)
@@ -157,6 +157,32 @@ def test_a_digest_follows_what_a_kernel_does(change: dict[str, Any], same: bool)
     digests = [digest(found.function, (0.0,)) for found in (first, second)]
     assert (digests[0] == digests[1]) == same
     assert digests[0] != digest(first.function, (0,))
+
+
+MAKES = """
+import numpy as np
+from slidercrank.model.kernel.arithmetic import analytic
+
+@analytic
+def g(x):
+    {body}
+
+@kernel
+def f(x: float) -> float:
+    return g(x)[0]
+"""
+
+
+@pytest.mark.parametrize("body", ["return np.zeros(3) + x", "a = np.zeros(3)\n    return a, x"])
+def test_a_formula_that_makes_an_array_is_refused(body: str) -> None:
+    with pytest.raises(numba.TypingError, match="returning of array passed into the function"):
+        of_source(MAKES.format(body=body)).wanted().compile()
+
+
+def test_a_formula_that_hands_an_array_on_is_refused() -> None:
+    found = of_source(MAKES.format(body="return x").replace("x: float", "x: Row"))
+    with pytest.raises(TypeError, match="must return no array; got one of g"):
+        found.wanted().compile()
 
 
 def test_digests_do_not_depend_on_the_process() -> None:
