@@ -107,16 +107,20 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
     # has no kink over crank angle, while the crank angle of the knot has no derivative.
     margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
-        for i in range(loads.start[k], loads.start[k + 1]):
-            at = loads.at[i]
-            if loads.kind[k] == _ANGLE_TABLE:
-                if i + 1 < loads.start[k + 1]:
-                    n = add_cut(cuts, n, at, _FIXED, at, k)
-            else:
-                x = block[DESIGN + 2 * k + 1, j] + block[DESIGN + 2 * k, j] * at
+        first, last = loads.start[k], loads.start[k + 1]
+        if loads.kind[k] == _ANGLE_TABLE:
+            for i in range(first, last - 1):
+                n = add_cut(cuts, n, loads.at[i], _FIXED, loads.at[i], k)
+            continue
+        scale, datum = block[DESIGN + 2 * k, j], block[DESIGN + 2 * k + 1, j]
+        for second in (True, False):
+            # Knots by rising crank angle: most are then added behind all others.
+            rising = (d.branch * scale > 0.0) != second
+            for i in range(first, last):
+                at = loads.at[i if rising else first + last - 1 - i]
+                x = datum + scale * at
                 if d.inner + margin < x < d.outer - margin:
-                    for second in (False, True):
-                        n = add_cut(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
+                    n = add_cut(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
     if n == 0:
         n = add_cut(cuts, n, 0.0, _FIXED, 0.0, -1)
     return n
@@ -165,7 +169,16 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
             at = theta + shift[k]
         else:
             at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
-        low, high = first, last
+        low, high, near = first, last, piece[k]
+        if first <= near < last:  # mostly the piece of the segment before, or one beside it
+            if loads.at[near] < at:
+                low = near + 1
+                if low < last and loads.at[low] >= at:
+                    high = low
+            else:
+                high = near - 1 if near > first and loads.at[near - 1] >= at else near
+                if high > first and loads.at[high - 1] < at:
+                    low = high
         while low < high:
             middle = (low + high) // 2
             if loads.at[middle] < at:

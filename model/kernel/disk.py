@@ -144,7 +144,7 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     """Begin to compile what modules need, if no kernel is compiled yet, and leave it to who waits for it to say so."""
-    folder = kernel_folder()
+    folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     if folder is not None and not any(folder.glob(f"{packages.partition('.')[0]}.*.*")):
         with locked(building(folder, packages)) as lock:
             if lock is not None:

@@ -229,12 +229,14 @@ def _find(
             if thin[s] or not live[s]:
                 continue
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
-            low = crowded(a, kappa)
-            high = crowded(b, kappa)
-            spacings = int(angles * (high - low) / _TURN)
             # What is shorter than the spacing, as between the knots of a long table, has no samples of its own: the
             # slopes at its ends tell whether there is a peak.
-            points = min(angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
+            low = high = 0.0
+            points = 2
+            if angles * (b - a) > 0.99 * kappa * _TURN:  # the spacing is nowhere less than kappa times that of tau
+                low, high = crowded(a, kappa), crowded(b, kappa)
+                spacings = int(angles * (high - low) / _TURN)
+                points = min(angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
             for i in range(1, points - 1):
                 theta[i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
             theta[0], theta[points - 1] = a, b
@@ -266,8 +268,8 @@ def _find(
                     if finer == 1 or not f[i] > _NEAR * best:
                         break
                     left, right = theta[max(i - 2, 0)], theta[min(i + 2, points - 1)]
-                    high, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift, sides)
-                    if not high > value + _FLAT * value:
+                    finest, angle, step = _divide(kind, left, right, d, block, 0, outward, loads, piece, shift, sides)
+                    if not finest > value + _FLAT * value:
                         break
                     left, right = max(left, angle - step), min(right, angle + step)
         for s in range(count):

@@ -72,6 +72,21 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program:
     assert again.communicate() == ("12.0 False\n", "")
 
 
+def test_compiling_ahead_is_told_by_who_waits_for_it(program: list[str], tmp_path: Path) -> None:
+    begin = "from slidercrank.model.kernel.disk import compile_ahead; compile_ahead('program', ['program'])"
+    source = SOURCE.replace("    print(", f"    {begin}\n    print(")
+    Path(program[-1]).write_text(source)
+    found, said = started(program, tmp_path).communicate()
+    assert found == "12.0 False\n"
+    assert said.splitlines()[0] == "slidercrank compiles its formulas, once after installation"
+    assert said.count("once after installation") == 1
+    Path(program[-1]).write_text(source.replace("    print(", "    sys.exit(3)\n    print("))
+    for folder in (tmp_path, tmp_path / "empty"):  # where it is there already, and where nobody waits for it
+        ended = started(program, folder)
+        assert ended.communicate() == ("", "")
+        assert ended.returncode == 3
+
+
 def test_a_kernel_is_compiled_where_nothing_can_be_kept_and_no_process_started(
     program: list[str], tmp_path: Path
 ) -> None:
