@@ -36,7 +36,7 @@ _MORE_MEMORY = (
 
 
 _COMMANDS = (
-    *("optimise", "analyse", "sweep", "allocate", "balance", "sections", "certify", "compare", "like"),
+    *("optimise", "analyse", "inverse", "sweep", "allocate", "balance", "sections", "certify", "compare", "like"),
     *("check", "schema", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
 )

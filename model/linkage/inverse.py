@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,17 +23,44 @@ from ..errors import AssemblyError, InputError
 from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
-from .linkage import Linkage
+from ..machine.mechanism import Branch
 from .values import Array, first, numbers
 
 Solution = Literal["outward", "inward"]
 
-_ROUNDING = 1e-14
+ROUNDING = 1e-14
 """Share of crank + rod within which a position is taken for a dead centre.
 
 Rounding of the position, 1e-16 of it, turns the crank there by its square root, some 1e-8 rad; at 1e-14 the angle from
 the dead centre, some 1e-7 rad, is known to a tenth at best.
 """
+
+
+class Dimensions(Protocol):
+    """Dimensions, m, and branch of one linkage or an array of them: what is needed here of `linkage.Linkage`.
+
+    That class is not imported: its `from_slider` needs this module.
+    """
+
+    @property
+    def crank(self) -> Array:
+        """Crank, m."""
+
+    @property
+    def rod(self) -> Array:
+        """Connecting rod, m."""
+
+    @property
+    def offset(self) -> Array:
+        """Offset of the slider line, m."""
+
+    @property
+    def branch(self) -> Branch:
+        """Branch: open or crossed."""
+
+    @property
+    def sign(self) -> float:
+        """+1 on the open branch, -1 on the crossed one."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +72,7 @@ class CrankMotion:
     acceleration: Array
 
 
-def crank_angle_at(linkage: Linkage, slider_position: ArrayLike, *, solution: Solution) -> Array:
+def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution: Solution) -> Array:
     """Return the crank angle, rad in [0, 2 pi), for slider positions, m, signed as x; broadcasts with the dimensions.
 
     solution: "outward" or "inward", which way the slider goes there when the crank turns counter-clockwise. At a dead
@@ -75,7 +102,7 @@ def crank_angle_at(linkage: Linkage, slider_position: ArrayLike, *, solution: So
 
 
 def crank_motion(
-    linkage: Linkage,
+    linkage: Dimensions,
     slider_position: ArrayLike,
     *,
     velocity: ArrayLike,
@@ -90,12 +117,12 @@ def crank_motion(
     Raises `InputError` at a dead centre, where x' = 0 and any crank speed goes with a slider at rest, and
     `AssemblyError` as `crank_angle_at` does.
     """
-    v, a = (_finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
+    v, a = (finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
     x, dimensions, d = _triangle(linkage, slider_position)
     r, l, _ = dimensions
     margin = np.minimum(r + l - d, d - np.abs(l - r))
     _refuse(
-        margin <= _ROUNDING * (r + l),
+        margin <= ROUNDING * (r + l),
         x,
         dimensions,
         "slider positions must lie off the dead centres, where the crank motion is undetermined",
@@ -110,16 +137,16 @@ def crank_motion(
     return CrankMotion(*(np.broadcast_to(value, shape) for value in result))
 
 
-def _triangle(linkage: Linkage, slider_position: ArrayLike) -> tuple[Array, tuple[Array, Array, Array], Array]:
+def _triangle(linkage: Dimensions, slider_position: ArrayLike) -> tuple[Array, tuple[Array, Array, Array], Array]:
     """Return position, dimensions and distance of the slider pin from the crank pivot, of one shape."""
     x, r, l, e = np.broadcast_arrays(
-        _finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
+        finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
     )
     d = np.hypot(x, e)
     beyond = np.maximum(d - (r + l), np.abs(l - r) - d)
     # A position that was computed for a dead centre lies a rounding error beyond it.
     _refuse(
-        (beyond > _ROUNDING * (r + l)) | (d == 0.0),
+        (beyond > ROUNDING * (r + l)) | (d == 0.0),
         x,
         (r, l, e),
         "slider positions must be in reach, |rod - crank| <= sqrt(position^2 + offset^2) <= rod + crank",
@@ -128,7 +155,10 @@ def _triangle(linkage: Linkage, slider_position: ArrayLike) -> tuple[Array, tupl
     return x, (r, l, e), d
 
 
-def _finite(name: str, value: ArrayLike) -> Array:
+def finite(name: str, value: ArrayLike) -> Array:
+    """Return real and finite numbers. Raises `InputError` that names the argument."""
+    if np.iscomplexobj(value):
+        raise InputError(f"{name} must be real; got {value!r}; leave out the imaginary part")
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):

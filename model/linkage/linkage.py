@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import AssemblyError, InputError
 from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
-from ..kinematics.in_line import in_line
 from ..kinematics.position import Motion, motion
 from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
+from .from_slider import CrankSolution, crank_solutions
 from .picture import Pose, figure, svg
-from .values import Array, Kinematics, PointMotion, direction, first, in_a_turn, in_mm, numbers
+from .values import Array, Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,31 +52,9 @@ class Linkage:
 
     def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
         """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible."""
-        values = []
-        for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
-            value = numbers(given, name)
-            if not np.all(np.isfinite(value)):
-                raise InputError(f"{name} must be finite; got {given!r}")
-            values.append(value)
-        try:
-            real = np.broadcast_arrays(*(value.real for value in values))
-        except ValueError:
-            shapes = ", ".join(str(value.shape) for value in values)
-            raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
-        for name, size in zip(("crank", "rod"), real, strict=False):
-            if np.any(size <= 0.0):
-                raise InputError(f"{name} must be longer than zero; got {first(size, size <= 0.0):g} m")
+        values = dimensions(crank, rod, offset)
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
-        apart = np.abs(real[2]) >= real[0] + real[1]
-        if np.any(apart):
-            raise AssemblyError(
-                "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
-                f"got {in_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
-            )
-        rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
-        if np.any(rounding):
-            values[2] = np.where(rounding, values[2] - real[2], values[2])
         for name, value in zip(("crank", "rod", "offset"), values, strict=True):
             value = value.copy()
             value.flags.writeable = False
@@ -183,6 +161,27 @@ class Linkage:
             direction(magnitude(m.along), magnitude(m.across)),
         )
         return Kinematics(*(np.broadcast_to(field, shape) for field in fields))
+
+    def from_slider(
+        self, position: ArrayLike, *, velocity: ArrayLike | None = None, acceleration: ArrayLike | None = None
+    ) -> tuple[CrankSolution, ...]:
+        """Return all crank angles that put the slider of one linkage at a position, each with the crank's motion.
+
+        theta = atan2(e, x) -+ beta as in `slidercrank.model.linkage.inverse`; speed = v / x', acceleration =
+        (a - x'' speed^2) / x'. position: m, signed as x; velocity, m/s, and acceleration, m/s^2: along +x.
+        Two solutions, the outward one first; one at a dead centre, or where the other is on the other branch. At a dead
+        centre a slider at rest goes with any crank speed: speed and acceleration are None.
+
+        Raises `AssemblyError` for a position out of reach. Raises `InputError` for an array, an acceleration without
+        velocity, and at a dead centre for a velocity other than 0 or an acceleration away from the stroke.
+
+        >>> linkage = Linkage(crank=0.06, rod=0.23, offset=0.07)
+        >>> for found in linkage.from_slider(0.24, velocity=-1.0):
+        ...     print(found.stroke, round(found.crank_angle, 6), round(found.speed, 6))
+        outward 5.451782 -14.815897
+        inward 1.398992 17.055897
+        """
+        return crank_solutions(self, position, velocity, acceleration)
 
     def crank_point(
         self,

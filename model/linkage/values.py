@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import AssemblyError, InputError
+from ..kinematics.in_line import in_line
 
 Array = NDArray[np.float64]
 
@@ -47,6 +48,37 @@ def numbers(value: ArrayLike, what: str = "a crank angle, speed or acceleration"
     except (TypeError, ValueError):
         raise InputError(f"{what} must be a number or an array of numbers, SI; got {value!r}") from None
     return found
+
+
+def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
+    """Return crank, rod and offset, m, as arrays that broadcast; an offset that is a rounding error becomes zero.
+
+    Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
+    """
+    values = []
+    for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
+        value = numbers(given, name)
+        if not np.all(np.isfinite(value)):
+            raise InputError(f"{name} must be finite; got {given!r}")
+        values.append(value)
+    try:
+        real = np.broadcast_arrays(*(value.real for value in values))
+    except ValueError:
+        shapes = ", ".join(str(value.shape) for value in values)
+        raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
+    for name, size in zip(("crank", "rod"), real, strict=False):
+        if np.any(size <= 0.0):
+            raise InputError(f"{name} must be longer than zero; got {first(size, size <= 0.0):g} m")
+    apart = np.abs(real[2]) >= real[0] + real[1]
+    if np.any(apart):
+        raise AssemblyError(
+            "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
+            f"got {in_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
+        )
+    rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
+    if np.any(rounding):
+        values[2] = np.where(rounding, values[2] - real[2], values[2])
+    return values[0], values[1], values[2]
 
 
 def direction(y: Array, x: Array) -> Array:

@@ -12,7 +12,6 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
-from ..designs.selection import plain_number
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
@@ -23,13 +22,12 @@ from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
-from .run_choice import run_of
+from .job_or_run import design_of_run, problem_of_job
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...optimise.problem.problem import Problem
-    from ..designs.stored_designs import StoredDesign
 
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
@@ -78,11 +76,11 @@ def analyse(
     options = _topic_options(at, limit, fluctuation, topics)
     problem: Problem | None
     if design is None:
-        problem = _load(job, put or [])
+        problem = problem_of_job(job, put or [])
         mechanism = Mechanism() if problem is None else problem.mechanism.nominal
         lengths = size.lengths(problem)
     else:
-        stored = _stored(job, design, runs, {**vars(size), "set": put or None})
+        stored = design_of_run("analyse", job, design, runs, {**vars(size), "set": put or None})
         problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
@@ -166,26 +164,6 @@ def _draw(
         say(f"figure: {file}")
 
 
-def _stored(job: Path | None, design: int, place: Path | None, given: dict[str, object]) -> StoredDesign:
-    """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides."""
-    from ..designs.picking_options import require_alone
-    from ..designs.stored_designs import stored_design
-    from ..runs.stored_runs import problem_of
-
-    if job is None:
-        raise InputError("--design is of a run; got none; name it: slidercrank analyse RUN --design NO")
-    besides = [f"--{name}" for name, value in given.items() if value is not None]
-    if besides:
-        raise InputError(
-            f"a design of a run has its dimensions; got --design and {besides[0]}; leave out one of the two"
-        )
-    folder, result = run_of(str(job), place)
-    if not result.designs:
-        raise InputError(f"--design is of a run with designs; {folder.name} has none: {result.message}")
-    require_alone(design, result, str(job), others=False)
-    return stored_design(problem_of(folder, result), result, design)
-
-
 def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
     from ..designs.cycle_table import cycle_csv
 
@@ -193,25 +171,6 @@ def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: Syst
         raise InputError("--cycle writes a file; got -; name one")
     write_file(file, cycle_csv(mechanism, linkage, units, machine=machine))
     say(f"{file}: the cycle at 360 crank angles")
-
-
-def _load(job: Path | None, put: list[str]) -> Problem | None:
-    if job is None:
-        if put:
-            raise InputError("--set changes a number of a job; got none; give a JOB")
-        return None
-    if not job.suffix and not job.is_file():
-        raise InputError(f"a job is a file that is there; got {job}; a run stands in its place with --design N")
-    from ...optimise.job import load_job
-
-    values: dict[str, str | float] = {}
-    for text in put:
-        path, sign, value = (part.strip() for part in text.partition("="))
-        if not (path and sign and value):
-            raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
-        number = plain_number(value)
-        values[path] = value if number is None else number
-    return load_job(job, values)
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:

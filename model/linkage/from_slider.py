@@ -1,0 +1,171 @@
+"""All crank angles of one linkage for a slider position, with crank speeds and accelerations; reach of the slider."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import AssemblyError, InputError
+from ..kinematics.position import motion
+from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, finite
+
+
+@dataclass(frozen=True)
+class CrankSolution:
+    """Crank motion that gives a slider motion.
+
+    crank_angle: rad in [0, 2 pi). speed: rad/s; None without a slider velocity, and at a dead centre, where any crank
+    speed goes with a slider at rest. acceleration: rad/s^2; None where the speed is, and without a slider acceleration.
+    stroke: that the slider makes there when the crank turns counter-clockwise; None at a dead centre.
+    """
+
+    crank_angle: float
+    speed: float | None
+    acceleration: float | None
+    stroke: Solution | None
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Slider position, m, velocity, m/s, and acceleration, m/s^2."""
+
+    position: float
+    velocity: float | None
+    acceleration: float | None
+
+
+def crank_solutions(
+    linkage: Dimensions, position: ArrayLike, velocity: ArrayLike | None, acceleration: ArrayLike | None
+) -> tuple[CrankSolution, ...]:
+    """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes it."""
+    crank, rod, offset = _one(linkage)
+    asked = _Asked(
+        _number("slider position", position),
+        None if velocity is None else _number("slider velocity", velocity),
+        None if acceleration is None else _number("slider acceleration", acceleration),
+    )
+    if asked.acceleration is not None and asked.velocity is None:
+        raise InputError(
+            "a slider acceleration gives the crank's only together with the slider velocity; "
+            f"got acceleration {asked.acceleration:g} m/s^2 alone; give the velocity too, 0 for a slider at rest"
+        )
+    distance, rounding = math.hypot(asked.position, offset), ROUNDING * (crank + rod)
+    to_outer, to_inner = crank + rod - distance, distance - abs(rod - crank)
+    if min(to_outer, to_inner) < -rounding:
+        raise _out_of_reach(linkage, asked.position)
+    if distance <= rounding:
+        raise AssemblyError(
+            "a slider pin on the crank pivot leaves the crank free to turn; "
+            f"got position {1e3 * asked.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
+            "move the position, or make rod and crank differ"
+        )
+    if min(to_outer, to_inner) <= rounding:
+        angle = math.atan2(offset, asked.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
+        return (_at_dead_centre(linkage, angle, asked),)
+    found = [each for stroke in get_args(Solution) for each in _between(linkage, stroke, asked)]
+    if not found:
+        raise _out_of_reach(linkage, asked.position)
+    return tuple(found)
+
+
+def reach(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
+    """Return the ranges of slider positions, m, that one linkage reaches on its branch, in ascending order.
+
+    One range, or two where the crank moves within two separate arcs, rod + |offset| < crank. They end at a dead centre
+    or, not included, where the rod is normal to the slider line: there the linkage locks.
+    """
+    crank, rod, offset = _one(linkage)
+    sines = ((offset - rod) / crank, (offset + rod) / crank)
+    normal = [crank * math.sqrt((1.0 - sine) * (1.0 + sine)) for sine in sines if abs(sine) < 1.0]
+    right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin is
+    ahead, behind = (right, left) if linkage.sign > 0.0 else (left, right)
+    longest, shortest = rod + crank, rod - crank
+    ahead.append(linkage.sign * math.sqrt((longest - offset) * (longest + offset)))
+    if abs(offset) <= abs(shortest):
+        folded = math.sqrt((shortest - offset) * (shortest + offset))
+        behind.append(linkage.sign * math.copysign(folded, shortest))
+    arcs = (right, left) if len(normal) == 2 else (right + left,)
+    return tuple(sorted((min(arc), max(arc)) for arc in arcs))
+
+
+def _between(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[CrankSolution]:
+    """Return the solution of a stroke away from the dead centres; none if it is on the other branch."""
+    try:
+        angle = float(crank_angle_at(linkage, asked.position, solution=stroke))
+    except AssemblyError:
+        return []
+    if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked, but for rounding
+        return []
+    if asked.velocity is None:
+        return [CrankSolution(angle, None, None, stroke)]
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = crank_motion(
+            linkage,
+            asked.position,
+            velocity=asked.velocity,
+            acceleration=asked.acceleration or 0.0,
+            solution=stroke,
+        )
+    speed, acceleration = float(found.speed), float(found.acceleration)
+    if not (math.isfinite(speed) and math.isfinite(acceleration)):
+        raise InputError(
+            "crank speed and acceleration must be finite numbers; "
+            f"got slider velocity {asked.velocity:g} m/s at position {1e3 * asked.position:.9g} mm; give a smaller one"
+        )
+    return [CrankSolution(angle, speed, None if asked.acceleration is None else acceleration, stroke)]
+
+
+def _at_dead_centre(linkage: Dimensions, angle: float, asked: _Asked) -> CrankSolution:
+    """Return the solution at a dead centre. Raises `InputError` for a slider motion that no crank gives there."""
+    crank, rod, offset = _one(linkage)
+    if linkage.sign * (asked.position - crank * math.cos(angle)) <= 0.0:
+        raise _out_of_reach(linkage, asked.position)
+    m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
+    where = f"at the dead centre of position {1e3 * asked.position:.9g} mm"
+    remedy = "or a position further away"
+    if asked.velocity:
+        raise InputError(
+            f"the slider velocity must be 0 {where}, where the slider stands still at any crank speed; "
+            f"got {asked.velocity:g} m/s; give 0, {remedy}"
+        )
+    # x' = 0 leaves a = x'' speed^2.
+    if asked.acceleration is not None and asked.acceleration * float(m.x_2) < 0.0:
+        sign = "negative" if m.x_2 < 0.0 else "positive"
+        raise InputError(
+            f"the slider acceleration must be {sign} or 0 {where}, from which the slider can only return; "
+            f"got {asked.acceleration:g} m/s^2; turn its sign, {remedy}"
+        )
+    inside = math.fmod(angle + 2.0 * math.pi, 2.0 * math.pi)
+    return CrankSolution(inside, None, None, None)
+
+
+def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
+    ranges = " or ".join(f"{1e3 * low:.9g} mm to {1e3 * high:.9g} mm" for low, high in reach(linkage))
+    crank, rod, offset = _one(linkage)
+    return AssemblyError(
+        f"the slider position must be in reach of the {linkage.branch} branch, {ranges}; "
+        f"got {1e3 * position:.9g} mm with crank {1e3 * crank:g} mm, rod {1e3 * rod:g} mm, offset {1e3 * offset:g} mm; "
+        "move the position into the reach, or change a length"
+    )
+
+
+def _one(linkage: Dimensions) -> tuple[float, float, float]:
+    """Return crank, rod and offset, m. Raises `InputError` for an array of linkages and for complex dimensions."""
+    sizes = (linkage.crank, linkage.rod, linkage.offset)
+    shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))
+    if shape:
+        raise InputError(f"the way back is of one linkage; got an array of shape {shape}; take one linkage at a time")
+    if any(np.iscomplexobj(size) for size in sizes):
+        raise InputError("the way back is of real dimensions; got complex ones; leave out the imaginary part")
+    return float(linkage.crank), float(linkage.rod), float(linkage.offset)
+
+
+def _number(name: str, value: ArrayLike) -> float:
+    array = finite(name, value)
+    if array.ndim:
+        raise InputError(f"{name} must be one number; got an array of shape {array.shape}; take one at a time")
+    return float(array)

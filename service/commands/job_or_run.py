@@ -1,0 +1,60 @@
+"""One design that the command line names: by its dimensions and perhaps a job file, or by its number in a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+from ..designs.selection import plain_number
+from .run_choice import run_of
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
+    from ..designs.stored_designs import StoredDesign
+
+
+def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
+    """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job."""
+    if job is None:
+        if put:
+            raise InputError("--set changes a number of a job; got none; give a JOB")
+        return None
+    if not job.suffix and not job.is_file():
+        raise InputError(f"a job is a file that is there; got {job}; a run stands in its place with --design N")
+    from ...optimise.job import load_job
+
+    values: dict[str, str | float] = {}
+    for text in put:
+        path, sign, value = (part.strip() for part in text.partition("="))
+        if not (path and sign and value):
+            raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
+        number = plain_number(value)
+        values[path] = value if number is None else number
+    return load_job(job, values)
+
+
+def design_of_run(
+    command: str, run: Path | None, design: int, place: Path | None, given: Mapping[str, object]
+) -> StoredDesign:
+    """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides.
+
+    command: that asks, for messages. place: of runs. given: options that the design answers itself.
+    """
+    from ..designs.picking_options import require_alone
+    from ..designs.stored_designs import stored_design
+    from ..runs.stored_runs import problem_of
+
+    if run is None:
+        raise InputError(f"--design is of a run; got none; name it: slidercrank {command} RUN --design NO")
+    besides = [f"--{name}" for name, value in given.items() if value is not None]
+    if besides:
+        raise InputError(
+            f"a design of a run has its dimensions; got --design and {besides[0]}; leave out one of the two"
+        )
+    folder, result = run_of(str(run), place)
+    if not result.designs:
+        raise InputError(f"--design is of a run with designs; {folder.name} has none: {result.message}")
+    require_alone(design, result, str(run), others=False)
+    return stored_design(problem_of(folder, result), result, design)
