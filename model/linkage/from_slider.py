@@ -41,7 +41,10 @@ class _Asked:
 def crank_solutions(
     linkage: Dimensions, position: ArrayLike, velocity: ArrayLike | None, acceleration: ArrayLike | None
 ) -> tuple[CrankSolution, ...]:
-    """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes it."""
+    """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes it.
+
+    Where the rod is all but normal to the slider line, a rounding of the angle moves the slider by some 1e-8 cranks.
+    """
     crank, rod, offset = _one(linkage)
     asked = _Asked(
         _number("slider position", position),

@@ -213,6 +213,24 @@ class Client:
         found: Record = self._get(f"jobs/{number}/designs/{design}/analysis", {"show": list(show)})["analysis"]
         return found
 
+    def inverse(
+        self,
+        number: int,
+        design: int,
+        *,
+        position_mm: float,
+        velocity_m_s: float | None = None,
+        acceleration_m_s2: float | None = None,
+    ) -> Record:
+        """Return every crank angle of a design for a slider position, as `slidercrank inverse --json` prints it."""
+        motion = _given(
+            slider_position_mm=position_mm,
+            slider_velocity_m_s=velocity_m_s,
+            slider_acceleration_m_s2=acceleration_m_s2,
+        )
+        found: Record = self._get(f"jobs/{number}/designs/{design}/inverse", motion)["inverse"]
+        return found
+
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
         """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
         import pandas as pd
