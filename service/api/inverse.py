@@ -29,11 +29,12 @@ _EXAMPLE = {
     "slider_acceleration_m_s2": None,
     "solutions": [
         {
-            "crank_angle_deg": 312.364,
-            "stroke": "outward",
-            "crank_speed_rpm": -141.481,
+            "crank_angle_deg": angle,
+            "stroke": stroke,
+            "crank_speed_rpm": speed,
             "crank_acceleration_rad_s2": None,
         }
+        for angle, stroke, speed in ((312.364, "outward", -141.481), (80.156, "inward", 162.872))
     ],
     "note": "",
 }

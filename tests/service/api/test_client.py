@@ -110,6 +110,8 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     assert knee["number"] - 1 == front.knee
     assert reader.analysis(number, 1, show=["motor"])["motor"]
     assert len(reader.curves(number, 1, angles=12)) == 12
+    middle = float(reader.curves(number, 1)["slider_position_mm"].mean())
+    assert len(reader.inverse(number, 1, position_mm=middle, velocity_m_s=0.5)["solutions"]) == 2
     assert "knee" in reader.figures(number)
     assert reader.figure(number, "knee", tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
     assert reader.analyse(TABLES, crank="120 mm", rod="400 mm", offset="50 mm")["crank_mm"] == 120.0
