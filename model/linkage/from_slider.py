@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import get_args
 
 import numpy as np
@@ -12,6 +13,13 @@ from numpy.typing import ArrayLike
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, finite
+
+_DIGITS = 9  # of a position in messages: nanometres of a machine
+_LOCKED = 1e-7
+"""Share of the rod. Nearer to an end where the rod is normal to the slider line, rounding decides whether it is locked.
+
+There l - |e - r sin(theta)| is half the square of the distance, and 1e-8 squared is the rounding of a double.
+"""
 
 
 @dataclass(frozen=True)
@@ -147,12 +155,19 @@ def _at_dead_centre(linkage: Dimensions, angle: float, asked: _Asked) -> CrankSo
 
 
 def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
-    ranges = " or ".join(f"{1e3 * low:.9g} mm to {1e3 * high:.9g} mm" for low, high in reach(linkage))
     crank, rod, offset = _one(linkage)
+    # Rounded inward, and off the ends where the linkage locks: who gives an end as it is told is in reach.
+    inward = 0.0 if rod > crank + abs(offset) else _LOCKED * rod
+    up, down = Context(_DIGITS, ROUND_CEILING), Context(_DIGITS, ROUND_FLOOR)
+    ends = (
+        (up.create_decimal(repr(1e3 * (low + inward))), down.create_decimal(repr(1e3 * (high - inward))))
+        for low, high in reach(linkage)
+    )
+    ranges = " or ".join(f"{float(low):.{_DIGITS}g} mm to {float(high):.{_DIGITS}g} mm" for low, high in ends)
+    sizes = f"crank {1e3 * crank:g} mm, rod {1e3 * rod:g} mm, offset {1e3 * offset:g} mm"
     return AssemblyError(
         f"the slider position must be in reach of the {linkage.branch} branch, {ranges}; "
-        f"got {1e3 * position:.9g} mm with crank {1e3 * crank:g} mm, rod {1e3 * rod:g} mm, offset {1e3 * offset:g} mm; "
-        "move the position into the reach, or change a length"
+        f"got {1e3 * position:.12g} mm with {sizes}; move the position into the reach, or change a length"
     )
 
 

@@ -155,7 +155,7 @@ def test_a_crank_longer_than_the_rod_has_its_folded_dead_centre_on_the_far_side(
 @pytest.mark.parametrize(
     ("motion", "error", "words"),
     [
-        ({"position": 0.3}, AssemblyError, "open branch, 154.919334 mm to 281.424946 mm; got 300 mm with crank 60 mm"),
+        ({"position": 0.3}, AssemblyError, "open branch, 154.919334 mm to 281.424945 mm; got 300 mm with crank 60 mm"),
         ({"position": -0.24}, AssemblyError, "move the position into the reach, or change a length"),
         ({"position": math.nan}, InputError, "slider position must be finite; got nan"),
         ({"position": 0.24, "velocity": math.inf}, InputError, "slider velocity must be finite; got inf"),
@@ -171,6 +171,18 @@ def test_a_crank_longer_than_the_rod_has_its_folded_dead_centre_on_the_far_side(
 def test_a_slider_motion_that_no_crank_gives_is_refused(motion: Any, error: type[Exception], words: str) -> None:
     with pytest.raises(error, match=re.escape(words)):
         Linkage(0.06, 0.23, 0.07).from_slider(**motion)
+
+
+@pytest.mark.parametrize("branch", ["open", "crossed"])
+def test_the_ends_of_the_reach_as_a_refusal_tells_them_are_in_reach(branch: Branch) -> None:
+    for row in np.concatenate([short_rods(100, seed=43), random_designs(50, seed=44)]):
+        linkage = linkage_of(row, branch)
+        with pytest.raises(AssemblyError, match="must be in reach") as refused:
+            linkage.from_slider(2.0 * (row[0] + row[1]))
+        told = re.findall(r"(-?[\d.e-]+) mm", str(refused.value).partition("; got")[0])
+        assert len(told) == 2 * len(reach(linkage))
+        for end in told:
+            assert linkage.from_slider(float(end) / 1e3)
 
 
 def test_what_has_no_single_answer_is_refused() -> None:
