@@ -54,10 +54,11 @@ def inverse(
 ) -> None:
     """Find every crank angle that puts the slider at a position.
 
-    Most positions have two, one on each stroke. With the slider's velocity and acceleration, each has the crank speed
-    and the crank acceleration that give them. Crank angle, speed and acceleration are positive counter-clockwise.
-    Linkages that do not turn fully are accepted. Without JOB the branch is the open one. Dimensions that JOB fixes need
-    not be repeated. With --design, a run stands in place of JOB, and the design has its dimensions.
+    Most positions have two, one on each stroke, named as for a crank that turns counter-clockwise. With the
+    slider's velocity and acceleration, each has the crank speed and the crank acceleration that give them. Crank
+    angle, speed and acceleration are positive counter-clockwise. Linkages that do not turn fully are accepted.
+    Without JOB the branch is the open one. Dimensions that JOB fixes need not be repeated. With --design, a run
+    stands in place of JOB, and the design has its dimensions.
     """
     from ..designs.inverse import SliderMotion, inverse_record
 
@@ -95,15 +96,13 @@ def _show(record: dict[str, Any], units: System) -> None:
         if record[key] is not None:
             given.append(f"{title.removeprefix('slider_')} {factor * record[key]:.6g} {unit}")
     screen.print(f"slider: {', '.join(given)}", soft_wrap=True)
-    heads = ["crank angle, deg", "stroke"]
-    heads += ["crank speed, rpm"] * (record["slider_velocity_m_s"] is not None)
-    heads += ["crank acceleration, rad/s^2"] * (record["slider_acceleration_m_s2"] is not None)
-    rows = table(*(head if head == "stroke" else f">{head}" for head in heads), ruled=True)
+    rates = [">crank speed, rpm"] * (record["slider_velocity_m_s"] is not None)
+    rates += [">crank acceleration, rad/s^2"] * (record["slider_acceleration_m_s2"] is not None)
+    rows = table(">crank angle, deg", "stroke, counter-clockwise", *rates, ruled=True)
     for solution in record["solutions"]:
-        angle, stroke, *rates = solution.values()
-        shown = ["undefined" if rate is None else f"{rate:.6g}" for rate in rates[: len(heads) - 2]]
+        angle, stroke, *values = solution.values()
+        shown = ["undefined" if value is None else f"{value:.6g}" for value in values[: len(rates)]]
         rows.add_row(f"{angle:.6g}", stroke or "dead centre", *shown)
     print_table(screen, rows)
-    screen.print("Stroke: of a crank that turns counter-clockwise.", style="dim")
     if record["note"]:
         say(record["note"])

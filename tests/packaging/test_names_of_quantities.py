@@ -28,6 +28,7 @@ TERMS = {
     "service/preview/": "the answer of the preview has these keys",
     "service/api/preview.py": "the answer of the preview has these keys",
     "objectives/tables/cycle_curves.py": "curves over the cycle, not quantities",
+    "service/designs/inverse.py": "on which stroke a crank angle puts the slider at a position",
     "service/designs/cycle_table.py": "curves over the cycle, not quantities",
     "service/page/static/design/panels.js": "curves over the cycle, not quantities",
 }
