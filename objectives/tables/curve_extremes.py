@@ -1,0 +1,222 @@
+"""Least and greatest value of every curve of one design, over the continuous crank angle.
+
+The turn is cut where torque and forces may jump or have a kink (`model.cycle.cycle.breakpoints`), at the dead centres,
+and where the crank is normal to the slider's line. Within a piece every curve is sampled closely, and each of its
+highest and lowest samples is refined by golden sections between its neighbours. The ends of a piece count by their
+one-sided limits. Golden sections need no derivative and also find the tips of curves of magnitudes, which have none.
+Source: R. P. Brent, Algorithms for Minimization without Derivatives (1973), chapter 5.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...model.cycle.cycle import breakpoints
+from ...model.cycle.self_locking import locking_margin
+from ...model.dynamics.segments import crowded, crowding, uncrowded
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single import single
+from ...model.machine.friction import Friction
+from ...model.machine.mechanism import Mechanism
+from ..kinds import Face
+from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
+from ..quantity import Array
+from .cycle_curves import Curve, cycle_curves
+
+_TURN = 2.0 * math.pi
+_SAMPLES = 2048
+"""Over a turn, crowded as the curves are steep. The nearest singularity then is dozens of samples away."""
+_LEAST_SAMPLES = 33  # in a piece, however short
+_INSET = 1e-8
+"""Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
+_CANDIDATES = 6  # of each curve and side; more are only found where the samples are equal to rounding
+_SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_EQUAL = 1e-14  # of the curve's size: an end of a piece is then as high as what lies beside it
+_CONSTANT = 1e-12  # of the greatest size of all curves with the same unit
+_NEEDS: dict[str, tuple[Need, ...]] = {
+    **dict.fromkeys(("slider_velocity", "slider_acceleration", "slider_jerk"), (SPEED,)),
+    "torque": (DRIVEN,),
+    "power": (SPEED, DRIVEN),
+    **dict.fromkeys(("pivot", "pivot_x", "pivot_y"), (PIVOT_LOADED,)),
+    **dict.fromkeys(("crank_pin", "crank_pin_x", "crank_pin_y"), (LOADED,)),
+    **dict.fromkeys(("slider_pin", "slider_pin_x", "slider_pin_y", "guide"), (LOADED,)),
+    **dict.fromkeys(("position_error", "position_error_rss"), (TOLERANCES,)),
+}
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """An extreme value of a curve, SI, with crank angle, rad in [0, 2 pi), and slider position, m, where it is.
+
+    Of several equal ones it is that of one of them. Angle and position are NaN for a curve that is constant; all three
+    are NaN for one that friction leaves undetermined at some crank angle.
+    """
+
+    value: float
+    crank_angle: float
+    slider_position: float
+
+
+@dataclass(frozen=True)
+class CurveExtremes:
+    """Extremes of a curve of `cycle_curves`, or of the resultant of a joint force; si, shown: its units."""
+
+    name: str
+    title: str
+    si: Face
+    shown: Face
+    least: Extreme
+    greatest: Extreme
+
+
+def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes]:
+    """Return the extremes of every curve of one fully turning linkage that its machine defines.
+
+    Left out are velocity, acceleration, jerk and power without a crank speed, torque and joint forces without masses
+    and loads, the load without loads, position errors without tolerances. At a jump an extreme is the limit from
+    its side. A spike within a few hundred-millionths of a radian counts by the values beside it.
+    Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
+    """
+    linkage = single(mechanism, linkage)
+    first = defined_curves(mechanism, linkage, np.zeros(1))
+
+    def values(angles: Array) -> Array:
+        return np.stack([curve.values for curve in defined_curves(mechanism, linkage, angles)])
+
+    pieces = _pieces(mechanism, linkage)
+    samples = [values(piece) for piece in pieces]
+    sizes = _sizes(first, samples)
+    least, greatest = (_greatest(values, pieces, samples, sizes, sign) for sign in (-1.0, 1.0))
+    found = []
+    for row, curve in enumerate(first):
+        ends = []
+        for value, angle in (least[row], greatest[row]):
+            at = math.nan if math.isnan(angle) else float(linkage.at(angle).slider_position)
+            ends.append(Extreme(value, angle, at))
+        found.append(CurveExtremes(curve.name, curve.title, curve.si, curve.shown, *ends))
+    return found
+
+
+def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
+    """Return the curves that `curve_extremes` looks at, at crank angles (n,), rad.
+
+    The rod angle of the crossed branch, about pi, is given in [0, 2 pi), where it does not jump.
+    """
+    every = {curve.name: curve for curve in cycle_curves(mechanism, linkage, crank_angle)}
+    del every["crank_angle"]
+    if linkage.branch == "crossed":
+        rod = every["rod_angle"]
+        every["rod_angle"] = replace(rod, values=np.mod(rod.values, _TURN))
+    if not mechanism.loads:
+        del every["load"]
+    curves = []
+    for curve in every.values():
+        joint = curve.name.removesuffix("_x")
+        if joint != curve.name:  # the resultant comes before its components
+            size = np.hypot(curve.values, every[f"{joint}_y"].values)
+            curves.append(Curve(joint, f"{joint.replace('_', ' ')} force", size, curve.si, curve.shown))
+        curves.append(curve)
+    return [curve for curve in curves if all(need.met(mechanism) for need in _NEEDS.get(curve.name, ()))]
+
+
+def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
+    """Return crank angles of each smooth piece of the turn; the second and the last but one are `_INSET` further in."""
+    dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
+    locks = not float(locking_margin(mechanism.friction, np.array([dimensions]))[0][0]) > 0.0
+    cuts = breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage)
+    ends = [float(angle) for angle in linkage.dead_centre_angles]
+    cuts = np.unique(np.mod(np.concatenate([cuts, ends, [0.5 * math.pi, 1.5 * math.pi]]), _TURN))
+    kappa = crowding(*dimensions)
+    pieces = []
+    for start, end in zip(cuts, [*cuts[1:], cuts[0] + _TURN], strict=True):
+        if end - start < 8.0 * _INSET:
+            continue  # cuts that are the same but for rounding
+        low, high = crowded(start, kappa), crowded(end, kappa)
+        count = max(_LEAST_SAMPLES, math.ceil((high - low) / _TURN * _SAMPLES))
+        inner = [uncrowded(tau, kappa) for tau in np.linspace(low, high, count)[1:-1]]
+        sides = [start + _INSET, start + 2.0 * _INSET, end - 2.0 * _INSET, end - _INSET]
+        inner = [angle for angle in inner if sides[1] < angle < sides[2]]
+        pieces.append(np.array([*sides[:2], *inner, *sides[2:]]))
+    return pieces
+
+
+def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
+    """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if not determined."""
+    own = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
+    units = [curve.si.symbol for curve in curves]
+    shared = [np.nanmax([0.0, *(size for size, of in zip(own, units, strict=True) if of == unit)]) for unit in units]
+    return np.stack([own, shared], axis=1)
+
+
+def _greatest(
+    values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, sign: float
+) -> list[tuple[float, float]]:
+    """Return value and crank angle of each curve's greatest value (sign 1) or least value (sign -1)."""
+    found, rows, left, right, owner = [], [], [], [], []
+    for row, (own, shared) in enumerate(sizes):
+        curve = [sign * values[row] for values in samples]
+        top, bottom = max(values.max() for values in curve), min(values.min() for values in curve)
+        if math.isnan(own):
+            found.append((math.nan, math.nan))
+        elif top - bottom <= _CONSTANT * shared:
+            found.append((0.0 if own <= _CONSTANT * shared else sign * top, math.nan))
+        else:
+            found.append(_best_end(curve, pieces))
+            owner.append(row)
+            brackets = _brackets(curve, pieces)
+            rows += [row] * len(brackets)
+            left += [bracket[0] for bracket in brackets]
+            right += [bracket[1] for bracket in brackets]
+    at = np.array(rows, dtype=np.intp)
+    tops, angles = _golden(lambda theta: sign * values(theta)[at, np.arange(len(at))], np.array(left), np.array(right))
+    for row in owner:
+        inside = np.flatnonzero(at == row)
+        best = inside[np.argmax(tops[inside])]
+        if tops[best] > found[row][0] + _EQUAL * sizes[row, 0]:
+            found[row] = (float(tops[best]), float(angles[best]))
+        found[row] = (sign * found[row][0] + 0.0, found[row][1] % _TURN)
+    return found
+
+
+def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
+    """Return the greatest one-sided limit at the ends of the pieces and its crank angle, linearly extrapolated."""
+    ends = []
+    for angles, values in zip(pieces, curve, strict=True):
+        ends.append((2.0 * values[0] - values[1], angles[0] - _INSET))
+        ends.append((2.0 * values[-1] - values[-2], angles[-1] + _INSET))
+    value, angle = max(ends, key=lambda end: end[0])
+    return float(value), float(angle)
+
+
+def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
+    """Return the neighbours on both sides of the highest samples that are no lower than these."""
+    found: list[tuple[float, float, float]] = []
+    for angles, values in zip(pieces, curve, strict=True):
+        padded = np.concatenate([[-np.inf], values, [-np.inf]])
+        highest = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
+        sides = angles[np.maximum(highest - 1, 0)], angles[np.minimum(highest + 1, len(angles) - 1)]
+        found += zip(values[highest].tolist(), *(side.tolist() for side in sides), strict=True)
+    found.sort(key=lambda bracket: -bracket[0])
+    return [(low, high) for _, low, high in found[:_CANDIDATES]]
+
+
+def _golden(function: Callable[[Array], Array], left: Array, right: Array) -> tuple[Array, Array]:
+    """Return the greatest value of a function (n,) -> (n,) in each bracket, and where it is, by golden sections."""
+    if not len(left):
+        return left, right
+    low, high = left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left)
+    at_low, at_high = function(low), function(high)
+    for _ in range(_SECTIONS):
+        lower = at_low >= at_high
+        left, right = np.where(lower, left, low), np.where(lower, high, right)
+        fresh = np.where(lower, left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left))
+        value = function(fresh)
+        low, high = np.where(lower, fresh, high), np.where(lower, low, fresh)
+        at_low, at_high = np.where(lower, value, at_high), np.where(lower, at_low, value)
+    lower = at_low >= at_high
+    return np.where(lower, at_low, at_high), np.where(lower, low, high)

@@ -1,0 +1,143 @@
+"""Least and greatest value of every curve of one design over the turn, and the difference between the strokes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from ....model.cycle.cycle import breakpoints
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, defined_curves
+from ...designs.columns import split_unit
+from ...figures.numerals import shown, with_unit
+from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn, turn
+from ...text import tables as text
+from ...text.tables import plain, print_table, table
+
+_PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
+_STROKES = ("outward", "inward")
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return the extremes of each curve, by its name, and the strokes: their durations, greatest speeds and ratios.
+
+    A curve without masses, loads or a speed that it needs is left out. None stands for what friction leaves
+    undetermined, and for crank angle and slider position of a curve that is constant. Ratios and differences are those
+    of the outward stroke against the inward one.
+    """
+    extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
+    return {
+        "curves": {name: _entry(found) for name, found in extremes.items()},
+        "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),
+    }
+
+
+def _entry(found: CurveExtremes) -> dict[str, Any]:
+    entry: dict[str, Any] = {"title": found.title}
+    for word, extreme in (("least", found.least), ("greatest", found.greatest)):
+        entry[f"{word}{found.shown.suffix}"] = plain(found.shown.factor * extreme.value)
+        entry |= _place(word, extreme)
+    return entry
+
+
+def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
+    return {
+        f"{word}_at_crank_angle_deg": plain(math.degrees(extreme.crank_angle)),
+        f"{word}_at_slider_position_mm": plain(1e3 * extreme.slider_position),
+    }
+
+
+def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
+    """Return crank angle, duration and greatest slider speed of both strokes, and how these differ."""
+    inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
+    outward = (mechanism.direction * (outer - inner)) % (2.0 * math.pi)
+    angles = {"outward": outward, "inward": 2.0 * math.pi - outward}
+    strokes: dict[str, dict[str, Any]] = {name: {"crank_angle_deg": math.degrees(angles[name])} for name in _STROKES}
+    found: dict[str, Any] = {**strokes, "duration_ratio": angles["outward"] / angles["inward"]}
+    if velocity is None:
+        return found
+    # Outward is along +x on the open branch, along -x on the crossed one.
+    ends = (velocity.greatest, velocity.least) if mechanism.branch == "open" else (velocity.least, velocity.greatest)
+    for name, extreme in zip(_STROKES, ends, strict=True):
+        strokes[name] |= {
+            "duration_s": angles[name] / abs(mechanism.speed),
+            "greatest_speed_m_s": abs(extreme.value),
+            **_place("greatest_speed", extreme),
+        }
+    fast, back = (strokes[name]["greatest_speed_m_s"] for name in _STROKES)
+    durations = [strokes[name]["duration_s"] for name in _STROKES]
+    return found | {
+        "duration_difference_s": durations[0] - durations[1],
+        "greatest_speed_ratio": fast / back,
+        "greatest_speed_difference_m_s": fast - back,
+    }
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write a line for each curve, and the strokes."""
+    console.print("Extremes over the turn, crank angles continuous", style="bold", soft_wrap=True)
+    heads = ("curve", ">least", ">at\ndeg", ">slider\nmm", ">greatest", ">at\ndeg", ">slider\nmm", "unit")
+    rows = table(*heads, ruled=True)
+    for entry in numbers["curves"].values():
+        cells, unit = [], ""
+        for word in ("least", "greatest"):
+            key = next(key for key in entry if split_unit(key)[0] == word)
+            unit, value = split_unit(key)[1], entry[key]
+            places = (entry[f"{word}_at_crank_angle_deg"], entry[f"{word}_at_slider_position_mm"])
+            cells.append("undefined" if value is None else f"{value:.6g}")
+            cells += ["" if place is None else f"{place:.2f}" for place in places]
+        rows.add_row(entry["title"], *cells, unit)
+    print_table(console, rows)
+    strokes, lines = numbers["strokes"], list[text.Line]()
+    for name in _STROKES:
+        stroke = strokes[name]
+        lines.append((f"{name} stroke", stroke["crank_angle_deg"], "deg", ""))
+        if "duration_s" in stroke:
+            at = f"at {stroke['greatest_speed_at_crank_angle_deg']:.2f} deg"
+            lines.append(("  duration", stroke["duration_s"], "s", ""))
+            lines.append(("  greatest slider speed", stroke["greatest_speed_m_s"], "m/s", at))
+    for title, key, unit in (
+        ("ratio of durations", "duration_ratio", ""),
+        ("difference of durations", "duration_difference_s", "s"),
+        ("ratio of greatest speeds", "greatest_speed_ratio", ""),
+        ("difference of greatest speeds", "greatest_speed_difference_m_s", "m/s"),
+    ):
+        if key in strokes:
+            lines.append((title, strokes[key], unit, "outward against inward"))
+    text.show_lines(console, "Strokes", lines)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return the main curves over the turn, with their extremes: as many of six as the machine defines."""
+    extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
+    marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]
+    try:
+        cuts = breakpoints(mechanism, linkage)
+    except InputError:  # friction locks: what it leaves undetermined has gaps
+        cuts = np.zeros(1)
+    theta = turn(cuts, [angle for angle in marked if math.isfinite(angle)])
+    curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
+    degrees = np.degrees(theta)
+    panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
+    return Sheet("Extremes over the turn", lengths(linkage), panels, columns=min(2, len(panels)), width=5.2)
+
+
+def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
+    return found.least, found.greatest
+
+
+def _panel(found: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
+    factor = found.shown.factor
+    lines = [Line("", degrees, factor * values)]
+    ends = [end for end in _ends(found) if math.isfinite(end.crank_angle)]
+    note = "constant" if math.isfinite(found.least.value) else "undetermined where friction locks"
+    if ends:
+        angles = np.degrees([end.crank_angle for end in ends])
+        lines.append(Line("", angles, factor * np.array([end.value for end in ends]), points=True))
+        note = ", ".join(f"{shown(factor * end.value)} at {shown(at)}°" for end, at in zip(ends, angles, strict=True))
+    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note)
