@@ -33,7 +33,9 @@ _SAMPLES = 2048
 _LEAST_SAMPLES = 33  # in a piece, however short
 _INSET = 1e-8
 """Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
-_CANDIDATES = 6  # of each curve and side; more are only found where the samples are equal to rounding
+_REACH = 4.0
+"""Steps to the neighbours by which a curve may rise beyond a sample: one at a tip, less where it is smooth."""
+_CANDIDATES = 60  # of each curve and side; there are more only where samples are equal but for rounding
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _EQUAL = 1e-14  # of the curve's size: an end of a piece is then as high as what lies beside it
@@ -194,15 +196,18 @@ def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
 
 
 def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
-    """Return the neighbours on both sides of the highest samples that are no lower than these."""
+    """Return the neighbours on both sides of every locally highest sample that may be next to the greatest value."""
     found: list[tuple[float, float, float]] = []
     for angles, values in zip(pieces, curve, strict=True):
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
         highest = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
-        sides = angles[np.maximum(highest - 1, 0)], angles[np.minimum(highest + 1, len(angles) - 1)]
-        found += zip(values[highest].tolist(), *(side.tolist() for side in sides), strict=True)
+        before, after = np.maximum(highest - 1, 0), np.minimum(highest + 1, len(angles) - 1)
+        step = values[highest] - np.minimum(values[before], values[after])
+        bounds = (values[highest] + _REACH * step).tolist()
+        found += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)
+    best = max(values.max() for values in curve)
     found.sort(key=lambda bracket: -bracket[0])
-    return [(low, high) for _, low, high in found[:_CANDIDATES]]
+    return [(low, high) for bound, low, high in found[:_CANDIDATES] if bound >= best]
 
 
 def _golden(function: Callable[[Array], Array], left: Array, right: Array) -> tuple[Array, Array]:
