@@ -24,6 +24,7 @@ from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ..kinds import Face
 from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
+from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
 from ..quantity import Array
 from .cycle_curves import Curve, cycle_curves
 
@@ -47,7 +48,7 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
     **dict.fromkeys(("pivot", "pivot_x", "pivot_y"), (PIVOT_LOADED,)),
     **dict.fromkeys(("crank_pin", "crank_pin_x", "crank_pin_y"), (LOADED,)),
     **dict.fromkeys(("slider_pin", "slider_pin_x", "slider_pin_y", "guide"), (LOADED,)),
-    **dict.fromkeys(("position_error", "position_error_rss"), (TOLERANCES,)),
+    **{quantity.name: (TOLERANCES,) for quantity in (POSITION_ERROR, POSITION_ERROR_RSS)},
 }
 
 
@@ -126,14 +127,22 @@ def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -
     return [curve for curve in curves if all(need.met(mechanism) for need in _NEEDS.get(curve.name, ()))]
 
 
-def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
-    """Return crank angles of each smooth piece of the turn; the second and the last but one are `_INSET` further in."""
-    dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
-    locks = not float(locking_margin(mechanism.friction, np.array([dimensions]))[0][0]) > 0.0
+def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return crank angles (k,) in [0, 2 pi), rad, in ascending order, between which every curve is smooth.
+
+    Where friction locks one linkage, they are those without friction: forces are then undetermined anyway.
+    """
+    dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+    locks = not float(locking_margin(mechanism.friction, dimensions)[0][0]) > 0.0
     cuts = breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage)
     ends = [float(angle) for angle in linkage.dead_centre_angles]
-    cuts = np.unique(np.mod(np.concatenate([cuts, ends, [0.5 * math.pi, 1.5 * math.pi]]), _TURN))
-    kappa = crowding(*dimensions)
+    return np.unique(np.mod(np.concatenate([cuts, ends, [0.5 * math.pi, 1.5 * math.pi]]), _TURN))
+
+
+def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
+    """Return crank angles of each smooth piece of the turn; the second and the last but one are `_INSET` further in."""
+    cuts = cuts_of(mechanism, linkage)
+    kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []
     for start, end in zip(cuts, [*cuts[1:], cuts[0] + _TURN], strict=True):
         if end - start < 8.0 * _INSET:

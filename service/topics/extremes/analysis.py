@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from ....model.cycle.cycle import breakpoints
-from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, defined_curves
+from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
 from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn, turn
@@ -113,14 +111,13 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
-    """Return the main curves over the turn, with their extremes: as many of six as the machine defines."""
+    """Return the main curves over the turn, with their extremes: as many of six as the machine defines.
+
+    What friction leaves undetermined has gaps.
+    """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]
-    try:
-        cuts = breakpoints(mechanism, linkage)
-    except InputError:  # friction locks: what it leaves undetermined has gaps
-        cuts = np.zeros(1)
-    theta = turn(cuts, [angle for angle in marked if math.isfinite(angle)])
+    theta = turn(cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)])
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
