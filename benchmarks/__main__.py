@@ -1,6 +1,7 @@
 """Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder.
 
-Beside those of another version, on the same machine: save that one's first, with its own Python and these files.
+Beside them stand those of commit b5d5c0c, before speed was worked on (2 cores, AMD EPYC, 2026-11-23), or of a version
+of your own choice, measured with its own Python and these files:
     OTHER/.venv/bin/python -m benchmarks --save before.json; python -m benchmarks --before before.json
 """
 
@@ -40,17 +41,19 @@ _ALL: dict[str, tuple[str, Callable[[], Iterable[Row]]]] = {
     "accuracy": ("Greatest relative error of peak torque, 1,000 random linkages", peak_accuracy.accuracy),
 }
 
+_BEFORE = Path(__file__).with_name("before.json")
+
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="benchmarks", description="Measure and print.")
     parser.add_argument("parts", nargs="*", help=f"all by default: {', '.join(_ALL)}")
     parser.add_argument("--save", type=Path, help="a JSON file for the medians")
-    parser.add_argument("--before", type=Path, help="one that another version has saved")
+    parser.add_argument("--before", type=Path, default=_BEFORE, help="one that another version has saved")
     given = parser.parse_args()
     if unknown := set(given.parts) - set(_ALL):
         parser.error(f"no such part: {', '.join(sorted(unknown))}")
-    before = json.loads(given.before.read_text()) if given.before else None
+    before = json.loads(given.before.read_text())
     print(machine())
     medians: dict[str, float] = {}
     for title, rows in (_ALL[name] for name in given.parts or _ALL):
