@@ -51,7 +51,7 @@ def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
 
 @cache
 def _surroundings() -> bytes:
-    """Return what all kernels depend on: processor, versions, numba's own settings, and how formulas are compiled."""
+    """Return all that every kernel depends on: processor, versions, settings of numba, and the compiler here."""
     import llvmlite.binding as llvm
 
     settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _ASIDE)
@@ -66,7 +66,7 @@ _ASIDE = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_DISABLE_ERROR_MESSAGE_H
 
 
 def _parts(function: Any) -> tuple[bytes, list[Any]]:
-    """Return what a function is by itself, and the functions that it calls."""
+    """Return a function's own code and constants, and the functions that it calls."""
     calls: list[Any] = []
     text = [function.__qualname__, _of(function.__defaults__)]
     codes = list(_codes(function.__code__))

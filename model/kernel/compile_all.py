@@ -37,7 +37,7 @@ class _Task(NamedTuple):
         return self.size() < other.size() and self.cheap_after(other.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
-        """Return the less, the sooner it should be begun: what takes long, or many wait for; of the rest the small."""
+        """Return the less, the sooner it should be begun: long tasks first, with their followers, then small ones."""
         if 2 * self.size() < max(task.size() for task in tasks):
             return True, self.size()
         return False, -sum(task.size() for task in tasks if task is self or task.follows(self))

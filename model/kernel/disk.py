@@ -87,7 +87,7 @@ def _package(module: str) -> str:
 
 
 def read(file: Path) -> MachineCode | None:
-    """Return what is kept, None where there is nothing whole."""
+    """Return the machine code that is kept, None where there is nothing whole."""
     try:
         head, code = file.read_bytes().split(b"\n", 1)
         kept = json.loads(head)
@@ -143,7 +143,7 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
 
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
-    """Begin to compile what modules need, if no kernel is compiled yet, and leave it to who waits for it to say so."""
+    """Begin to compile the kernels of modules, if none is compiled yet; who waits for them says so."""
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     if folder is not None and not any(folder.glob(f"{packages.partition('.')[0]}.*.*")):
         with locked(building(folder, packages)) as lock:

@@ -77,7 +77,7 @@ class Kernel:
         return result.value
 
     def wanted(self) -> Wanted:
-        """Return what is to be compiled."""
+        """Return the kernel as it is to be compiled."""
         examples = tuple(_example(hint) for name, hint in self._hints().items() if name != "return")
         return Wanted(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
@@ -126,7 +126,7 @@ def _item(array: Any) -> np.dtype[Any]:
 
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
-    """Return what makes the machine's arguments of a value."""
+    """Return the function that makes the machine's arguments of a value."""
     members = _members(kind)
     if members is not None:
         return _flat_tuple([_flattener(name, member) for member in members])
@@ -165,7 +165,7 @@ def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[An
 
 
 def _leaves(example: Any) -> list[Leaf]:
-    """Return what a value is for the machine."""
+    """Return the types that a value has for the machine."""
     if isinstance(example, tuple):
         return [leaf for member in example for leaf in _leaves(member)]
     if isinstance(example, np.ndarray):

@@ -41,7 +41,7 @@ class Leaf(NamedTuple):
 
 
 def load(found: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
-    """Return the entry: of the block of arguments and the address for a result it gives 0, else there was no memory.
+    """Return the entry: given arguments and the address for a result it gives 0, else memory was short.
 
     It releases the interpreter lock.
     """

@@ -46,7 +46,7 @@ def _derive(
 def derived(
     raw: Array, loads: Loads, columns: NDArray[np.int64] = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
-    """Return blocks (n, DESIGN + 2 k, 1) of raw numbers (END + 4 k,), of which each design (n, c) sets `columns` (c,).
+    """Return blocks (n, DESIGN + 2 k, 1) of raw numbers (END + 4 k,); designs (n, c) set `columns`.
 
     By default there is one design, which sets none. steps: whether to give blocks (n c, DESIGN + 2 k, 1) for an
     imaginary step of each of the columns too; else there are none of these.

@@ -54,7 +54,7 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 
 @dataclass(frozen=True)
 class Extreme:
-    """An extreme value of a curve, SI, with crank angle, rad in [0, 2 pi), and slider position, m, where it is.
+    """An extreme value of a curve, SI, with its crank angle, rad in [0, 2 pi), and slider position, m.
 
     Of several equal ones it is that of one of them. Angle and position are NaN for a curve that is constant; all three
     are NaN for one that friction leaves undetermined at some crank angle.
@@ -140,7 +140,7 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
-    """Return crank angles of each smooth piece of the turn; the second and the last but one are `_INSET` further in."""
+    """Return crank angles of each smooth piece of the turn; the ends are `_INSET` further in."""
     cuts = cuts_of(mechanism, linkage)
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []

@@ -20,7 +20,10 @@ _INDEPENDENT = 1e-2  # a column counts as independent of others if this share of
 
 
 def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
-    """Return the x >= 0 (n,) of least |A x - b| for A (m, n), b (m,); None where rounding leaves no end in sight."""
+    """Return the x >= 0 (n,) of least |A x - b|; None where rounding leaves no end in sight.
+
+    matrix: A (m, n). target: b (m,).
+    """
     columns = np.array(matrix.T, order="C")
     solution = np.zeros(len(columns))
     ended = _solve(columns, target.astype(np.float64), _STEPS * len(columns), solution)

@@ -132,7 +132,7 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
 
 
 def signs(problem: Problem) -> list[tuple[float, Range]]:
-    """Return the signs that the offset may have, each with the range of its size; with a slow stroke its side alone."""
+    """Return the signs that the offset may have, each with the range of its size."""
     lower, upper = problem.offset.lower, problem.offset.upper
     signed = []
     if upper > 0.0 or lower == upper == 0.0:

@@ -1,4 +1,4 @@
-"""Points of fronts for the small pictures of a list: of several jobs at once, kept by browsers until they change."""
+"""Points of fronts for the small pictures of a list: of several jobs at once, kept by browsers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One design that the command line names: by its dimensions and perhaps a job file, or by its number in a run."""
+"""One design that the command line names: by dimensions and perhaps a job, or by number in a run."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def _summary(subject: Subject) -> Section:
 
 
 def _marked(subject: Subject) -> list[str]:
-    """Return what a design of the front is the best in."""
+    """Return the objectives in which a design of the front is best."""
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
     words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:

@@ -109,7 +109,7 @@ class Job:
         return record
 
     def front_points(self) -> dict[str, Any]:
-        """Return columns of at most two objectives, and points of at most 64 designs: of its front, or of that so far.
+        """Return columns of at most two objectives, and points of at most 64 designs of its front.
 
         None of either where no front is known.
         """

@@ -23,7 +23,7 @@ _SETTLED = 1e-10  # of the derivative; the tests ask for 1e-7
 
 
 def steps_to_the_nearest_edge(designs: Array, *, kink_without_offset: bool) -> Array:
-    """Return first steps (n, 3): an eighth of the way to locking, to a zero dimension and, if asked, to e = 0.
+    """Return first steps (n, 3): an eighth of the way to locking, to zero or to e = 0.
 
     Greater steps would be evaluated in vain: most designs settle at a hundredth of the way, from the steps before.
     """

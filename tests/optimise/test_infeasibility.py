@@ -91,7 +91,7 @@ def test_reachable_values_can_be_reached() -> None:
 
 
 def test_several_requirements_that_must_give_way_together_are_said_so() -> None:
-    """Neither limit alone is the trouble: the torque is far too low, and the rod far too long for any crank."""
+    """Neither limit alone is the trouble: torque far too low, rod far too long for any crank."""
     held: dict[str, Bounds] = {"stroke": 0.2, "peak_torque": (None, 0.5), "rod_to_crank": (50.0, None)}
     front = refused(held)
     assert "giving up any single one is not enough" in front.message

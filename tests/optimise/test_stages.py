@@ -41,7 +41,7 @@ def searched(**more: object) -> tuple[ParetoFront, list[Progress], list[Record]]
 
 @cache
 def whole() -> tuple[ParetoFront, list[Progress], list[Record]]:
-    """Return what an uninterrupted search told of everything gives."""
+    """Return front, rounds and records of an uninterrupted search that tells everything."""
     return searched()
 
 
