@@ -75,10 +75,8 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         with locked(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read(task.file) is None:
                 with contextlib.suppress(OSError):
-                    progress = (
-                        f"{len(everything) - len(tasks)} of {len(everything)}, {task.wanted.name.rpartition('.')[2]}"
-                    )
-                    building(folder, packages).write_text(progress)
+                    number, name = len(everything) - len(tasks), task.wanted.name.rpartition(".")[2]
+                    building(folder, packages).write_text(f"{number} of {len(everything)}, {name}")
                 keep(task.file, task.wanted.compile())
                 compiled.update(task.codes)
 

@@ -15,7 +15,19 @@ from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import Angle, Dimensions, Figures, File, Json, Length, Runs, Units, speed_option, value_option
+from ..text.options import (
+    Angle,
+    DesignOfRun,
+    Dimensions,
+    Figures,
+    File,
+    Json,
+    Length,
+    Runs,
+    Units,
+    speed_option,
+    value_option,
+)
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
 from ..topics.design_analysis import analysis_of, numbers_of
@@ -48,9 +60,7 @@ def analyse(
         typer.Option("--set", metavar="PATH=VALUE"),
         'A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
     ] = None,
-    design: Annotated[
-        int | None, typer.Option(metavar="NO"), "A design of a run: its number in `slidercrank front RUN`."
-    ] = None,
+    design: DesignOfRun = None,
     show: Annotated[list[str] | None, typer.Option(metavar="TOPIC"), _TOPIC_HELP] = None,
     at: Annotated[Angle, 'Crank angle of the polygons.  [default: "30 deg"]'] = None,
     limit: Annotated[Length, "Position error that a machine may have: gives the yield."] = None,

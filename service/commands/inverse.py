@@ -11,7 +11,7 @@ from ...objectives.kinds import ACCELERATION, LENGTH, SPEED, System
 from ..designs.columns import key_in, split_unit
 from ..designs.shown_units import record_in
 from ..runs.result import json_text
-from ..text.options import Dimensions, Json, Runs, Units, value_option
+from ..text.options import DesignOfRun, Dimensions, Json, Runs, Units, value_option
 from ..text.screen import console, give, say
 from ..text.tables import print_table, table
 from .job_or_run import design_of_run, problem_of_job
@@ -45,9 +45,7 @@ def inverse(
         typer.Option("--slider-acceleration", metavar="ACCELERATION"),
         'Slider acceleration, such as "3 m/s^2": gives the crank acceleration. Needs --slider-velocity.',
     ] = None,
-    design: Annotated[
-        int | None, typer.Option(metavar="NO"), "A design of a run: its number in `slidercrank front RUN`."
-    ] = None,
+    design: DesignOfRun = None,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,

@@ -46,6 +46,9 @@ Units = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")]
+DesignOfRun = Annotated[
+    int | None, typer.Option(metavar="NO", help="A design of a run: its number in `slidercrank front RUN`.")
+]
 Runs = Annotated[Path | None, typer.Option(help="Where runs are kept.  [default: SLIDERCRANK_RUNS, else ./runs]")]
 Run = Annotated[
     str,
