@@ -41,7 +41,7 @@ def _archive(name: str, problem: Problem, span: Array, seed: int) -> tuple[float
 
 
 def _explored(problem: Problem) -> list[tuple[float, Array]]:
-    """Return seconds and archive of searches with more and more samples."""
+    """Return seconds and feasible archive of searches with more and more samples."""
     found = []
     for samples in _ROUNDS:
         sized = replace(problem, settings=replace(problem.settings, samples=samples))
@@ -50,7 +50,7 @@ def _explored(problem: Problem) -> list[tuple[float, Array]]:
             begin = perf_counter()
             archive = explore(sized, [Evaluator(sized, sheet) for sheet in sheets(sized)])
             times.append(perf_counter() - begin)
-        found.append((min(times), archive.values))
+        found.append((min(times), archive.values[archive.met]))
     return found
 
 
