@@ -121,14 +121,29 @@ def cycle(
     )
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")
+    return curves_of(mechanism, linkage, angles, speeds, accelerations)
+
+
+def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
+    """Return the curves of one linkage, which need not turn fully but closes at all of the crank angles (n,)."""
+    out = np.empty((_COLUMNS, len(angles)))
+    watch, loads = Watch(0, 0.0, 1.0, False), load_structure(mechanism)
+    at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
+    _curves(_block(mechanism, linkage, loads), loads, watch, at, w, a, out, rubs(mechanism))
+    return Cycle(angles, *out)
+
+
+def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
+    """Return what the equations of motion use of one linkage; its dead centres are NaN where it has none."""
+    found: Design = design_at(_block(mechanism, linkage, load_structure(mechanism)), 0)
+    return found
+
+
+def _block(mechanism: Mechanism, linkage: Linkage, loads: Loads) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
-    out = np.empty((_COLUMNS, len(angles)))
-    watch = Watch(0, 0.0, 1.0, False)
-    loads = load_structure(mechanism)
-    block = derived(raw, loads)[0][0]
-    _curves(block, loads, watch, angles, speeds, accelerations, out, rubs(mechanism))
-    return Cycle(angles, *out)
+    block: Table = derived(raw, loads)[0][0]
+    return block
 
 
 @kernel

@@ -210,7 +210,7 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
         q = DESIGN + 2 * k
         for j in range(raw.shape[1]):
             if datum[k] == 0:
-                sign, origin = 1.0, 0.0 * out[21, j]
+                sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not of a dead centre, which a swing need not have
             elif datum[k] == 1:
                 sign, origin = 1.0, 1.0 * out[21, j]
             else:

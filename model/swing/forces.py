@@ -1,0 +1,243 @@
+"""Curves of one linkage over a swing: motion, forces, and what the driver has to bring.
+
+Where the crank is driven, torque and forces are those of `dynamics`. Where the slider is, its driver brings a force P
+along the slider line and the crank's torque is zero:
+
+- rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B s_B |B| = 0;
+- crank, moments about the pivot: couple + r (cos(theta) A_y - sin(theta) A_x) + rho_A s_A |A| + rho_O s_O |P_O| = 0;
+- slider: P = pull + mu |N| sgn(x' w) - B_x, N = -(B_y + m_s G_y);
+
+with `balance` and the names of `dynamics.torque`, and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
+friction the first two are linear in B, their determinant is r l sin(theta - phi): zero at a dead point. Friction in
+the pins makes them nonlinear; Newton's iteration starts from the frictionless force. Where the determinant changes
+sign on the way, friction locks the linkage, and the force is NaN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..cycle.cycle import curves_of, design_of
+from ..dynamics.torque import Balance, balance
+from ..kinematics.position import Motion, motion
+from ..linkage.linkage import Linkage
+from ..machine.design import Design
+from ..machine.mechanism import Mechanism
+from ..signals.position_error import influences
+from .law import way as way_of
+from .swing import Array, Swing
+
+_STILL = 1e-200
+"""A crank speed, rad/s, that says which way the crank turns and has no inertia."""
+_ITERATIONS = 50
+_SETTLED = 1e-14
+
+
+@dataclass(frozen=True)
+class SwingCurves:
+    """Curves over one way of a swing, each (n,), SI and radians; forces as components along x and y.
+
+    share: of the time of one way. crank_angle runs on beyond a turn where the swing does. drive: torque on the crank,
+    N m, counter-clockwise, or force on the slider along +x, N. power: of the drive, W, 0 where the swing is slow.
+    rate: derivative of the driver's place by `share`, rad or m. transmission_angle: of the driven side, between the rod
+    and the normal of the slider line where the crank drives, between rod and crank where the slider does.
+    position_error: worst case of the driven side, m at the slider or rad at the crank. rod_rate: phi'. The other fields
+    are as in `Cycle`; load is without the drive.
+    """
+
+    share: Array
+    crank_angle: Array
+    crank_speed: Array
+    crank_acceleration: Array
+    slider_position: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    load: Array
+    drive: Array
+    power: Array
+    rate: Array
+    transmission_angle: Array
+    position_error: Array
+    rod_rate: Array
+    pivot_x: Array
+    pivot_y: Array
+    crank_pin_x: Array
+    crank_pin_y: Array
+    slider_pin_x: Array
+    slider_pin_y: Array
+    guide: Array
+
+
+def swing_curves(
+    mechanism: Mechanism, linkage: Linkage, swing: Swing, share: Array, *, back: bool = False
+) -> SwingCurves:
+    """Return the curves of a linkage that `require_swing` has let pass, at shares (n,) of the time of one way."""
+    share = np.atleast_1d(np.asarray(share, dtype=np.float64))
+    s, s_1, s_2 = way_of(swing.law, share)
+    s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
+    first, last = driver_ends(linkage, swing)
+    # Exact at the ends, where rounding might lie beyond a dead point or the reach of the rod.
+    place = np.where(s == 1.0, last, first + (last - first) * s)
+    rate = (last - first) * s_1
+    time = swing.duration or np.inf
+    velocity, acceleration = rate / time, (last - first) * s_2 / time**2
+    if swing.driver == "crank":
+        theta, speed, rise = place, velocity, acceleration
+        m = _motion(linkage, theta)
+    else:
+        theta = angles_at(linkage, swing, place)
+        m = _motion(linkage, theta)
+        speed = velocity / m.x_1
+        rise = (acceleration - m.x_2 * speed**2) / m.x_1
+    turning = swing.way * (-1.0 if back else 1.0)
+    slowly = np.where(speed == 0.0, turning * _STILL, speed)
+    found = curves_of(mechanism, linkage, theta, slowly, rise)
+    block = design_of(mechanism, linkage)
+    d = block._replace(speed=slowly, acceleration=rise)
+    if swing.driver == "crank":
+        drive, power, angle, error = found.torque, found.torque * speed, found.transmission_angle, found.position_error
+        joints = {name: getattr(found, name) for name in _JOINTS}
+    else:
+        drive, joints = _pushed(theta, m, d, found.load)
+        power = drive * m.x_1 * speed
+        angle = np.arcsin(np.clip(np.abs(_bend(theta, m)) / linkage.rod, 0.0, 1.0))
+        error = _crank_error(theta, m, d, swing.actuator_tolerance)
+    return SwingCurves(
+        share=share,
+        crank_angle=theta,
+        crank_speed=speed,
+        crank_acceleration=rise,
+        slider_position=m.x,
+        slider_velocity=m.x_1 * speed,
+        slider_acceleration=m.x_2 * speed**2 + m.x_1 * rise,
+        load=found.load,
+        drive=drive,
+        power=power,
+        rate=rate,
+        transmission_angle=angle,
+        position_error=error,
+        rod_rate=m.rod_1,
+        **joints,
+    )
+
+
+_JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
+
+
+def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
+    """Return where the driver is at start and end: crank angle, rad, or slider position, m."""
+    if swing.driver == "crank":
+        return swing.start, swing.end
+    x = _motion(linkage, np.array([swing.start, swing.end])).x
+    return float(x[0]), float(x[1])
+
+
+def _motion(linkage: Linkage, theta: Array) -> Motion:
+    found: Motion = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    return found
+
+
+def _bend(theta: Array, m: Motion) -> Array:
+    """Return l sin(theta - phi), m."""
+    return np.asarray(np.sin(theta) * m.along - np.cos(theta) * m.across)
+
+
+def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
+    """Return the crank angles (n,) of a swing without dead point that put the slider at x (n,).
+
+    theta = atan2(e, x) -+ acos((r^2 + d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2, then one step of Newton's iteration, as
+    acos is rough near its ends.
+    """
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    d = np.hypot(x, e)
+    half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
+    # sin(theta - phi) tells the two solutions apart: it has one sign between dead points, that of the swing's middle.
+    middle = np.array([0.5 * (swing.start + swing.end)])
+    bend = float(_bend(middle, _motion(linkage, middle))[0])
+    theta = np.arctan2(e, x) + (half if bend > 0.0 else -half)
+    low, high = sorted((swing.start, swing.end))
+    theta = theta + 2.0 * np.pi * np.round((0.5 * (low + high) - theta) / (2.0 * np.pi))
+    for _ in range(2):
+        m = _motion(linkage, theta)
+        theta = np.clip(theta - (m.x - x) / m.x_1, low, high)
+    return np.asarray(theta)
+
+
+def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dict[str, Array]]:
+    """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    b: Balance = balance(sine, cosine, m, d, load)
+    turn = np.sign(d.speed)
+    a_side = d.crank_pin_circle * np.sign((1.0 - m.rod_1) * d.speed)
+    b_side = d.slider_pin_circle * np.sign(m.rod_1 * d.speed)
+    o_side = d.crank_pivot_circle * turn
+
+    def residuals(bx: Array, by: Array) -> tuple[Array, Array, tuple[Array, Array, Array, Array]]:
+        ax, ay = bx + b.rod_x, by + b.rod_y
+        px, py = ax + b.crank_x, ay + b.crank_y
+        size_a, size_b, size_p = np.hypot(ax, ay), np.hypot(bx, by), np.hypot(px, py)
+        rod = m.along * by - m.across * bx + b.moment - a_side * size_a + b_side * size_b
+        crank = b.couple + d.r * (cosine * ay - sine * ax) + a_side * size_a + o_side * size_p
+        to_a, to_b, to_p = (_direction(*pair) for pair in ((ax, ay), (bx, by), (px, py)))
+        slopes = (
+            -m.across - a_side * to_a[0] + b_side * to_b[0],
+            m.along - a_side * to_a[1] + b_side * to_b[1],
+            -d.r * sine + a_side * to_a[0] + o_side * to_p[0],
+            d.r * cosine + a_side * to_a[1] + o_side * to_p[1],
+        )
+        return rod, crank, slopes
+
+    straight = d.r * _bend(theta, m)
+    rod_0 = b.moment
+    crank_0 = b.couple + d.r * (cosine * b.rod_y - sine * b.rod_x)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bx = (m.along * crank_0 - d.r * cosine * rod_0) / straight
+        by = (m.across * crank_0 - d.r * sine * rod_0) / straight
+        if np.any(a_side) or np.any(b_side) or np.any(o_side):
+            bx, by = _with_pins(bx, by, straight, residuals)
+    guide = -by - d.slider_mass * d.gravity_y
+    slide = np.sign(m.x_1 * d.speed)
+    drive = b.pull + d.guide_friction * np.abs(guide) * slide - bx
+    ax, ay = bx + b.rod_x, by + b.rod_y
+    joints = (ax + b.crank_x, ay + b.crank_y, ax, ay, bx, by, guide)
+    shape = theta.shape
+    return np.asarray(drive), {
+        name: np.array(np.broadcast_to(value, shape)) for name, value in zip(_JOINTS, joints, strict=True)
+    }
+
+
+def _with_pins(bx: Array, by: Array, straight: Array, residuals: Any) -> tuple[Array, Array]:
+    """Return B with friction in the pins, from that without; NaN where there is none on the same side of locking."""
+    locked = np.zeros(bx.shape, dtype=bool)
+    settled = np.zeros(bx.shape, dtype=bool)
+    for _ in range(_ITERATIONS):
+        rod, crank, (rx, ry, cx, cy) = residuals(bx, by)
+        det = rx * cy - ry * cx  # `straight` without friction
+        locked |= det * straight <= 0.0
+        step_x = (-ry * crank + cy * rod) / det
+        step_y = (-cx * rod + rx * crank) / det
+        bx, by = bx - step_x, by - step_y
+        size = np.hypot(step_x, step_y)
+        settled = size <= _SETTLED * (np.hypot(bx, by) + 1e-300)
+        if np.all(settled | locked):
+            break
+    # At a limit of rounding the steps stay at some units of the last place.
+    near = size <= 1e-9 * (np.hypot(bx, by) + 1e-300)
+    lost = locked | ~near
+    return np.where(lost, np.nan, bx), np.where(lost, np.nan, by)
+
+
+def _direction(x: Array, y: Array) -> tuple[Array, Array]:
+    size = np.hypot(x, y)
+    some = np.where(size > 0.0, size, 1.0)
+    return x / some, y / some
+
+
+def _crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:
+    """Return the worst case of the crank angle, rad, where the slider is held: (sum of |dx/di| T_i + T_x) / |x'|."""
+    i = influences(np.sin(theta), np.cos(theta), m, d.l)
+    off = np.abs(i.crank) * d.crank_error + np.abs(i.rod) * d.rod_error + np.abs(i.offset) * d.offset_error
+    return np.asarray((off + actuator) / np.abs(m.x_1))

@@ -1,0 +1,157 @@
+"""A limited swing of the crank, driven at the crank or at the slider.
+
+The linkage need not turn through: it only has to close over the whole swing, l > |e - r sin(theta)|. Where the slider
+drives, it must not pass a dead point either, sin(theta - phi) = 0, at which no force on the slider turns the crank.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import require_numbers
+from ..errors import AssemblyError, InputError
+from ..kinematics.position import motion
+from ..linkage.linkage import Linkage
+from ..machine.loads.load import require_word
+from ..machine.mechanism import Mechanism
+from .law import Law
+
+Array = NDArray[np.float64]
+Driver = Literal["crank", "slider"]
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swing:
+    """A swing forth from one crank angle to another, rad, and back.
+
+    The crank turns from start towards end: clockwise where end is less. driver: what moves the linkage, a torque on the
+    crank or a force on the slider along its line. law: of the driver's motion over time, each way. duration: of one
+    way, s; none where it is slow. actuator_tolerance: how far the slider may be off where it drives, m.
+    """
+
+    start: float
+    end: float
+    driver: Driver = "crank"
+    law: Law = "slow"
+    duration: float | None = None
+    actuator_tolerance: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "start", "end", what="the {} of a swing", unit="rad")
+        require_numbers(self, "duration", what="the duration of a swing", above=0.0, unit="s")
+        require_numbers(self, "actuator_tolerance", what="the tolerance of the actuator", least=0.0, unit="m")
+        require_word("driver", self.driver, Driver)
+        require_word("law", self.law, Law)
+        angle = abs(self.end - self.start)
+        if not 0.0 < angle < _TURN:
+            raise InputError(
+                "a swing needs two crank angles less than a turn apart; "
+                f"got {math.degrees(self.start):.6g} and {math.degrees(self.end):.6g} deg; "
+                "a crank that turns through is what all other analyses are of"
+            )
+        if (self.law == "slow") != (self.duration is None):
+            raise InputError(
+                "a swing that is not slow needs its duration, and a slow one has none; "
+                f"got the law {self.law} and {'no duration' if self.duration is None else f'{self.duration:g} s'}; "
+                "give both a law and a duration, or neither"
+            )
+
+    @property
+    def way(self) -> float:
+        """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
+        return math.copysign(1.0, self.end - self.start)
+
+    def inside(self, angle: float) -> list[float]:
+        """Return the crank angles of the swing that equal an angle but for whole turns."""
+        low, high = sorted((self.start, self.end))
+        first = angle + _TURN * math.ceil((low - angle) / _TURN)
+        return [first] if first <= high else []
+
+
+def dead_points(linkage: Linkage) -> tuple[float, ...]:
+    """Return the crank angles of one linkage at which crank and rod are in line, rad.
+
+    Stretched: (r + l) sin(theta) = e; folded: (r - l) sin(theta) = e; each on the branch that it is on.
+    """
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    found = []
+    for reach, ahead in ((r + l, True), (r - l, False)):
+        if abs(e) < abs(reach):
+            angle = math.asin(e / reach)
+            found.append(angle if ahead == (linkage.branch == "open") else math.pi - angle)
+    return tuple(found)
+
+
+def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
+    """Return one linkage that can swing as asked, its dimensions as floats.
+
+    Raises `InputError` for arrays, another branch than the mechanism's, a dead point where the slider drives, and loads
+    counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
+    """
+    turns = linkage.rotates_fully
+    if np.ndim(turns):
+        raise InputError(f"one linkage at a time; got an array of shape {np.shape(turns)}; loop over it")
+    if linkage.branch != mechanism.branch:
+        raise InputError(
+            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {mechanism.branch}; "
+            "set branch in both"
+        )
+    own = Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
+    _require_closing(own, swing)
+    passed = sorted(angle for dead in dead_points(own) for angle in swing.inside(dead))
+    if swing.driver == "slider" and passed:
+        raise InputError(
+            "a slider drives the crank only between dead points, where crank and rod are in line; "
+            f"the swing from {_degrees(swing.start)} to {_degrees(swing.end)} has one at {_degrees(passed[0])}; "
+            "stay on one side of it, change the dimensions, or drive the crank"
+        )
+    for load in mechanism.loads:
+        datum = getattr(load, "datum", "crank pivot")
+        if datum != "crank pivot" and not bool(turns):
+            raise InputError(
+                f"a load is measured from the {datum}, which this linkage does not reach in a full turn; "
+                "measure it from the crank pivot"
+            )
+    if mechanism.friction.crank_pin.radius * mechanism.friction.crank_pin.coefficient and swing.driver == "crank":
+        _require_one_sense(own, swing)
+    return own
+
+
+def extreme_angles(swing: Swing) -> list[float]:
+    """Return the ends of a swing, and the crank angles within at which the crank is normal to the slider line."""
+    return [swing.start, swing.end, *swing.inside(0.5 * math.pi), *swing.inside(1.5 * math.pi)]
+
+
+def _require_closing(linkage: Linkage, swing: Swing) -> None:
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    worst = max(extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
+    reach = abs(e - r * math.sin(worst))
+    if reach >= l:
+        raise AssemblyError(
+            "the linkage must close over the whole swing: rod > |offset - crank sin(crank angle)|; "
+            f"got a rod of {1e3 * l:.6g} mm and {1e3 * reach:.6g} mm at {_degrees(worst)}; "
+            "lengthen the rod, change the offset, or swing less far"
+        )
+
+
+def _require_one_sense(linkage: Linkage, swing: Swing) -> None:
+    """Refuse a swing in which the rod turns faster than the crank: friction in the crank pin would change sides."""
+    theta = np.linspace(swing.start, swing.end, 2001)
+    m = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    fast = m.rod_1 >= 1.0
+    if fast.any():
+        raise InputError(
+            "friction in the crank pin of a driven crank is computed where the rod turns less than the crank; "
+            f"got {float(m.rod_1[fast][0]):.4g} times as fast at {_degrees(float(theta[fast][0]))}; "
+            "lengthen the rod, swing less far, or leave that friction out"
+        )
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.6g} deg"

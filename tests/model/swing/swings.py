@@ -1,0 +1,55 @@
+"""Random linkages that swing, many of which do not turn through, with a random machine each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.swing.law import Law
+from slidercrank.model.swing.swing import Driver, Swing
+from tests.model.cases import random_friction, random_machine
+
+Case = tuple[Mechanism, Linkage, Swing]
+
+
+def random_swings(
+    count: int, *, seed: int, driver: Driver | None = None, friction: bool = False, least: float = 0.35
+) -> list[Case]:
+    """Return linkages whose crank swings, the driven side's transmission angle at least `least` rad throughout."""
+    random, found = np.random.default_rng(seed), list[Case]()
+    while len(found) < count:
+        r, l = random.uniform(0.05, 0.3, 2)
+        e = random.uniform(-1.0, 1.0) * (r + l)
+        start = random.uniform(-4.0, 4.0)
+        end = start + float(random.choice([-1.0, 1.0])) * random.uniform(0.2, 2.5)
+        drives: Driver = driver or ("crank" if random.random() < 0.5 else "slider")
+        machine = random_machine(random)
+        rubs = random_friction(random)
+        law: Law = get_args(Law)[random.integers(len(get_args(Law)))]
+        duration = None if law == "slow" else random.uniform(0.3, 2.0)
+        theta = np.linspace(start, end, 400)
+        across = e - r * np.sin(theta)
+        if np.abs(across).max() >= 0.94 * l:
+            continue
+        sign = 1.0 if machine.branch == "open" else -1.0
+        phi = np.arctan2(across, sign * np.sqrt(l * l - across**2))
+        bend = np.sin(theta - phi)
+        rod_rate = -r * np.cos(theta) / (l * np.cos(phi))
+        if drives == "slider" and (np.abs(bend).min() < math.sin(least) or np.ptp(np.sign(bend))):
+            continue
+        if drives == "crank" and np.abs(across).max() > l * math.cos(least):
+            continue
+        if friction and drives == "crank" and rod_rate.max() >= 0.98:
+            continue
+        linkage = Linkage(r, l, e, machine.branch)
+        if not bool(linkage.rotates_fully):
+            kept = [load for load in machine.loads if getattr(load, "datum", "crank pivot") == "crank pivot"]
+            machine = replace(machine, loads=tuple(kept))
+        machine = replace(machine, friction=rubs) if friction else machine
+        found.append((machine, linkage, Swing(start=start, end=end, driver=drives, law=law, duration=duration)))
+    return found
