@@ -36,7 +36,19 @@ _MORE_MEMORY = (
 
 
 _COMMANDS = (
-    *("optimise", "analyse", "inverse", "sweep", "allocate", "balance", "sections", "certify", "compare", "like"),
+    *(
+        "optimise",
+        "analyse",
+        "inverse",
+        "swing",
+        "sweep",
+        "allocate",
+        "balance",
+        "sections",
+        "certify",
+        "compare",
+        "like",
+    ),
     *("check", "schema", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
 )

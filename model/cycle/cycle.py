@@ -134,7 +134,7 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
 
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
-    """Return what the equations of motion use of one linkage; its dead centres are NaN where it has none."""
+    """Return the numbers of one linkage for the equations of motion; dead centres that it lacks are NaN."""
     found: Design = design_at(_block(mechanism, linkage, load_structure(mechanism)), 0)
     return found
 

@@ -42,10 +42,10 @@ class SwingCurves:
 
     share: of the time of one way. crank_angle runs on beyond a turn where the swing does. drive: torque on the crank,
     N m, counter-clockwise, or force on the slider along +x, N. power: of the drive, W, 0 where the swing is slow.
-    rate: derivative of the driver's place by `share`, rad or m. transmission_angle: of the driven side, between the rod
-    and the normal of the slider line where the crank drives, between rod and crank where the slider does.
-    position_error: worst case of the driven side, m at the slider or rad at the crank. rod_rate: phi'. The other fields
-    are as in `Cycle`; load is without the drive.
+    rate: derivative of the driver's place by `share`, rad or m. driven_angle: transmission angle of the driven side,
+    between the rod and the normal of the slider line where the crank drives, between rod and crank where the slider
+    does. driven_error: worst case of the driven side's position, m at the slider or rad at the crank. rod_rate: phi'.
+    The other fields are as in `Cycle`; load is without the drive.
     """
 
     share: Array
@@ -59,8 +59,8 @@ class SwingCurves:
     drive: Array
     power: Array
     rate: Array
-    transmission_angle: Array
-    position_error: Array
+    driven_angle: Array
+    driven_error: Array
     rod_rate: Array
     pivot_x: Array
     pivot_y: Array
@@ -117,8 +117,8 @@ def swing_curves(
         drive=drive,
         power=power,
         rate=rate,
-        transmission_angle=angle,
-        position_error=error,
+        driven_angle=angle,
+        driven_error=error,
         rod_rate=m.rod_1,
         **joints,
     )
@@ -210,7 +210,7 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
 
 
 def _with_pins(bx: Array, by: Array, straight: Array, residuals: Any) -> tuple[Array, Array]:
-    """Return B with friction in the pins, from that without; NaN where there is none on the same side of locking."""
+    """Return B with friction in the pins, from that without; NaN where friction locks the linkage."""
     locked = np.zeros(bx.shape, dtype=bool)
     settled = np.zeros(bx.shape, dtype=bool)
     for _ in range(_ITERATIONS):
@@ -237,7 +237,7 @@ def _direction(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:
-    """Return the worst case of the crank angle, rad, where the slider is held: (sum of |dx/di| T_i + T_x) / |x'|."""
+    """Return the worst case of the crank angle, rad: (sum of |dx/di| T_i + T_x) / |x'|."""
     i = influences(np.sin(theta), np.cos(theta), m, d.l)
     off = np.abs(i.crank) * d.crank_error + np.abs(i.rod) * d.rod_error + np.abs(i.offset) * d.offset_error
     return np.asarray((off + actuator) / np.abs(m.x_1))

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from numpy.typing import NDArray
 
+from .words import Law
+
 Array = NDArray[np.float64]
-Law = Literal["slow", "constant", "trapezoid", "harmonic", "cycloidal", "polynomial"]
-"""slow: without inertia, at constant speed. constant: with a jump of the speed at both ends, of which the forces are
-left out. trapezoid: of the speed, ramps of a third of the time each. harmonic: a cosine. cycloidal: a sine added to a
-constant speed. polynomial: 3-4-5."""
 
 _TURN = 2.0 * np.pi
 _RAMP = 1.0 / 3.0

@@ -1,4 +1,4 @@
-"""A swing in numbers: what the driver has to bring, hold and spend, and how far the driven side may be off."""
+"""A swing in numbers: drive, holding forces, energies, transmission and error of the driven side."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .swing import Array, Swing, dead_points, require_swing
 
 _SAMPLES = 721
 _ZOOMS, _ZOOMED = 7, 41
+_EQUAL = 1e-12
 _PANELS = 6
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _SIDES = 400
@@ -26,7 +27,7 @@ _BISECTIONS = 55
 
 @dataclass(frozen=True)
 class At:
-    """A value of a swing, SI, and where it is: which way, share of the time, crank angle, rad, slider position, m."""
+    """A value of a swing and its place: way, share of the time, crank angle, slider position; SI."""
 
     value: float
     back: bool
@@ -79,7 +80,7 @@ class SwingSummary:
 
 
 def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSummary:
-    """Return what a swing takes. Peaks are of the continuous crank angle, energies integrals between kinks.
+    """Return the numbers of a swing. Peaks are of the continuous crank angle, energies integrals between kinks.
 
     Raises what `require_swing` raises.
     """
@@ -108,8 +109,8 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
         stored=stored,
         efficiency=_efficiency(stored, spent, returned),
         peak_power=over.greatest("power") if moves else None,
-        least_transmission=over.least("transmission_angle"),
-        position_error=over.greatest("position_error") if tolerances else None,
+        least_transmission=over.least("driven_angle"),
+        position_error=over.greatest("driven_error") if tolerances else None,
         locked=locked,
     )
 
@@ -135,8 +136,9 @@ class _Over:
 
     def greatest(self, name: str) -> At:
         """Return the greatest size of a curve on both ways."""
-        found = [self._extreme(name, back, np.abs) for back in (False, True)]
-        return max(found, key=lambda at: -np.inf if np.isnan(at.value) else abs(at.value))
+        forth, back = (self._extreme(name, way, np.abs) for way in (False, True))
+        # The same on both ways but for rounding, as without friction: the first.
+        return back if abs(back.value) > abs(forth.value) * (1.0 + _EQUAL) or np.isnan(forth.value) else forth
 
     def least(self, name: str) -> At:
         """Return the least value of a curve, the same on both ways."""

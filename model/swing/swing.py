@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +18,9 @@ from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .law import Law
+from .words import Driver, Law
 
 Array = NDArray[np.float64]
-Driver = Literal["crank", "slider"]
 _TURN = 2.0 * math.pi
 
 
@@ -124,7 +122,7 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
 
 
 def extreme_angles(swing: Swing) -> list[float]:
-    """Return the ends of a swing, and the crank angles within at which the crank is normal to the slider line."""
+    """Return the ends of a swing, and its crank angles normal to the slider line."""
     return [swing.start, swing.end, *swing.inside(0.5 * math.pi), *swing.inside(1.5 * math.pi)]
 
 

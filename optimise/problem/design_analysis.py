@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import unit_text
-from ...objectives.quantity import Quantity
+from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 
@@ -123,6 +123,20 @@ class Analysis(Mapping[str, float]):
         )
 
 
+def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
+    """Return the machine of one design and the design's numbers (3 + k,); raise `InputError` for any other."""
+    width = 3 + len(mechanism.varying)
+    try:
+        sizes = np.asarray(design, dtype=np.float64)
+    except (TypeError, ValueError):
+        sizes = np.empty(0)
+    if sizes.shape != (width,) or not np.isfinite(sizes).all():
+        names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
+        raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")
+    machine = mechanism.at(sizes[3:].tolist())
+    return machine, sizes
+
+
 def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] = (), title: str = "") -> Analysis:
     """Return everything about one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
 
@@ -134,15 +148,7 @@ def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] 
     >>> round(analysis["peak_torque"], 6)
     1.05063
     """
-    width = 3 + len(mechanism.varying)
-    try:
-        sizes = np.asarray(design, dtype=np.float64)
-    except (TypeError, ValueError):
-        sizes = np.empty(0)
-    if sizes.shape != (width,) or not np.isfinite(sizes).all():
-        names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
-        raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")
-    machine = mechanism.at(sizes[3:].tolist())
+    machine, sizes = one_design(mechanism, design)
     linkage = single(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch))
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from numbers import Integral
-from typing import Literal, overload
+from typing import TYPE_CHECKING, Literal, overload
 
 from numpy.typing import ArrayLike
 
@@ -21,8 +21,12 @@ from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
 from .costs import Costs
-from .design_analysis import Analysis, analyse
+from .design_analysis import Analysis, analyse, one_design
 from .requirements import Constraint, Objective, Range, Word, merged
+
+if TYPE_CHECKING:
+    from ...model.swing.summary import SwingSummary
+    from ...model.swing.words import Driver, Law
 
 _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
 
@@ -197,6 +201,35 @@ class Problem:
         """
         self._require_chosen()
         return analyse(self.mechanism, design, own=self.own, title=self.name)
+
+    def swing(
+        self,
+        design: ArrayLike,
+        *,
+        start: float,
+        end: float,
+        driver: Driver = "crank",
+        law: Law = "slow",
+        duration: float | None = None,
+        actuator_tolerance: float = 0.0,
+    ) -> SwingSummary:
+        """Return the numbers of a swing of the crank between two angles, rad, for a design (3 + k,).
+
+        The design need not turn fully.
+
+        driver: "crank", by a torque, or "slider", by a force. law: of its motion, see `model.swing.words`; duration: of
+        one way, s, for all but "slow". actuator_tolerance: of the driven slider, m. Raises `AssemblyError` where the
+        linkage does not close, `InputError` for a dead point that the slider cannot pass, and as `analyse` does.
+        """
+        from ...model.swing.summary import summarise
+        from ...model.swing.swing import Swing
+
+        self._require_chosen()
+        asked = Swing(
+            start=start, end=end, driver=driver, law=law, duration=duration, actuator_tolerance=actuator_tolerance
+        )
+        machine, sizes = one_design(self.mechanism, design)
+        return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), asked)
 
     def _require_chosen(self) -> None:
         if self.variants:

@@ -69,7 +69,19 @@ def under_way(place: Path, process: subprocess.Popen[str]) -> Path:
 def test_help_names_every_command(command: Command) -> None:
     done = command("--help")
     assert done.exit_code == 0
-    for name in ("optimise", "analyse", "inverse", "check", "schema", "front", "export", "like", "compare", "cases"):
+    for name in (
+        "optimise",
+        "analyse",
+        "inverse",
+        "swing",
+        "check",
+        "schema",
+        "front",
+        "export",
+        "like",
+        "compare",
+        "cases",
+    ):
         assert f"  {name} " in done.stdout
         assert command(name, "--help").exit_code == 0
 

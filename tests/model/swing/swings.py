@@ -10,8 +10,8 @@ import numpy as np
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.swing.law import Law
-from slidercrank.model.swing.swing import Driver, Swing
+from slidercrank.model.swing.swing import Swing
+from slidercrank.model.swing.words import Driver, Law
 from tests.model.cases import random_friction, random_machine
 
 Case = tuple[Mechanism, Linkage, Swing]

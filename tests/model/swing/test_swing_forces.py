@@ -33,7 +33,7 @@ def moving(machine: Mechanism, curves: SwingCurves, i: int, way: float) -> Mecha
 
 @pytest.mark.parametrize("back", [False, True])
 def test_the_drive_does_the_virtual_work(back: bool) -> None:
-    """T = w^2 J'/2 + J alpha + V' - F x' at the crank; P = T / x' at the slider. 300 machines, each at six places."""
+    """On 300 machines, each at six places: T from energies, and P = T / x'."""
     seen = set()
     for machine, linkage, swing in random_swings(300, seed=5):
         own = require_swing(machine, linkage, swing)
@@ -55,7 +55,7 @@ def test_the_drive_does_the_virtual_work(back: bool) -> None:
 
 
 def balances(machine: Mechanism, linkage: Linkage, found: SwingCurves, i: int, way: float, driver: str) -> Array:
-    """Return what is left of forces and moments on crank, rod and slider, over the size of the forces."""
+    """Return the sums of forces and moments on crank, rod and slider, over the size of the forces."""
     at, theta = moving(machine, found, i, way), float(found.crank_angle[i])
     design = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])
     sign = 1.0 if machine.branch == "open" else -1.0
@@ -72,7 +72,7 @@ def balances(machine: Mechanism, linkage: Linkage, found: SwingCurves, i: int, w
     (cx, cy, cm), (wx, wy, wm), (rx, ry, rm), (sx, sy, _) = (parts[n] for n in ("crank", "weight", "rod", "slider"))
     motion = path(design, theta, sign)
     r, _, e = design
-    kx, ky, x = r * math.cos(theta), r * math.sin(theta), float(motion.x)
+    kx, ky, at_b = r * math.cos(theta), r * math.sin(theta), float(motion.x)
     px, py, ax, ay = (float(getattr(found, n)[i]) for n in ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y"))
     bx, by, guide = (float(getattr(found, n)[i]) for n in ("slider_pin_x", "slider_pin_y", "guide"))
     drive = float(found.drive[i])
@@ -92,7 +92,7 @@ def balances(machine: Mechanism, linkage: Linkage, found: SwingCurves, i: int, w
                 (torque - (kx * ay - ky * ax) + on_crank - on_rod_at_a - cm - wm) / r,
                 ax - bx - rx,
                 ay - by - ry,
-                ((kx * ay - ky * ax) - (x * by - e * bx) + on_rod_at_a + on_rod_at_b - rm) / r,
+                ((kx * ay - ky * ax) - (at_b * by - e * bx) + on_rod_at_a + on_rod_at_b - rm) / r,
                 bx + load + push + rub - sx,
                 by + guide - sy,
             ]
@@ -149,7 +149,7 @@ def test_the_ends_are_where_they_are_asked() -> None:
 
 
 def test_friction_locks_a_crank_whose_rod_passes_within_the_friction_circles() -> None:
-    """Near a dead point the rod's line passes the pivot at r sin(theta - phi), less than the circles of both pins."""
+    """The rod's line passes the pivot at r sin(theta - phi), near a dead point less than both circles."""
     pin = Pin(radius=0.02, coefficient=0.5)
     machine = Mechanism(
         crank=RigidLink(mass=1.0), gravity=(0.0, -9.81), friction=Friction(crank_pivot=pin, crank_pin=pin)
@@ -187,7 +187,7 @@ def test_position_error_of_the_column_is_that_of_the_dimensions_moved() -> None:
             total += abs(math.remainder(moved[0] - moved[1], 2.0 * math.pi)) / (2.0 * h) * limit
         at = path(np.array(sizes), theta, own.sign)
         total += 3e-4 / abs(float(at.x_1))
-        assert found.position_error[0] == pytest.approx(total, rel=1e-5)
+        assert found.driven_error[0] == pytest.approx(total, rel=1e-5)
 
 
 def test_outward_and_inward_are_told_by_the_way() -> None:

@@ -89,7 +89,7 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
         peak = found.peak_drive
         assert drive.max() * (1.0 - 1e-12) <= abs(peak.value) <= drive.max() * (1.0 + 1e-3)
         assert swing_curves(machine, own, swing, np.array([peak.share]), back=peak.back).drive[0] == peak.value
-        angle = min(float(way.transmission_angle.min()) for way in ways)
+        angle = min(float(way.driven_angle.min()) for way in ways)
         assert found.least_transmission.value == pytest.approx(angle, abs=1e-7)
         if found.peak_power is not None:
             power = max(float(np.abs(way.power).max()) for way in ways)

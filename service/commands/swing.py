@@ -1,0 +1,104 @@
+"""`slidercrank swing`: a crank that swings between two angles, and what drives it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ...model.errors import InputError
+from ...model.swing.words import Driver, Law
+from ...objectives.kinds import ANGLE, LENGTH, TIME
+from ..designs.shown_units import record_in, rows_in
+from ..runs.result import csv_text, json_text
+from ..runs.run_folder import disk, write_file
+from ..text.options import DesignOfRun, Dimensions, File, Json, Length, Runs, Units, drawable, value_option
+from ..text.screen import console, give, say, waiting
+from .job_or_run import design_of_run, problem_of_job
+
+if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+
+
+def swing(
+    start: Annotated[
+        str, typer.Option("--from", metavar="ANGLE"), 'Crank angle at which the way forth starts, such as "11 deg".'
+    ],
+    end: Annotated[str, typer.Option("--to", metavar="ANGLE"), "Crank angle at which it ends; less is clockwise."],
+    job: Annotated[
+        Path | None,
+        typer.Argument(metavar="JOB"),
+        "A job file: what masses, loads, friction and tolerances come from. A run with --design.",
+    ] = None,
+    *,
+    size: Dimensions,
+    driver: Annotated[Driver, "What is driven: the crank by a torque, or the slider by a force."] = "crank",
+    law: Annotated[Law, "How the driver moves over time; slow is without inertia."] = "slow",
+    duration: Annotated[
+        str | None, typer.Option(metavar="TIME"), 'Time of one way, such as "4 s": for a law other than slow.'
+    ] = None,
+    actuator_tolerance: Annotated[Length, "How far the driven slider may be off: adds to the crank's error."] = None,
+    design: DesignOfRun = None,
+    curves: Annotated[File, "Write the curves of both ways as CSV."] = None,
+    figure: Annotated[File, "Draw the curves, into a PNG."] = None,
+    runs: Runs = None,
+    units: Units = "metric",
+    json: Json = False,
+) -> None:
+    """Analyse a swing of the crank between two angles, forth and back.
+
+    The linkage need not turn through: it must close over the whole swing, and may not pass a dead point where the
+    slider drives. Drive forces and torques are along +x and counter-clockwise; peaks are of the continuous crank
+    angle. Without JOB nothing has mass. Loads that act on the slider are those of JOB; its speed does not matter.
+    """
+    from ...model.swing.summary import summarise
+    from ...model.swing.swing import Swing
+    from ..swing.record import swing_record, swing_rows
+    from ..swing.text import show_swing
+
+    drawable(figure)
+    if "-" in (str(curves), str(figure)):
+        raise InputError("--curves and --figure write files; got -; name one")
+    mechanism, linkage = _machine(job, size, design, runs)
+    asked = Swing(
+        start=value_option("--from", start, ANGLE),
+        end=value_option("--to", end, ANGLE),
+        driver=driver,
+        law=law,
+        duration=None if duration is None else value_option("--duration", duration, TIME, sign="positive"),
+        actuator_tolerance=0.0
+        if actuator_tolerance is None
+        else value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
+    )
+    record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
+    if json:
+        give(json_text(record))
+    else:
+        show_swing(console(), record)
+    if curves is not None:
+        write_file(curves, csv_text(rows_in(swing_rows(mechanism, linkage, asked), units)))
+        say(f"{curves}: the curves of both ways")
+    if figure is not None:
+        from ..figures.panels import save_sheet
+        from ..swing.figure import swing_sheet
+
+        with disk(figure.parent), waiting("drawing the figure"):
+            figure.parent.mkdir(parents=True, exist_ok=True)
+            save_sheet(swing_sheet(mechanism, linkage, asked), figure)
+        say(f"figure: {figure}")
+
+
+def _machine(job: Path | None, size: Dimensions, design: int | None, runs: Path | None) -> tuple[Mechanism, Linkage]:
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+
+    if design is not None:
+        stored = design_of_run("swing", job, design, runs, vars(size))
+        return stored.mechanism, stored.linkage
+    problem = problem_of_job(job)
+    if problem is not None:
+        return problem.mechanism.nominal, size.linkage(problem)
+    crank, rod, offset = size.lengths(None)
+    return Mechanism(), Linkage(crank, rod, offset)

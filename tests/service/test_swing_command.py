@@ -1,0 +1,148 @@
+"""`slidercrank swing`: numbers of Python in JSON, curves, figure, units, messages."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.optimise.job import load_job
+from tests.model.swing.swings import random_swings
+from tests.service.conftest import Command
+
+SUPPORT = Path("runs/support.toml")
+SIZES = ("--crank", "1.4 m", "--rod", "1.8 m", "--offset", "-50 mm")
+OVER = ("--from", "11.16 deg", "--to", "101.16 deg")
+
+
+def numbers_of(command: Command, *arguments: object) -> dict[str, Any]:
+    done = command("swing", *arguments, "--json")
+    assert done.exit_code == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+@pytest.mark.parametrize("driver", ["crank", "slider"])
+def test_json_has_the_numbers_of_python(command: Command, driver: Any) -> None:
+    law = ("--law", "cycloidal", "--duration", "30 s", "--actuator-tolerance", "1 mm")
+    found = numbers_of(command, SUPPORT, *SIZES, *OVER, "--driver", driver, *law)
+    expected = load_job(SUPPORT).swing(
+        [1.4, 1.8, -0.05],
+        start=math.radians(11.16),
+        end=math.radians(101.16),
+        driver=driver,
+        law="cycloidal",
+        duration=30.0,
+        actuator_tolerance=1e-3,
+    )
+    unit, side, factor = ("Nm", "slider", 1e3) if driver == "crank" else ("N", "crank", 180.0 / math.pi)
+    error = f"{side}_position_error_{'mm' if driver == 'crank' else 'deg'}"
+    assert expected.position_error is not None
+    assert expected.peak_power is not None
+    for key, value in {
+        f"peak_drive_{unit}": expected.peak_drive.value,
+        f"drive_at_start_forth_{unit}": expected.drive_start[0],
+        f"drive_at_end_back_{unit}": expected.drive_end[1],
+        "energy_forth_J": expected.energy_forth,
+        "travel_mm": 1e3 * expected.travel,
+        "peak_power_W": expected.peak_power.value,
+        "least_transmission_angle_deg": math.degrees(expected.least_transmission.value),
+        error: factor * expected.position_error.value,
+    }.items():
+        assert found[key] == pytest.approx(value, rel=1e-12), key
+    place = found[f"{side}_position_error_at_crank_angle_deg"]
+    assert place == pytest.approx(math.degrees(expected.position_error.crank_angle), abs=1e-5)  # flat at the top
+
+
+def test_random_linkages_that_need_not_turn_through(command: Command) -> None:
+    seen = set()
+    for _, linkage, swing in random_swings(30, seed=31):
+        sizes = [f"{float(getattr(linkage, name))!r} m" for name in ("crank", "rod", "offset")]
+        ends = [f"{math.degrees(angle)!r} deg" for angle in (swing.start, swing.end)]
+        if linkage.branch == "crossed":
+            continue
+        given = ("--crank", sizes[0], "--rod", sizes[1], "--offset", sizes[2], "--from", ends[0], "--to", ends[1])
+        found = numbers_of(command, *given, "--driver", swing.driver)
+        x = [1e3 * float(linkage.at(angle).slider_position) for angle in (swing.start, swing.end)]
+        assert [found["start_slider_position_mm"], found["end_slider_position_mm"]] == pytest.approx(x, rel=1e-9)
+        assert "nothing has mass" in found["notes"][0]
+        seen.add(bool(linkage.rotates_fully))
+    assert False in seen
+
+
+def test_curves_and_figure(command: Command, tmp_path: Path) -> None:
+    curves, figure = tmp_path / "curves.csv", tmp_path / "a" / "swing.png"
+    given = (SUPPORT, *SIZES, *OVER, "--driver", "slider", "--curves", curves, "--figure", figure)
+    done = command("swing", *given)
+    assert done.exit_code == 0, done.stderr
+    assert "peak drive" in done.stdout
+    with curves.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [rows[0]["way"], rows[-1]["way"]] == ["forth", "back"]
+    angles = [float(row["crank_angle_deg"]) for row in rows]
+    assert angles[0] == pytest.approx(11.16, abs=1e-9)
+    assert angles[180] == angles[181] == pytest.approx(101.16, abs=1e-9)
+    peak = max(abs(float(row["drive_N"])) for row in rows)
+    assert peak == pytest.approx(abs(numbers_of(command, *given[:-4])["peak_drive_N"]), rel=1e-6)
+    assert figure.read_bytes().startswith(b"\x89PNG")
+
+
+def test_inch_units_are_the_metric_ones_converted(command: Command) -> None:
+    given = (SUPPORT, *SIZES, *OVER, "--driver", "slider")
+    metric, inch = numbers_of(command, *given), numbers_of(command, *given, "--units", "inch")
+    assert inch["travel_in"] == pytest.approx(metric["travel_mm"] / 25.4, rel=1e-12)
+    assert inch["peak_drive_lbf"] == pytest.approx(metric["peak_drive_N"] / 4.4482216152605, rel=1e-12)
+    assert inch["peak_drive_at_crank_angle_deg"] == metric["peak_drive_at_crank_angle_deg"]
+
+
+def test_a_design_of_a_run_swings_with_its_own_machine(command: Command) -> None:
+    found = numbers_of(command, SUPPORT, *SIZES, *OVER)
+    assert found["driver"] == "crank"
+    assert found["peak_drive_Nm"] == pytest.approx(-46492.83, rel=1e-6)
+    refused = command("swing", SUPPORT, *SIZES, *OVER, "--design", "1")
+    assert refused.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (("--from", "11 deg", "--to", "11 deg"), "less than a turn apart"),
+        (("--from", "11", "--to", "50 deg"), "--from must be an angle with its unit"),
+        (("--from", "11 deg", "--to", "50 mm"), "--to must be an angle"),
+        (("--from", "-20 deg", "--to", "50 deg", "--driver", "slider"), "dead point"),
+        ((*OVER, "--driver", "motor"), "'motor' is not one of"),
+        ((*OVER, "--law", "harmonic"), "needs its duration"),
+        ((*OVER, "--duration", "3 s"), "a slow one has none"),
+        ((*OVER, "--law", "harmonic", "--duration", "0 s"), "--duration must be"),
+        ((*OVER, "--actuator-tolerance", "-1 mm"), "--actuator-tolerance must"),
+        ((*OVER, "--curves", "-"), "name one"),
+    ],
+)
+def test_wrong_input_is_a_sentence(command: Command, given: tuple[str, ...], words: str) -> None:
+    done = command("swing", SUPPORT, *SIZES, *given)
+    assert done.exit_code == 2
+    assert words in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
+
+
+def test_a_linkage_that_does_not_close_is_told_where(command: Command) -> None:
+    done = command("swing", "--crank", "100 mm", "--rod", "60 mm", "--from", "0 deg", "--to", "80 deg")
+    assert done.exit_code == 2
+    assert "got a rod of 60 mm and 98.4808 mm at 80 deg" in done.stderr
+
+
+def test_random_ends_never_end_in_a_traceback(command: Command) -> None:
+    random = np.random.default_rng(8)
+    for _ in range(40):
+        size = [f"{value:.4g} mm" for value in random.uniform([1.0, 1.0, -200.0], [200.0, 200.0, 200.0])]
+        ends = [f"{value:.4g} deg" for value in random.uniform(-800.0, 800.0, 2)]
+        given = ("--crank", size[0], "--rod", size[1], "--offset", size[2], "--from", ends[0], "--to", ends[1])
+        done = command("swing", *given, "--driver", random.choice(["crank", "slider"]), "--json")
+        assert done.exit_code in (0, 2)
+        if done.exit_code == 0:
+            json.loads(done.stdout)
