@@ -110,13 +110,17 @@ def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -
 
     The rod angle of the crossed branch, about pi, is given in [0, 2 pi), where it does not jump.
     """
+    every = every_curve(mechanism, linkage, crank_angle)
+    return [curve for curve in every if not undefined_because(curve.name, mechanism)]
+
+
+def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
+    """Return the curves of `defined_curves` and those that the machine does not define, which mean nothing."""
     every = {curve.name: curve for curve in cycle_curves(mechanism, linkage, crank_angle)}
     del every["crank_angle"]
     if linkage.branch == "crossed":
         rod = every["rod_angle"]
         every["rod_angle"] = replace(rod, values=np.mod(rod.values, _TURN))
-    if not mechanism.loads:
-        del every["load"]
     curves = []
     for curve in every.values():
         joint = curve.name.removesuffix("_x")
@@ -124,7 +128,14 @@ def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -
             size = np.hypot(curve.values, every[f"{joint}_y"].values)
             curves.append(Curve(joint, f"{joint.replace('_', ' ')} force", size, curve.si, curve.shown))
         curves.append(curve)
-    return [curve for curve in curves if all(need.met(mechanism) for need in _NEEDS.get(curve.name, ()))]
+    return curves
+
+
+def undefined_because(name: str, mechanism: Mechanism) -> str:
+    """Return the reason why a machine does not define a curve; empty where it does."""
+    if name == "load" and not mechanism.loads:
+        return 'it comes from loads; got none; add a [[load]], for example force = "200 N"'
+    return next((need.missing for need in _NEEDS.get(name, ()) if not need.met(mechanism)), "")
 
 
 def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
@@ -184,7 +195,7 @@ def _greatest(
             left += [bracket[0] for bracket in brackets]
             right += [bracket[1] for bracket in brackets]
     at = np.array(rows, dtype=np.intp)
-    tops, angles = _golden(lambda theta: sign * values(theta)[at, np.arange(len(at))], np.array(left), np.array(right))
+    tops, angles = golden(lambda theta: sign * values(theta)[at, np.arange(len(at))], np.array(left), np.array(right))
     for row in owner:
         inside = np.flatnonzero(at == row)
         best = inside[np.argmax(tops[inside])]
@@ -219,7 +230,7 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
     return [(low, high) for bound, low, high in found[:_CANDIDATES] if bound >= best]
 
 
-def _golden(function: Callable[[Array], Array], left: Array, right: Array) -> tuple[Array, Array]:
+def golden(function: Callable[[Array], Array], left: Array, right: Array) -> tuple[Array, Array]:
     """Return the greatest value of a function (n,) -> (n,) in each bracket, and where it is, by golden sections."""
     if not len(left):
         return left, right

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Default = TypeVar("Default")
+_DEVIATION = (
+    *("title", "unit", "samples", "rms", "mean", "largest", "largest_at_rad"),
+    *("best_shift_rad", "best_shift", "rms_left"),
+)
 _PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque")
 
 
@@ -91,6 +95,28 @@ class Analysis(Mapping[str, float]):
         transmission_angle_rad, torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
         """
         return cycle_table(self.mechanism, self.linkage, angles)
+
+    def deviations(self, measured: Mapping[str, ArrayLike] | pd.DataFrame) -> pd.DataFrame:
+        """Return how measured curves deviate from the computed ones, a row for each curve by its name, in SI.
+
+        measured: columns with their units in their names: crank_angle_deg, or time_s at constant speed, and curves of
+        `cycle` in any unit, such as slider_position_mm; NaN where nothing was measured. Columns: title, unit, samples,
+        rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift, which, added to
+        the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table without crank
+        angle or curve, units that do not fit and values that no machine has.
+        """
+        import pandas as pd
+
+        from ...objectives.tables.deviation import deviations
+        from ..questions.measured import measured_from
+
+        given = measured_from(measured, self.mechanism, self.linkage)
+        rows = {}
+        for found in deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
+            fit = (found.fit.crank_angle, found.fit.value, found.fit.rms) if found.fit else (np.nan,) * 3
+            numbers = (found.count, found.rms, found.mean, found.largest, found.crank_angle, *fit)
+            rows[found.name] = dict(zip(_DEVIATION, (found.title, found.si.symbol, *numbers), strict=True))
+        return pd.DataFrame.from_dict(rows, orient="index")
 
     def plot(self) -> Figure:
         """Return a matplotlib figure of position, velocity, acceleration and torque over the cycle."""

@@ -67,6 +67,11 @@ def analyse(
     fluctuation: Annotated[
         float | None, typer.Option(metavar="SHARE"), "Speed fluctuation that the flywheel is for.  [default: 0.02]"
     ] = None,
+    measured: Annotated[
+        File,
+        "A CSV file of measured curves to compare: a column crank_angle_deg or time_s, and others such as "
+        "slider_position_mm or torque_Nm.",
+    ] = None,
     figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None,
     cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None,
     runs: Runs = None,
@@ -106,6 +111,7 @@ def analyse(
             mechanism,
             linkage,
             topics,
+            more=() if measured is None else (_measured(measured, mechanism, linkage),),
             options=options,
             notes=notes,
             cancelled=interruption.asked,
@@ -132,6 +138,13 @@ def analyse(
         _draw(problem, mechanism, linkage, row, found.topics, figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
+
+
+def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesign:
+    from ..designs.measured_file import read_measured_file
+    from ..topics.measured import MEASURED
+
+    return MEASURED.of(mechanism, linkage, {"measured": read_measured_file(file, mechanism, linkage)})
 
 
 def _topic_options(

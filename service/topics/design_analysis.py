@@ -47,6 +47,7 @@ def analysis_of(
     linkage: Linkage,
     topics: Sequence[str],
     *,
+    more: Sequence[TopicOfDesign] = (),
     options: Mapping[str, dict[str, Any]] | None = None,
     notes: Sequence[str] = (),
     cancelled: Callable[[], bool],
@@ -54,10 +55,12 @@ def analysis_of(
 ) -> Analysis:
     """Return the analysis of one design.
 
-    row: of `numbers_of`. topics: of `chosen_topics`, each with its options. cancelled: asked now and then; when it says
-    so, the topics left are left out. lenient: a topic that this design does not have is a note, not an error.
+    row: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these. cancelled: asked
+    now and then; when it says so, the topics left are left out. lenient: a topic that this design does not have is a
+    note, not an error.
     """
     design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
+    design += tuple(more)
     found: dict[str, dict[str, Any]] = {}
     said = list(notes)
     for topic in design:

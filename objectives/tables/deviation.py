@@ -1,0 +1,142 @@
+"""Deviation of measured curves from the computed ones of one design, and the shifts that fit them best.
+
+The shift of the crank angle and the constant shift minimise the sum of squares of what is left. The constant is closed:
+minus the mean. The angle is sought on a grid over the whole turn, then by golden sections around the lowest points.
+Many samples are averaged beforehand in groups of neighbouring crank angles, for the search alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ..kinds import Face
+from ..quantity import Array
+from .curve_extremes import defined_curves, golden
+
+_TURN = 2.0 * math.pi
+_SHIFTS = 720  # of the grid
+_NODES = 1440  # of the computed curve that the grid interpolates
+_GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
+_CANDIDATES = 3
+_FEWEST = 3  # crank angles: one more than there are shifts
+_CONSTANT = 1e-12  # of the greatest size
+_EQUAL = 1e-9  # relative: of equally good shifts the lesser one is told
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Shifts that bring measured samples closest to the computed curve, by least squares; SI.
+
+    crank_angle: added to the measured crank angles, rad in (-pi, pi]. value: added to the measured values. rms: root
+    mean square of the deviation that is left.
+    """
+
+    crank_angle: float
+    value: float
+    rms: float
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
+
+    count: samples. rms: root mean square. largest: the one of the greatest size, with its sign; crank_angle: there,
+    rad in [0, 2 pi). fit: None for samples at less than three crank angles and for a curve that is constant.
+    """
+
+    name: str
+    title: str
+    si: Face
+    shown: Face
+    count: int
+    rms: float
+    mean: float
+    largest: float
+    crank_angle: float
+    fit: Fit | None
+
+
+def deviations(
+    mechanism: Mechanism, linkage: Linkage, crank_angle: Array, measured: Mapping[str, Array]
+) -> list[Deviation]:
+    """Return how measured curves of one fully turning linkage deviate from the computed ones.
+
+    crank_angle: (n,), rad, in any order and over any number of turns. measured: (n,) by the name of a curve of
+    `defined_curves`, SI; NaN where nothing was measured, not everywhere. Raises what `defined_curves` raises.
+    """
+    theta = np.mod(crank_angle, _TURN)
+    computed = {curve.name: curve for curve in defined_curves(mechanism, linkage, theta)}
+    nodes = np.linspace(0.0, _TURN, _NODES + 1)
+    table = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, nodes)}
+    found = []
+    for name, samples in measured.items():
+        curve, there = computed[name], np.isfinite(samples)
+        angles, values = theta[there], samples[there]
+        off = values - curve.values[there]
+        if np.isfinite(off).all():
+            at = int(np.argmax(np.abs(off)))
+            numbers = (_rms(off), float(off.mean()), float(off[at]), float(angles[at]))
+            fit = _fit(mechanism, linkage, name, angles, values, nodes, table[name])
+        else:
+            numbers, fit = (math.nan, math.nan, math.nan, math.nan), None
+        found.append(Deviation(name, curve.title, curve.si, curve.shown, len(values), *numbers, fit))
+    return found
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values * values)))
+
+
+def _fit(
+    mechanism: Mechanism, linkage: Linkage, name: str, angles: Array, values: Array, nodes: Array, table: Array
+) -> Fit | None:
+    """Return the best shifts. nodes, table: crank angles over a turn and the computed curve there."""
+    if len(np.unique(angles)) < _FEWEST or np.ptp(table) <= _CONSTANT * np.abs(table).max():
+        return None
+    theta, means, weights = _grouped(angles, values)
+
+    def computed(at: Array) -> Array:
+        return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, _TURN)) if c.name == name)
+
+    def left(curve: Array) -> Array:
+        """Return the weighted variance of what is left, for curves (k, groups)."""
+        off = means - curve
+        middle = off @ weights
+        found: Array = ((off - middle[:, None]) ** 2) @ weights
+        return found
+
+    def at_shifts(shifts: Array) -> Array:
+        every = theta[None, :] + shifts[:, None]
+        return -left(computed(every.ravel()).reshape(every.shape))
+
+    step = _TURN / _SHIFTS
+    grid = step * np.arange(_SHIFTS)
+    coarse = np.concatenate(
+        [left(np.interp(np.mod(theta + part[:, None], _TURN), nodes, table)) for part in np.split(grid, 8)]
+    )
+    lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
+    lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
+    best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step)
+    # None at all is looked at, too: it is as good as others where a curve is constant in pieces.
+    best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
+    shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]
+    size = float(np.abs(means).max())
+    good = np.flatnonzero(best >= best.max() * (1.0 + _EQUAL) - (_CONSTANT * size) ** 2)
+    shift = float(shifts[good[np.argmin(np.abs(shifts[good]))]])
+    off = values - computed(angles + shift)
+    return Fit(shift, 0.0 - float(off.mean()), _rms(off - off.mean()))
+
+
+def _grouped(angles: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Return mean crank angles and values of groups of neighbours, and their shares of the samples."""
+    order = np.argsort(angles, kind="stable")
+    ends = np.unique(np.linspace(0, len(order), min(len(order), _GROUPS) + 1).astype(np.intp))
+    counts = np.diff(ends)
+    theta, means = (np.add.reduceat(of[order], ends[:-1]) / counts for of in (angles, values))
+    return theta, means, counts / len(order)

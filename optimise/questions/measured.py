@@ -1,0 +1,199 @@
+"""Measured curves of a machine: what the columns of a table mean, and their samples in SI over the crank angle."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import ANGLE, SHOWN, TIME, Face, Kind
+from ...objectives.quantity import Array
+from ...objectives.tables.curve_extremes import every_curve, undefined_because
+from ..job.units import closest, kind_for, shown, to_si
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Table = Mapping[str, ArrayLike]
+CRANK_ANGLE, TIME_OF = "crank_angle", "time"
+_FARTHEST = 1e9  # rad or s: beyond, a double does not tell a crank angle to a millionth
+_ANGLE_NEEDED = "a measured table has the column crank_angle_deg, or time_s at constant speed"
+_BRACKETED = re.compile(r"(.*?)[\s,:/]*[\[(](.*)[\])]\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Column:
+    """Meaning of a column: the curve that it measures, or crank angle or time. factor: of its values to SI."""
+
+    name: str
+    factor: float
+    kind: Kind
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is none.
+
+    left_out: columns that mean nothing here. without_angle: rows that were left out, as they have no crank angle.
+    by_time: the crank angle is the crank speed times the time.
+    """
+
+    crank_angle: Array
+    values: Mapping[str, Array]
+    left_out: tuple[str, ...] = ()
+    without_angle: int = 0
+    by_time: bool = False
+
+
+def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> dict[str, Column]:
+    """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
+
+    A column is called as in the tables of this project, with any unit of its kind: slider_position_mm,
+    slider_position_in, "slider position [m]", torque_N_m. Raises `InputError` for a known name without its unit or with
+    one of another kind, for what the machine does not define, for two columns of the same, and without a crank angle.
+    """
+    names = [str(name) for name in names]
+    moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
+    curves = {curve.name: curve for curve in every_curve(moving, linkage, np.zeros(1))}
+    spoken = {_plain(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
+    spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
+    kinds = {name: _kind_of(curve.shown) for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
+    found: dict[str, Column] = {}
+    for name in names:
+        column = _meaning(name, spoken, kinds)
+        if column is None:
+            continue
+        first = next((other for other, given in found.items() if given.name == column.name), None)
+        if first is not None:
+            raise InputError(f"a curve is measured once; got the columns {shown(first)} and {shown(name)}; drop one")
+        found[name] = column
+    given = {column.name: name for name, column in found.items()}
+    if CRANK_ANGLE in given:
+        found.pop(given.get(TIME_OF, ""), None)
+    elif TIME_OF not in given:
+        near = next((name for name in names if closest(_plain(name), ("crank_angle_deg", "time_s"))), None)
+        hint = f"is {shown(near)} one of them?" if near is not None else f"add one to {_listed(names)}"
+        raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
+    elif not mechanism.speed:
+        raise InputError("time becomes a crank angle at the crank speed; got speed 0; give the speed, or crank angles")
+    measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
+    for name in measured:
+        reason = undefined_because(found[name].name, mechanism)
+        if reason:
+            raise InputError(f"{shown(name)} is not defined for this machine: {reason}; or drop the column")
+    if not measured:
+        near = next((close for name in names if name not in found and (close := closest(_plain(name), spoken))), None)
+        hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
+        raise InputError(
+            f"no column is a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
+        )
+    return found
+
+
+def measured_from(table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage) -> Measured:
+    """Return the samples of a table. Raises `InputError` as `columns_of` does, and for values that cannot be."""
+    names = [str(name) for name in table]
+    columns = columns_of(names, mechanism, linkage)
+    values = {}
+    for name, column in columns.items():
+        try:
+            given = np.asarray(table[name], dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"{shown(name)} has numbers; got others; leave empty what was not measured") from None
+        if given.ndim != 1 or (values and len(given) != len(next(iter(values.values())))):
+            raise InputError(f"columns are lists of one length; got {shown(name)} of shape {given.shape}; correct it")
+        scaled = column.factor * given
+        limit = _FARTHEST if column.name in (CRANK_ANGLE, TIME_OF) else column.kind.limit
+        wrong = np.flatnonzero(np.abs(scaled) > limit)
+        if len(wrong):
+            raise InputError(
+                f"{shown(name)} is at most {limit:g} {column.kind.unit} in size; got {given[wrong[0]]:g} in row "
+                f"{wrong[0] + 1}; check the unit, or leave empty what was not measured"
+            )
+        values[column.name] = scaled
+    by_time = TIME_OF in values
+    theta = mechanism.speed * values.pop(TIME_OF) if by_time else values.pop(CRANK_ANGLE)
+    there = np.isfinite(theta)
+    kept = {name: _one_turn(name, samples[there], linkage) for name, samples in values.items()}
+    for name, column in columns.items():
+        if column.name in kept and not np.isfinite(kept[column.name]).any():
+            raise InputError(f"{shown(name)} has no number in a row with a crank angle; fill it in, or drop the column")
+    left_out = tuple(name for name in names if name not in columns)
+    return Measured(theta[there], kept, left_out, int(len(theta) - there.sum()), by_time)
+
+
+def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
+    """Return rod angles within the turn that the computed ones are in; other curves as they are."""
+    if name != "rod_angle":
+        return values
+    start = -np.pi if linkage.branch == "open" else 0.0
+    turned: Array = np.mod(values - start, 2.0 * np.pi) + start
+    return turned
+
+
+def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind]) -> Column | None:
+    """Return the meaning of a column; None where it has none."""
+    bracketed = _BRACKETED.fullmatch(text)
+    stem = _plain(text if bracketed is None else bracketed[1])
+    if bracketed is not None:
+        said, unit = (stem if stem in spoken else None), bracketed[2].strip()
+    else:
+        said = max((name for name in spoken if f"{stem}_".startswith(f"{name}_")), key=len, default=None)
+        unit = "" if said is None else _after(said, text).strip(" _,:/")
+    if said is None:
+        return None
+    kind = kinds[spoken[said]]
+    example = said + kind.metric.suffix
+    if not unit:
+        raise InputError(f"a column has its unit in its name; got {shown(text)}; write it like {example}")
+    factor = _factor(unit, kind)
+    if factor is not None:
+        return Column(spoken[said], factor, kind)
+    try:
+        other = kind_for(unit.replace("_", " "))
+    except InputError:  # no unit: more of a name that is none here
+        return None
+    raise InputError(f"{said} is {kind.name}; got {shown(text)}, {other.name}; write it like {example}")
+
+
+def _factor(unit: str, kind: Kind) -> float | None:
+    """Return the value of a unit in SI; None if it is none of the kind's."""
+    faces = [face for face in (Face(kind.unit, ""), kind.metric, kind.inch) if face is not None]
+    for face in faces:
+        if _squeezed(unit) in (_squeezed(face.symbol), _squeezed(face.suffix)):
+            return 1.0 / face.factor
+    symbols = {_squeezed(symbol): symbol for symbol in kind.typed}
+    try:
+        return to_si(f"1 {symbols.get(_squeezed(unit), unit.replace('_', ' '))}", kind)
+    except InputError:
+        return None
+
+
+def _after(said: str, text: str) -> str:
+    """Return what follows a name, whatever separates its words."""
+    return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(said.split("_")), "", text, count=1, flags=re.IGNORECASE)
+
+
+def _squeezed(unit: str) -> str:
+    return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", text.strip().casefold()).strip("_")
+
+
+def _kind_of(face: Face) -> Kind:
+    """Return the kind of a curve by the unit in which it is shown."""
+    return next(kind for kind in SHOWN if kind.metric.symbol == face.symbol)
+
+
+def _listed(names: list[str]) -> str:
+    some = [shown(name) for name in names[:6]]
+    return ", ".join(some) + (" ..." if len(names) > 6 else "") if some else "no columns"

@@ -1,0 +1,166 @@
+"""Measured curves in a CSV file, as loggers and spreadsheets write them: read column by column, wrong cells named.
+
+The first line names the columns. Between values stand commas, semicolons or tabs, as there. A comma within a number is
+its decimal sign where no value of the file has a point. Empty lines and lines that begin with "#" are passed over.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Callable, Collection, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...model.errors import InputError
+
+if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...objectives.quantity import Array
+    from ...optimise.questions.measured import Measured
+
+_LARGEST = 300_000_000  # bytes: millions of rows
+_MOST_COLUMNS = 1000
+_AT_ONCE = 50_000  # rows that are kept as text
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+_MISSING = ("", "nan", "na", "n/a", "null", "-")
+_NAME = "a measured file"
+
+
+def read_measured_file(path: Path, mechanism: Mechanism, linkage: Linkage) -> Measured:
+    """Return the samples of a file. Raises `InputError` for one that cannot be read, and as `read_measured` does."""
+    try:
+        if path.is_file() and path.stat().st_size > _LARGEST:
+            raise InputError(f"{_NAME} has at most {_LARGEST // 1_000_000} MB; got {path}; keep fewer rows")
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{_NAME} is one that can be read; got {path}: {error.strerror}; name it") from None
+    return read_measured(content, mechanism, linkage)
+
+
+def read_measured(content: bytes, mechanism: Mechanism, linkage: Linkage) -> Measured:
+    """Return the samples of a file's content. Raises `InputError` for what is no table, and for what cannot be."""
+    from ...optimise.questions.measured import columns_of, measured_from
+
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{_NAME} is UTF-8 text; got other bytes; save it as CSV in UTF-8") from None
+    if "\0" in text:
+        raise InputError(f"{_NAME} is text; got a byte 0 in it; save it as CSV in UTF-8")
+    found = _columns(text, lambda names: columns_of(names, mechanism, linkage))
+    return measured_from(found, mechanism, linkage)
+
+
+def _columns(text: str, chosen: Callable[[list[str]], Collection[str]]) -> dict[str, Array]:
+    """Return every column by its name, NaN for all cells of one that is not chosen."""
+    lines = _lines(text)
+    head = next(lines, None)
+    if head is None:
+        raise InputError(f"{_NAME} begins with a line that names its columns; got an empty one; fill it")
+    names = [name.strip() for name in head[1]]
+    if len(names) > _MOST_COLUMNS:
+        raise InputError(f"{_NAME} has at most {_MOST_COLUMNS} columns; got {len(names)}; keep those that matter")
+    if all(_number(name, ",", ".") is not None for name in names if name):
+        raise InputError(
+            f"{_NAME} begins with a line that names its columns; got {', '.join(names)[:60]!r}; add one such as "
+            "crank_angle_deg,slider_position_mm"
+        )
+    twice = next((name for name in names if name and names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"{_NAME} has every column once; got {twice!r} twice; drop one")
+    meant = chosen([name for name in names if name])
+    wanted = [place for place, name in enumerate(names) if name in meant]
+    parts: list[list[Array]] = [[] for _ in wanted]
+    count, signs = 0, _Signs()
+    for rows in _portions(lines, len(names)):
+        count += len(rows)
+        for place, part in zip(wanted, parts, strict=True):
+            part.append(signs.numbers(names[place], [(number, row[place].strip()) for number, row in rows]))
+    if not count:
+        raise InputError(f"{_NAME} has rows below its first line; got none; add the samples")
+    nothing = np.full(count, np.nan)
+    found = {names[place]: np.concatenate(part) for place, part in zip(wanted, parts, strict=True)}
+    return {name: found.get(name, nothing) for name in names if name}
+
+
+def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the cells of each line with content."""
+    first = next((line for line in io.StringIO(text) if line.strip() and not line.lstrip().startswith("#")), "")
+    separator = next((sign for sign in (";", "\t") if sign in first), ",")
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#"):
+                yield reader.line_num, cells
+    except csv.Error as error:
+        raise InputError(f"{_NAME} is CSV; got {error} in line {reader.line_num}; correct it") from None
+
+
+def _portions(lines: Iterator[tuple[int, list[str]]], width: int) -> Iterator[list[tuple[int, list[str]]]]:
+    rows: list[tuple[int, list[str]]] = []
+    for number, cells in lines:
+        if len(cells) > width and any(cell.strip() for cell in cells[width:]):
+            raise InputError(
+                f"{_NAME} has a value for each column in a line; got {len(cells)} for {width} columns in line "
+                f"{number}; where numbers have a decimal comma, separate them by semicolons"
+            )
+        rows.append((number, cells + [""] * (width - len(cells))))
+        if len(rows) == _AT_ONCE:
+            yield rows
+            rows = []
+    if rows:
+        yield rows
+
+
+class _Signs:
+    """Decimal sign of a file: a point or a comma, whichever comes first, and never both."""
+
+    def __init__(self) -> None:
+        self.sign = ""
+        self._where = ""
+
+    def numbers(self, name: str, cells: Sequence[tuple[int, str]]) -> Array:
+        """Return the values of cells, each with its line. Raises `InputError` for one that is no number."""
+        texts = [text for _, text in cells]
+        try:
+            # The quick way; the other one finds what is wrong, and what Python alone takes for a number.
+            if self.sign == ",":
+                texts = [text.replace(".", "?").replace(",", ".") for text in texts]
+            found = np.array([float(text) if text else np.nan for text in texts])
+            if not any("_" in text for text in texts) and not np.isinf(found).any():
+                self._seen(next((cell for cell in cells if "." in cell[1]), None))
+                return found
+        except ValueError:
+            pass
+        return np.array([self._one(name, line, text) for line, text in cells])
+
+    def _seen(self, cell: tuple[int, str] | None) -> None:
+        if cell is not None and not self.sign:
+            self.sign, self._where = ".", f"{cell[1][:40]!r} in line {cell[0]}"
+
+    def _one(self, name: str, line: int, text: str) -> float:
+        if text.casefold() in _MISSING:
+            return np.nan
+        signs = [sign for sign in ".," if sign in text]
+        if not self.sign and len(signs) == 1:
+            self.sign, self._where = signs[0], f"{text[:40]!r} in line {line}"
+        number = _number(text, *signs)
+        if number is None:
+            raise InputError(f"{name!r} has numbers; got {text[:40]!r} in line {line}; correct it, or leave it empty")
+        if any(sign != self.sign for sign in signs):
+            raise InputError(
+                f"{_NAME} has one decimal sign and none for thousands; got {self._where} and {text[:40]!r} in line "
+                f"{line}; write all numbers alike"
+            )
+        return number
+
+
+def _number(text: str, *signs: str) -> float | None:
+    """Return a number, which may have any of some decimal signs; None for what is none or not finite."""
+    plain = text.replace(",", ".") if "," in signs else text
+    return float(plain) if _NUMBER.fullmatch(plain) and np.isfinite(float(plain)) else None

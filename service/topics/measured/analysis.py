@@ -1,0 +1,132 @@
+"""Deviation of measured curves from the computed ones of one design, and the shifts that fit them best."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....objectives.tables.curve_extremes import cuts_of, defined_curves
+from ....objectives.tables.deviation import Deviation, deviations
+from ....optimise.questions.measured import Measured
+from ...designs.columns import split_unit
+from ...figures.numerals import shown, with_unit
+from ...figures.sheets import DOTS, Line, Panel, Sheet, lengths, over_turn, turn
+from ...text.tables import plain, print_table, table
+
+_DRAWN = 3000  # samples of a panel, spread over the measured ones
+_UNDETERMINED = "undetermined where friction locks"
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> dict[str, Any]:
+    """Return the deviation of each measured curve, measured minus computed, by the curve's name.
+
+    best_crank_angle_shift_deg and best_shift: what is to be added to the measured crank angles and values so that the
+    least root mean square is left, left_rms. None stands for what friction leaves undetermined, and for shifts that
+    the samples do not determine.
+    """
+    found = deviations(mechanism, linkage, measured.crank_angle, measured.values)
+    return {
+        "rows": len(measured.crank_angle),
+        "rows_without_crank_angle": measured.without_angle,
+        "crank_angle_from_time": measured.by_time,
+        "left_out": list(measured.left_out),
+        "curves": {one.name: _entry(one) for one in found},
+    }
+
+
+def _entry(found: Deviation) -> dict[str, Any]:
+    def value(name: str, number: float | None) -> dict[str, float | None]:
+        shown = None if number is None else plain(found.shown.factor * number)
+        return {f"{name}{found.shown.suffix}": shown}
+
+    def angle(name: str, number: float | None) -> dict[str, float | None]:
+        return {f"{name}_deg": None if number is None else plain(math.degrees(number))}
+
+    fit = found.fit
+    return {
+        "title": found.title,
+        "samples": found.count,
+        **value("rms", found.rms),
+        **value("mean", found.mean),
+        **value("largest", found.largest),
+        **angle("largest_at_crank_angle", found.crank_angle),
+        **angle("best_crank_angle_shift", None if fit is None else fit.crank_angle),
+        **value("best_shift", None if fit is None else fit.value),
+        **value("left_rms", None if fit is None else fit.rms),
+    }
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the deviation of each curve, then the shifts that fit best, and what was left out."""
+    source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
+    console.print(f"Measured minus computed, {numbers['rows']} rows{source}", style="bold", soft_wrap=True)
+    rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at\ndeg", "unit", ruled=True)
+    fits = table("curve", ">crank angle\ndeg", ">value", ">RMS left", "unit", ruled=True)
+    for entry in numbers["curves"].values():
+        given = {split_unit(key)[0]: value for key, value in entry.items()}
+        unit = next(split_unit(key)[1] for key in entry if split_unit(key)[0] == "rms")
+        at = given["largest_at_crank_angle"]
+        cells = [_text(given[name]) for name in ("rms", "mean", "largest")]
+        rows.add_row(given["title"], str(given["samples"]), *cells, "" if at is None else f"{at:.2f}", unit)
+        shifts = [given[name] for name in ("best_crank_angle_shift", "best_shift", "left_rms")]
+        fits.add_row(
+            given["title"],
+            *("none" if value is None else f"{value:+.6g}" for value in shifts[:2]),
+            "" if shifts[2] is None else f"{shifts[2]:.6g}",
+            unit,
+        )
+    print_table(console, rows)
+    console.print()
+    console.print("Shifts that, added to what was measured, fit best; not applied above", style="bold", soft_wrap=True)
+    print_table(console, fits)
+    if numbers["rows_without_crank_angle"]:
+        console.print(f"Rows without a crank angle, left out: {numbers['rows_without_crank_angle']}", soft_wrap=True)
+    if numbers["left_out"]:
+        console.print(
+            f"Columns that are no curve, left out: {', '.join(numbers['left_out'])}", soft_wrap=True, markup=False
+        )
+
+
+def _text(value: float | None) -> str:
+    return "undefined" if value is None else f"{value:.6g}"
+
+
+def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Sheet:
+    """Return a panel for each measured curve: the computed one, the samples, and the largest deviation."""
+    found = deviations(mechanism, linkage, measured.crank_angle, measured.values)
+    theta = turn(cuts_of(mechanism, linkage))
+    computed = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
+    degrees = np.degrees(np.mod(measured.crank_angle, 2.0 * np.pi))
+    panels = tuple(
+        _panel(one, np.degrees(theta), computed[one.name], degrees, measured.values[one.name]) for one in found
+    )
+    return Sheet("Measured and computed", lengths(linkage), panels, columns=min(2, len(panels)), width=5.2)
+
+
+def _panel(
+    found: Deviation,
+    across: NDArray[np.float64],
+    curve: NDArray[np.float64],
+    at: NDArray[np.float64],
+    samples: NDArray[np.float64],
+) -> Panel:
+    factor = found.shown.factor
+    there = np.flatnonzero(np.isfinite(samples))
+    drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
+    lines = [
+        Line("computed", across, factor * curve),
+        Line("measured", at[drawn], factor * samples[drawn], style=DOTS),
+    ]
+    note = _UNDETERMINED
+    if math.isfinite(found.rms):
+        worst = there[np.argmax(np.abs(at[there] - math.degrees(found.crank_angle)) < 1e-9)]
+        lines.append(Line("", at[worst : worst + 1], factor * samples[worst : worst + 1], points=True))
+        largest = f"{shown(factor * found.largest)} at {shown(math.degrees(found.crank_angle))}°"
+        note = f"RMS {shown(factor * found.rms)}, largest {largest}"
+    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note)
