@@ -83,6 +83,11 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
         raise InputError("time becomes a crank angle at the crank speed; got speed 0; give the speed, or crank angles")
+    elif mechanism.acceleration:
+        raise InputError(
+            f"time becomes a crank angle at constant speed; got a crank acceleration of {mechanism.acceleration:g} "
+            "rad/s^2; give crank angles"
+        )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
     for name in measured:
         reason = undefined_because(found[name].name, mechanism)

@@ -231,6 +231,17 @@ class Client:
         found: Record = self._get(f"jobs/{number}/designs/{design}/inverse", motion)["inverse"]
         return found
 
+    def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
+        """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
+
+        csv: the path of a CSV file, or its text, which has more than one line.
+        """
+        from ..designs.measured_file import text_of
+
+        text = csv if isinstance(csv, str) and "\n" in csv else text_of(Path(csv))
+        found: Record = self._post(f"jobs/{number}/designs/{design}/measured", {"csv": text})["measured"]
+        return found
+
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
         """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
         import pandas as pd

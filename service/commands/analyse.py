@@ -141,10 +141,10 @@ def analyse(
 
 
 def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesign:
-    from ..designs.measured_file import read_measured_file
+    from ..designs.measured_file import read_measured, text_of
     from ..topics.measured import MEASURED
 
-    return MEASURED.of(mechanism, linkage, {"measured": read_measured_file(file, mechanism, linkage)})
+    return MEASURED.of(mechanism, linkage, {"measured": read_measured(text_of(file), mechanism, linkage)})
 
 
 def _topic_options(

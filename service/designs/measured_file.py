@@ -31,25 +31,23 @@ _MISSING = ("", "nan", "na", "n/a", "null", "-")
 _NAME = "a measured file"
 
 
-def read_measured_file(path: Path, mechanism: Mechanism, linkage: Linkage) -> Measured:
-    """Return the samples of a file. Raises `InputError` for one that cannot be read, and as `read_measured` does."""
+def text_of(path: Path) -> str:
+    """Return the text of a file. Raises `InputError` for one that cannot be read, is large or is no text."""
     try:
         if path.is_file() and path.stat().st_size > _LARGEST:
             raise InputError(f"{_NAME} has at most {_LARGEST // 1_000_000} MB; got {path}; keep fewer rows")
-        content = path.read_bytes()
+        return path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise InputError(f"{_NAME} is one that can be read; got {path}: {error.strerror}; name it") from None
-    return read_measured(content, mechanism, linkage)
-
-
-def read_measured(content: bytes, mechanism: Mechanism, linkage: Linkage) -> Measured:
-    """Return the samples of a file's content. Raises `InputError` for what is no table, and for what cannot be."""
-    from ...optimise.questions.measured import columns_of, measured_from
-
-    try:
-        text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{_NAME} is UTF-8 text; got other bytes; save it as CSV in UTF-8") from None
+
+
+def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
+    """Return the samples of a file's text. Raises `InputError` for what is no table, and for what cannot be."""
+    from ...optimise.questions.measured import columns_of, measured_from
+
+    text = text.removeprefix("\ufeff")
     if "\0" in text:
         raise InputError(f"{_NAME} is text; got a byte 0 in it; save it as CSV in UTF-8")
     found = _columns(text, lambda names: columns_of(names, mechanism, linkage))

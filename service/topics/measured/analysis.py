@@ -106,7 +106,8 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> She
     panels = tuple(
         _panel(one, np.degrees(theta), computed[one.name], degrees, measured.values[one.name]) for one in found
     )
-    return Sheet("Measured and computed", lengths(linkage), panels, columns=min(2, len(panels)), width=5.2)
+    subtitle = f"{lengths(linkage)}; line: computed, dots: measured, ring: the largest deviation"
+    return Sheet("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
 def _panel(
@@ -120,8 +121,8 @@ def _panel(
     there = np.flatnonzero(np.isfinite(samples))
     drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
     lines = [
-        Line("computed", across, factor * curve),
-        Line("measured", at[drawn], factor * samples[drawn], style=DOTS),
+        Line("", across, factor * curve),
+        Line("", at[drawn], factor * samples[drawn], style=DOTS),
     ]
     note = _UNDETERMINED
     if math.isfinite(found.rms):

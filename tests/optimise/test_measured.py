@@ -1,0 +1,141 @@
+"""Columns of measured tables: what they mean, in which units, and which are refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from slidercrank import InputError, Linkage, Mechanism, analyse
+from slidercrank.objectives.kinds import SHOWN
+from slidercrank.objectives.tables.curve_extremes import every_curve
+from slidercrank.optimise.questions.measured import columns_of, measured_from
+from tests.model.cases import SMOOTH, TABLES
+
+LINKAGE = Linkage(0.05, 0.2, 0.03)
+MACHINE = Mechanism(speed=30.0, slider_mass=0.8)
+
+
+def meaning(name: str, machine: Mechanism = SMOOTH) -> tuple[str, float]:
+    column = columns_of(["crank_angle_deg", name], replace(machine, acceleration=0.0), LINKAGE)[name]
+    return column.name, column.factor
+
+
+def test_every_curve_is_read_as_tables_in_metric_inch_and_si_call_it() -> None:
+    kinds = {kind.metric.symbol: kind for kind in SHOWN}
+    for curve in every_curve(SMOOTH, LINKAGE, np.zeros(1)):
+        kind = kinds[curve.shown.symbol]
+        for face in (curve.si, curve.shown, kind.inch):
+            if face is not None:
+                for name in (curve.name + face.suffix, f"{curve.title} [{face.symbol}]"):
+                    assert meaning(name) == (curve.name, pytest.approx(1.0 / face.factor, rel=1e-12)), name
+
+
+@pytest.mark.parametrize(
+    ("name", "curve", "factor"),
+    [
+        ("torque_N_m", "torque", 1.0),
+        ("Drive torque (N·mm)", "torque", 1e-3),
+        ("TORQUE_Nmm", "torque", 1e-3),
+        ("slider_position_cm", "slider_position", 0.01),
+        ("Slider  Position, [µm]", "slider_position", 1e-6),
+        ("slider acceleration [m/s²]", "slider_acceleration", 1.0),
+        ("slider_velocity_mm_s", "slider_velocity", 1e-3),
+        ("slider_velocity_mm/s", "slider_velocity", 1e-3),
+        ("rod_angle_°", "rod_angle", math.pi / 180.0),
+        ("guide_force_kN", "guide", 1e3),
+        ("crank_pin_kN", "crank_pin", 1e3),
+        ("crank_pin_x_N", "crank_pin_x", 1.0),
+        ("power_hp", "power", 745.69987158227),
+    ],
+)
+def test_a_column_may_have_any_unit_of_its_kind(name: str, curve: str, factor: float) -> None:
+    assert meaning(name) == (curve, pytest.approx(factor, rel=1e-12))
+
+
+@pytest.mark.parametrize("name", ["temperature_C", "time_of_day", "load_cell_V", "torque_filtered_Nm", "", "x"])
+def test_other_columns_are_left_out(name: str) -> None:
+    found = measured_from({"crank_angle_deg": [0.0], "torque_Nm": [1.0], name: [5.0]}, MACHINE, LINKAGE)
+    assert found.left_out == (name,)
+    assert list(found.values) == ["torque"]
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (["crank_angle_deg", "torque"], 'a column has its unit in its name; got "torque"; write it like torque_Nm'),
+        (["crank_angle_deg", "torque_mm"], 'torque is a torque; got "torque_mm", a length; write it like torque_Nm'),
+        (["crank_angle_deg", "torque_Nm", "torque_N_m"], 'a curve is measured once; got the columns "torque_Nm" and'),
+        (["torque_Nm"], 'has the column crank_angle_deg, or time_s at constant speed; got neither; add one to "torque'),
+        (["crank_angel_deg", "torque_Nm"], 'is "crank_angel_deg" one of them?'),
+        ([], "got neither; add one to no columns"),
+        (["crank_angle_deg"], "no column is a curve with its unit, such as slider_position_mm"),
+        (["crank_angle_deg", "slider_positon_mm"], "did you mean slider_position?"),
+        (["crank_angle_deg", "load_N"], '"load_N" is not defined for this machine: it comes from loads; got none'),
+        (["crank_angle_deg", "position_error_mm"], "a position error comes from tolerances; got none"),
+    ],
+)
+def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        columns_of(names, MACHINE, LINKAGE)
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"crank_angle_deg": [0.0, 1.0], "torque_Nm": ["a", 1.0]}, '"torque_Nm" has numbers; got others'),
+        ({"crank_angle_deg": [0.0, 1.0], "torque_Nm": [1.0]}, '"torque_Nm" of shape (1,)'),
+        ({"crank_angle_deg": [0.0], "torque_Nm": [[1.0]]}, "columns are lists of one length"),
+        ({"crank_angle_deg": [math.inf], "torque_Nm": [1.0]}, "at most 1e+09 rad in size; got inf in row 1"),
+        ({"crank_angle_deg": [0.0, 1.0], "slider_position_mm": [1.0, 1e99]}, "at most 10000 m in size; got 1e+99 in"),
+        ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "no number in a row with a crank angle"),
+        ({"crank_angle_deg": [], "torque_Nm": []}, "no number in a row with a crank angle"),
+    ],
+)
+def test_values_that_cannot_be_are_refused(table: dict[str, list[float]], words: str) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        measured_from(table, MACHINE, LINKAGE)
+
+
+def test_time_is_a_crank_angle_at_constant_speed() -> None:
+    backwards = Mechanism(speed=-30.0)
+    found = measured_from({"time_ms": [0.0, 10.0], "slider_position_mm": [1.0, 2.0]}, backwards, LINKAGE)
+    assert found.by_time
+    assert found.crank_angle == pytest.approx([0.0, -0.3], rel=1e-12)
+    both = {"time_s": [0.0], "crank_angle_rev": [0.25], "slider_position_mm": [1.0]}
+    found = measured_from(both, backwards, LINKAGE)
+    assert found.crank_angle == pytest.approx([0.5 * math.pi], rel=1e-12)
+    assert found.left_out == ("time_s",)
+    for machine, words in ((Mechanism(), "got speed 0"), (SMOOTH, "a crank acceleration of 40 rad/s^2")):
+        with pytest.raises(InputError, match=re.escape(words)):
+            columns_of(["time_s", "slider_position_mm"], machine, LINKAGE)
+
+
+@pytest.mark.parametrize("machine", [SMOOTH, TABLES])
+def test_rod_angles_may_be_measured_in_any_turn(machine: Mechanism) -> None:
+    steady = replace(machine, acceleration=0.0)
+    linkage = Linkage(0.05, 0.2, 0.03, machine.branch)
+    analysis = analyse(steady, [0.05, 0.2, 0.03])
+    cycle = analysis.cycle(60)
+    turns = np.tile([-2.0, 0.0, 3.0], 20)
+    table = {"crank_angle_rad": cycle.crank_angle_rad, "rod_angle_rad": cycle.rod_angle_rad + 2.0 * math.pi * turns}
+    assert linkage.branch == steady.branch
+    assert analysis.deviations(table).loc["rod_angle", "rms"] < 1e-12
+
+
+def test_an_analysis_compares_a_table_with_its_own_cycle() -> None:
+    analysis = analyse(MACHINE, [0.05, 0.2, 0.03])
+    cycle = analysis.cycle(50)
+    own = cycle.drop(columns=["load_N", "position_error_m", "position_error_rss_m"])
+    found = analysis.deviations(own)
+    assert len(found) == own.shape[1] - 1
+    assert (found["rms"] < 1e-9).all()
+    table = pd.DataFrame({"crank_angle_rad": cycle.crank_angle_rad - 0.2, "torque_N_mm": 1e3 * cycle.torque_Nm + 500.0})
+    (row,) = analysis.deviations(table).itertuples()
+    assert (row.Index, row.title, row.unit, row.samples) == ("torque", "drive torque", "N m", 50)
+    assert (row.best_shift_rad, row.best_shift) == pytest.approx((0.2, -0.5), abs=1e-6)
+    assert row.rms_left < 1e-6
