@@ -230,13 +230,15 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
     return [(low, high) for bound, low, high in found[:_CANDIDATES] if bound >= best]
 
 
-def golden(function: Callable[[Array], Array], left: Array, right: Array) -> tuple[Array, Array]:
+def golden(
+    function: Callable[[Array], Array], left: Array, right: Array, sections: int = _SECTIONS
+) -> tuple[Array, Array]:
     """Return the greatest value of a function (n,) -> (n,) in each bracket, and where it is, by golden sections."""
     if not len(left):
         return left, right
     low, high = left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left)
     at_low, at_high = function(low), function(high)
-    for _ in range(_SECTIONS):
+    for _ in range(sections):
         lower = at_low >= at_high
         left, right = np.where(lower, left, low), np.where(lower, high, right)
         fresh = np.where(lower, left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left))

@@ -24,6 +24,7 @@ _SHIFTS = 720  # of the grid
 _NODES = 1440  # of the computed curve that the grid interpolates
 _GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
 _CANDIDATES = 3
+_SECTIONS = 40  # to 1e-10 rad
 _FEWEST = 3  # crank angles: one more than there are shifts
 _CONSTANT = 1e-12  # of the greatest size
 _EQUAL = 1e-9  # relative: of equally good shifts the lesser one is told
@@ -47,7 +48,8 @@ class Deviation:
     """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
 
     count: samples. rms: root mean square. largest: the one of the greatest size, with its sign; crank_angle: there,
-    rad in [0, 2 pi). fit: None for samples at less than three crank angles and for a curve that is constant.
+    rad in [0, 2 pi). fit: None for samples at less than three crank angles, and for a curve
+    that is constant or undetermined somewhere.
     """
 
     name: str
@@ -97,7 +99,8 @@ def _fit(
     mechanism: Mechanism, linkage: Linkage, name: str, angles: Array, values: Array, nodes: Array, table: Array
 ) -> Fit | None:
     """Return the best shifts. nodes, table: crank angles over a turn and the computed curve there."""
-    if len(np.unique(angles)) < _FEWEST or np.ptp(table) <= _CONSTANT * np.abs(table).max():
+    varies = float(np.ptp(table)) > _CONSTANT * float(np.abs(table).max())  # and is not NaN
+    if not varies or len(np.unique(angles)) < _FEWEST:
         return None
     theta, means, weights = _grouped(angles, values)
 
@@ -116,13 +119,13 @@ def _fit(
         return -left(computed(every.ravel()).reshape(every.shape))
 
     step = _TURN / _SHIFTS
-    grid = step * np.arange(_SHIFTS)
+    grid: Array = step * np.arange(_SHIFTS, dtype=np.float64)
     coarse = np.concatenate(
         [left(np.interp(np.mod(theta + part[:, None], _TURN), nodes, table)) for part in np.split(grid, 8)]
     )
     lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
     lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
-    best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step)
+    best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
     # None at all is looked at, too: it is as good as others where a curve is constant in pieces.
     best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
     shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]

@@ -41,8 +41,8 @@ class Column:
 class Measured:
     """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is none.
 
-    left_out: columns that mean nothing here. without_angle: rows that were left out, as they have no crank angle.
-    by_time: the crank angle is the crank speed times the time.
+    left_out: columns that mean nothing here, or are empty. without_angle: rows that were left out, as they have no
+    crank angle. by_time: the crank angle is the crank speed times the time.
     """
 
     crank_angle: Array
@@ -57,7 +57,7 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
 
     A column is called as in the tables of this project, with any unit of its kind: slider_position_mm,
     slider_position_in, "slider position [m]", torque_N_m. Raises `InputError` for a known name without its unit or with
-    one of another kind, for what the machine does not define, for two columns of the same, and without a crank angle.
+    one of another kind, for two columns of the same, and without a crank angle or a curve.
     """
     names = [str(name) for name in names]
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
@@ -89,10 +89,6 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
             "rad/s^2; give crank angles"
         )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
-    for name in measured:
-        reason = undefined_because(found[name].name, mechanism)
-        if reason:
-            raise InputError(f"{shown(name)} is not defined for this machine: {reason}; or drop the column")
     if not measured:
         near = next((close for name in names if name not in found and (close := closest(_plain(name), spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
@@ -103,23 +99,26 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
 
 
 def measured_from(table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage) -> Measured:
-    """Return the samples of a table. Raises `InputError` as `columns_of` does, and for values that cannot be."""
+    """Return the samples of a table; columns without a number are left out.
+
+    Raises `InputError` as `columns_of` does, for values that cannot be, and for what the machine does not define.
+    """
     names = [str(name) for name in table]
     columns = columns_of(names, mechanism, linkage)
-    values = {}
+    values: dict[str, Array] = {}
     for name, column in columns.items():
         try:
-            given = np.asarray(table[name], dtype=np.float64)
+            read = np.asarray(table[name], dtype=np.float64)
         except (TypeError, ValueError):
             raise InputError(f"{shown(name)} has numbers; got others; leave empty what was not measured") from None
-        if given.ndim != 1 or (values and len(given) != len(next(iter(values.values())))):
-            raise InputError(f"columns are lists of one length; got {shown(name)} of shape {given.shape}; correct it")
-        scaled = column.factor * given
+        if read.ndim != 1 or (values and len(read) != len(next(iter(values.values())))):
+            raise InputError(f"columns are lists of one length; got {shown(name)} of shape {read.shape}; correct it")
+        scaled = column.factor * read
         limit = _FARTHEST if column.name in (CRANK_ANGLE, TIME_OF) else column.kind.limit
         wrong = np.flatnonzero(np.abs(scaled) > limit)
         if len(wrong):
             raise InputError(
-                f"{shown(name)} is at most {limit:g} {column.kind.unit} in size; got {given[wrong[0]]:g} in row "
+                f"{shown(name)} is at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
                 f"{wrong[0] + 1}; check the unit, or leave empty what was not measured"
             )
         values[column.name] = scaled
@@ -127,10 +126,18 @@ def measured_from(table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Li
     theta = mechanism.speed * values.pop(TIME_OF) if by_time else values.pop(CRANK_ANGLE)
     there = np.isfinite(theta)
     kept = {name: _one_turn(name, samples[there], linkage) for name, samples in values.items()}
-    for name, column in columns.items():
-        if column.name in kept and not np.isfinite(kept[column.name]).any():
-            raise InputError(f"{shown(name)} has no number in a row with a crank angle; fill it in, or drop the column")
-    left_out = tuple(name for name in names if name not in columns)
+    given = {column.name: name for name, column in columns.items()}
+    empty = [name for name, samples in kept.items() if not np.isfinite(samples).any()]
+    for name in empty:
+        del kept[name]
+    if not kept:
+        asked = ", ".join(shown(given[name]) for name in empty)
+        raise InputError(f"a curve has a number in a row with a crank angle; got none in {asked}; fill them in")
+    for name in kept:
+        reason = undefined_because(name, mechanism)
+        if reason:
+            raise InputError(f"{shown(given[name])} is not defined for this machine: {reason}; or drop the column")
+    left_out = tuple(name for name in names if name not in columns or columns[name].name in empty)
     return Measured(theta[there], kept, left_out, int(len(theta) - there.sum()), by_time)
 
 

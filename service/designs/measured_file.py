@@ -75,10 +75,11 @@ def _columns(text: str, chosen: Callable[[list[str]], Collection[str]]) -> dict[
     wanted = [place for place, name in enumerate(names) if name in meant]
     parts: list[list[Array]] = [[] for _ in wanted]
     count, signs = 0, _Signs()
-    for rows in _portions(lines, len(names)):
+    for places, rows in _portions(lines, len(names)):
         count += len(rows)
+        columns = list(zip(*rows, strict=True))
         for place, part in zip(wanted, parts, strict=True):
-            part.append(signs.numbers(names[place], [(number, row[place].strip()) for number, row in rows]))
+            part.append(signs.numbers(names[place], places, columns[place]))
     if not count:
         raise InputError(f"{_NAME} has rows below its first line; got none; add the samples")
     nothing = np.full(count, np.nan)
@@ -93,26 +94,30 @@ def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         for cells in reader:
-            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#"):
+            begin = cells[0].lstrip() if cells else ""
+            if (begin and not begin.startswith("#")) or (not begin and any(cell.strip() for cell in cells)):
                 yield reader.line_num, cells
     except csv.Error as error:
         raise InputError(f"{_NAME} is CSV; got {error} in line {reader.line_num}; correct it") from None
 
 
-def _portions(lines: Iterator[tuple[int, list[str]]], width: int) -> Iterator[list[tuple[int, list[str]]]]:
-    rows: list[tuple[int, list[str]]] = []
+def _portions(lines: Iterator[tuple[int, list[str]]], width: int) -> Iterator[tuple[list[int], list[list[str]]]]:
+    """Yield some rows at a time, each of `width` cells, with the numbers of their lines."""
+    places: list[int] = []
+    rows: list[list[str]] = []
     for number, cells in lines:
         if len(cells) > width and any(cell.strip() for cell in cells[width:]):
             raise InputError(
                 f"{_NAME} has a value for each column in a line; got {len(cells)} for {width} columns in line "
                 f"{number}; where numbers have a decimal comma, separate them by semicolons"
             )
-        rows.append((number, cells + [""] * (width - len(cells))))
+        places.append(number)
+        rows.append(cells if len(cells) == width else cells[:width] + [""] * (width - len(cells)))
         if len(rows) == _AT_ONCE:
-            yield rows
-            rows = []
+            yield places, rows
+            places, rows = [], []
     if rows:
-        yield rows
+        yield places, rows
 
 
 class _Signs:
@@ -122,20 +127,18 @@ class _Signs:
         self.sign = ""
         self._where = ""
 
-    def numbers(self, name: str, cells: Sequence[tuple[int, str]]) -> Array:
-        """Return the values of cells, each with its line. Raises `InputError` for one that is no number."""
-        texts = [text for _, text in cells]
+    def numbers(self, name: str, lines: Sequence[int], cells: Sequence[str]) -> Array:
+        """Return the values of cells, each of a line. Raises `InputError` for one that is no number."""
+        texts = cells if self.sign != "," else [text.replace(".", "?").replace(",", ".") for text in cells]
         try:
             # The quick way; the other one finds what is wrong, and what Python alone takes for a number.
-            if self.sign == ",":
-                texts = [text.replace(".", "?").replace(",", ".") for text in texts]
             found = np.array([float(text) if text else np.nan for text in texts])
             if not any("_" in text for text in texts) and not np.isinf(found).any():
-                self._seen(next((cell for cell in cells if "." in cell[1]), None))
+                self._seen(next(((line, text) for line, text in zip(lines, cells, strict=True) if "." in text), None))
                 return found
         except ValueError:
             pass
-        return np.array([self._one(name, line, text) for line, text in cells])
+        return np.array([self._one(name, line, text.strip()) for line, text in zip(lines, cells, strict=True)])
 
     def _seen(self, cell: tuple[int, str] | None) -> None:
         if cell is not None and not self.sign:

@@ -13,7 +13,7 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from .sheets import DASHED, DOTS, FAINT, THIN, Line, Panel, Sheet
+from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet
 from .style import (
     BLUE,
     FRAME,
@@ -46,6 +46,7 @@ _STYLES: dict[int, dict[str, Any]] = {
     DASHED: {"color": INK, "linewidth": 1.1, "linestyle": (0, (4, 2)), "zorder": 3},
     FAINT: {"color": MUTED, "linewidth": 0.8, "linestyle": "--", "zorder": 2},
     DOTS: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
+    SAMPLES: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.8, "zorder": 2},
 }
 _POINTS: dict[str, Any] = {
     **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4, "clip_on": False},

@@ -13,8 +13,8 @@ from .numerals import shown
 
 Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
-THIN, DASHED, FAINT, DOTS = 5, 6, 7, 8
-"""Styles: full of detail, what that is compared with, swinging behind another line, and many points."""
+THIN, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
+"""Styles: full of detail, what that is compared with, swinging behind another line, points, points behind a line."""
 
 
 @dataclass(frozen=True)

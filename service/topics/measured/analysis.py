@@ -16,7 +16,7 @@ from ....objectives.tables.deviation import Deviation, deviations
 from ....optimise.questions.measured import Measured
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
-from ...figures.sheets import DOTS, Line, Panel, Sheet, lengths, over_turn, turn
+from ...figures.sheets import SAMPLES, Line, Panel, Sheet, lengths, over_turn, turn
 from ...text.tables import plain, print_table, table
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
@@ -122,7 +122,7 @@ def _panel(
     drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
     lines = [
         Line("", across, factor * curve),
-        Line("", at[drawn], factor * samples[drawn], style=DOTS),
+        Line("", at[drawn], factor * samples[drawn], style=SAMPLES),
     ]
     note = _UNDETERMINED
     if math.isfinite(found.rms):

@@ -1,0 +1,234 @@
+"""`slidercrank analyse --measured`: files as loggers and spreadsheets write them, and what is told of them."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction
+from slidercrank.objectives.tables.deviation import deviations
+from slidercrank.service.designs.measured_file import read_measured, text_of
+from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.topics.measured import MEASURED
+from slidercrank.service.topics.measured import analysis as topic
+from tests.service import fronts
+from tests.service.conftest import Command
+from tests.service.test_figures import overlaps
+
+LINKAGE = Linkage(0.14, 0.31, 0.06)
+SIEVE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
+PLAIN = "crank_angle_deg,slider_position_mm\n0,430\n90,300.5\n180,160\n270,240\n"
+ROWS = 120_000
+"""More than are kept as text at once."""
+
+
+def read(text: str) -> list[list[float]]:
+    found = read_measured(text, fronts.MACHINE, LINKAGE)
+    return [found.crank_angle.tolist(), *(values.tolist() for values in found.values.values())]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\ufeff" + PLAIN,
+        PLAIN.replace("\n", "\r\n"),
+        PLAIN.replace("\n", "\r"),
+        PLAIN.replace("\n", "\n\n,\n  \n"),
+        "# logger 7\n#\n" + PLAIN + "# end",
+        PLAIN.replace(",", ";"),
+        PLAIN.replace(",", "\t"),
+        PLAIN.replace(",", " , "),
+        PLAIN.replace(",", ";").replace(".", ","),
+        PLAIN.replace(",", '","').replace("\n", '"\n"')[:-1].replace("crank", '"crank', 1),
+        PLAIN.replace(",", ',"').replace("\n", '"\n').replace(".", ","),
+        PLAIN.replace("300.5", "3.005E+2"),
+        PLAIN.replace("slider_position_mm", "Slider position [mm]"),
+        PLAIN.replace("\n", ",20 C,\n").replace("20 C", "note", 1),
+        PLAIN.rstrip("\n"),
+    ],
+)
+def test_a_file_is_read_however_it_was_written(text: str) -> None:
+    angles, positions = read(text)
+    assert angles == pytest.approx([0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi], rel=1e-12)
+    assert positions == pytest.approx([0.43, 0.3005, 0.16, 0.24], rel=1e-12)
+
+
+@pytest.mark.parametrize("cell", ["", " ", "NaN", "nan", "n/a", "NA", "-", "null"])
+def test_what_was_not_measured_is_missing(cell: str) -> None:
+    angles, positions = read(PLAIN.replace("300.5", cell).replace("180,", f"{cell},"))
+    assert len(angles) == 3
+    assert math.isnan(positions[1])
+    short = read("crank_angle_deg,slider_position_mm,torque_Nm\n0,430\n90,300,1\n")
+    assert math.isnan(short[2][0])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "begins with a line that names its columns; got an empty one"),
+        ("\n\n# only this\n", "begins with a line that names its columns; got an empty one"),
+        ("crank_angle_deg,slider_position_mm\n", "has rows below its first line; got none"),
+        ("0,430\n90,300\n", "begins with a line that names its columns; got '0, 430'; add one such as crank_angle_deg"),
+        (PLAIN.replace("300.5", "abc"), "'slider_position_mm' has numbers; got 'abc' in line 3"),
+        (PLAIN.replace("300.5", "inf"), "'slider_position_mm' has numbers; got 'inf' in line 3"),
+        (PLAIN.replace("300.5", "1e999"), "'slider_position_mm' has numbers; got '1e999' in line 3"),
+        (PLAIN.replace("300.5", "3_00"), "'slider_position_mm' has numbers; got '3_00' in line 3"),
+        (PLAIN.replace("300.5", "0x1F"), "'slider_position_mm' has numbers; got '0x1F' in line 3"),
+        (PLAIN.replace("300.5", "1e90"), '"slider_position_mm" is at most 10000 m in size; got 1e+90 in row 2'),
+        (PLAIN.replace("\n0,", "\ndeg,"), "'crank_angle_deg' has numbers; got 'deg' in line 2"),
+        (
+            PLAIN.replace("300.5", "300,5"),
+            "got 3 for 2 columns in line 3; where numbers have a decimal comma, separate",
+        ),
+        (
+            PLAIN.replace("300.5", '"300,5"').replace("240", "240.5"),
+            "one decimal sign and none for thousands; got '300,5",
+        ),
+        (PLAIN.replace("300.5", '"1,300.5"'), "'slider_position_mm' has numbers; got '1,300.5' in line 3"),
+        (PLAIN.replace("300.5", '"300"x'), "is CSV; got ',' expected after '\"' in line 3; correct it"),
+        (PLAIN.replace("slider_position_mm", "crank_angle_deg"), "has every column once; got 'crank_angle_deg' twice"),
+        (PLAIN.replace("slider_position_mm", "slider_position"), "a column has its unit in its name"),
+        (PLAIN.replace("slider_position_mm", "slider_position_kg"), 'got "slider_position_kg", a mass'),
+        (PLAIN.replace("slider_position_mm", "pressure_bar"), "no column is a curve with its unit"),
+        (PLAIN.replace("crank_angle_deg", "angle"), "has the column crank_angle_deg, or time_s"),
+        (PLAIN + "\0", "is text; got a byte 0"),
+        ("a," * 2000 + "\n", "has at most 1000 columns; got 2001"),
+        ("%PDF-1.4 binary", "has the column crank_angle_deg"),
+        ('{"crank_angle_deg": [1]}', "has the column crank_angle_deg"),
+    ],
+)
+def test_a_file_that_cannot_be_is_refused_in_a_sentence(text: str, words: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(text)
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_files_that_are_none_are_refused(tmp_path: Path, command: Command) -> None:
+    latin, wide = tmp_path / "latin.csv", tmp_path / "wide.csv"
+    latin.write_bytes("crank angle [°],slider_position_mm\n0,430\n".encode("latin-1"))
+    wide.write_bytes(PLAIN.encode("utf-16"))
+    for file, words in (
+        (latin, "is UTF-8 text; got other bytes"),
+        (wide, "is UTF-8 text; got other bytes"),
+        (tmp_path, "Is a directory"),
+        (tmp_path / "none.csv", "No such file"),
+    ):
+        with pytest.raises(InputError, match=words):
+            text_of(file)
+        done = command("analyse", *SIEVE, "--measured", file)
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert words in done.stderr.replace("\n", " ")
+
+
+@pytest.mark.parametrize("sign", [".", ","])
+def test_many_rows_are_read(sign: str) -> None:
+    angles = np.arange(ROWS) % 3600
+    lines = [f"{angle / 10};{angle}" for angle in range(3600)]
+    text = "crank_angle_deg;slider_position_mm\n" + "\n".join(lines[angle] for angle in angles)
+    found = read_measured(text.replace(".", sign), fronts.MACHINE, LINKAGE)
+    assert np.array_equal(np.round(1e3 * found.values["slider_position"]), angles)
+    assert found.crank_angle == pytest.approx(np.radians(angles / 10.0), rel=1e-12)
+
+
+def test_the_cycle_that_is_written_is_read_back_without_a_deviation(tmp_path: Path, command: Command) -> None:
+    job, file = fronts.job_file(tmp_path), tmp_path / "cycle.csv"
+    for units in ("metric", "inch"):
+        assert command("analyse", job, *SIEVE, "--cycle", file, "--units", units).exit_code == 0
+        file.write_text(file.read_text().replace("load_", "no_load_"))  # it has zeros, and this job no load
+        done = command("analyse", job, *SIEVE, "--measured", file, "--json")
+        assert done.exit_code == 0, done.stderr
+        record = json.loads(done.stdout)["measured"]
+        assert record["rows"] == 360
+        lost = [re.sub("_(mm|in|N|lbf)$", "", name) for name in record["left_out"]]
+        assert lost == ["no_load", "position_error", "position_error_rss"]
+        for name, entry in record["curves"].items():
+            (rms,) = (value for key, value in entry.items() if key.startswith("rms_"))
+            assert rms < 1e-7, name
+
+
+def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: Command) -> None:
+    random = np.random.default_rng(51)
+    angles = random.uniform(0.0, 720.0, 200)
+    at = LINKAGE.at(np.radians(angles - 8.0), speed=10.0 * math.pi)
+    rows = [
+        f"{angle!r};{1e3 * x + 2.5!r};{v!r};20 °C"
+        for angle, x, v in zip(angles.tolist(), at.slider_position.tolist(), at.slider_velocity.tolist(), strict=True)
+    ]
+    file = tmp_path / "run.csv"
+    file.write_text(
+        "crank_angle_deg;slider_position_mm;slider_velocity_m_s;room\n" + "\n".join(rows).replace(".", ","),
+        encoding="utf-8-sig",
+    )
+    arguments = ("analyse", *SIEVE, "--speed", "300 rpm", "--measured", file)
+    record = json.loads(command(*arguments, "--json").stdout)["measured"]
+    position, velocity = record["curves"].values()
+    assert record["left_out"] == ["room"]
+    assert position["best_crank_angle_shift_deg"] == pytest.approx(-8.0, abs=1e-5)
+    assert position["best_shift_mm"] == pytest.approx(-2.5, abs=1e-5)
+    assert velocity["best_shift_m_s"] == pytest.approx(0.0, abs=1e-6)
+    assert position["left_rms_mm"] < 1e-4 < position["rms_mm"]
+    inch = json.loads(command(*arguments, "--json", "--units", "inch").stdout)["measured"]["curves"]
+    assert inch["slider_position"]["rms_in"] == pytest.approx(position["rms_mm"] / 25.4, rel=1e-12)
+    place = tmp_path / "figures"
+    told = command(*arguments, "--figures", place)
+    assert told.exit_code == 0, told.stderr
+    for words in ("Measured minus computed, 200 rows", f"{position['rms_mm']:.6g}", "-8 ", "left out: room"):
+        assert words in told.stdout
+    assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
+    sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(text_of(file), fronts.MACHINE, LINKAGE))
+    assert [len(panel.lines) for panel in sheet.panels] == [3, 3]
+    assert overlaps(draw_sheet(sheet)) == []
+    for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):
+        ring = panel.lines[2]
+        assert ring.x == pytest.approx([entry["largest_at_crank_angle_deg"]], rel=1e-9)
+
+
+def test_a_design_of_a_run_is_compared(tmp_path: Path, kept: Path, command: Command) -> None:
+    file = tmp_path / "few.csv"
+    file.write_text("time_s,slider_position_mm\n0,300\n")
+    done = command("analyse", "latest", "--runs", kept, "--design", 1, "--measured", file, "--json")
+    assert done.exit_code == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert record["measured"]["crank_angle_from_time"] is True
+    entry = record["measured"]["curves"]["slider_position"]
+    linkage = Linkage(*(1e-3 * record[f"{name}_mm"] for name in ("crank", "rod", "offset")))
+    assert entry["largest_mm"] == pytest.approx(300.0 - 1e3 * float(linkage.at(0.0).slider_position), rel=1e-9)
+    assert (entry["samples"], entry["best_shift_mm"]) == (1, None)
+    assert "none" in command("analyse", "latest", "--runs", kept, "--design", 1, "--measured", file).stdout
+
+
+def test_what_friction_leaves_undetermined_is_told() -> None:
+    locked = replace(fronts.MACHINE, friction=Friction(guide=1.5))
+    text = "crank_angle_deg,torque_Nm\n,3\n" + "\n".join(f"{angle},1" for angle in range(0, 360, 5))
+    measured = read_measured(text, locked, LINKAGE)
+    numbers = MEASURED.of(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
+    assert numbers["rows_without_crank_angle"] == 1
+    assert numbers["curves"]["torque"]["rms_Nm"] is None
+    stream = io.StringIO()
+    topic.show(Console(file=stream, width=140), numbers)
+    assert "undefined" in stream.getvalue()
+    assert "nan" not in stream.getvalue()
+    (panel,) = topic.figure(locked, LINKAGE, measured=measured).panels
+    assert panel.note == "undetermined where friction locks"
+    draw_sheet(topic.figure(locked, LINKAGE, measured=measured))
+
+
+def test_at_most_some_thousand_samples_are_drawn() -> None:
+    angles = np.linspace(0.0, 3600.0, 40_000)
+    text = "crank_angle_deg,slider_position_mm\n" + "\n".join(f"{angle},300" for angle in angles)
+    measured = read_measured(text, fronts.MACHINE, LINKAGE)
+    (panel,) = topic.figure(fronts.MACHINE, LINKAGE, measured=measured).panels
+    assert len(panel.lines[1].x) == 3000
+    (found,) = deviations(fronts.MACHINE, LINKAGE, measured.crank_angle, measured.values)
+    assert panel.lines[2].x == pytest.approx([math.degrees(found.crank_angle)], abs=1e-9)
