@@ -18,6 +18,8 @@ from ...objectives.kinds import unit_text
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
+from ...objectives.tables.deviation import deviations
+from ...objectives.tables.measured import measured_from
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -100,15 +102,12 @@ class Analysis(Mapping[str, float]):
         """Return how measured curves deviate from the computed ones, a row for each curve by its name, in SI.
 
         measured: columns with their units in their names: crank_angle_deg, or time_s at constant speed, and curves of
-        `cycle` in any unit, such as slider_position_mm; NaN where nothing was measured. Columns: title, unit, samples,
-        rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift, which, added to
-        the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table without crank
-        angle or curve, units that do not fit and values that no machine has.
+        `cycle` in SI, metric or inch units, such as slider_position_mm; NaN where nothing was measured. Columns: title,
+        unit, samples, rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift, which,
+        added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
+        without crank angle or curve, units that do not fit and values that no machine has.
         """
         import pandas as pd
-
-        from ...objectives.tables.deviation import deviations
-        from ..questions.measured import measured_from
 
         given = measured_from(measured, self.mechanism, self.linkage)
         rows = {}

@@ -66,11 +66,13 @@ class KindModel(BaseModel):
 class UnitTable(BaseModel):
     """Units of values, as they are shown and as they are typed.
 
-    inch: by the unit that the API speaks, the unit of US customary units; the others are the same there.
+    inch: by the unit that the API speaks, the unit of US customary units; the others are the same there. suffixes: how
+    keys of values in a unit that the API speaks end, by that unit.
     """
 
     kinds: list[KindModel]
     inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
+    suffixes: dict[str, str] = Field(examples=[{"mm": "_mm", "m/s^2": "_m_s2"}])
 
 
 @router.get("/units")
@@ -89,7 +91,11 @@ def list_units() -> UnitTable:
         for kind in (*KINDS, TIME)
         if kind.typed
     ]
-    return UnitTable(kinds=kinds, inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told})
+    return UnitTable(
+        kinds=kinds,
+        inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told},
+        suffixes={kind.metric.symbol: kind.metric.suffix for kind in (*SHOWN, TIME)},
+    )
 
 
 @router.get("/quantities")

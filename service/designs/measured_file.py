@@ -20,8 +20,9 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...objectives.kinds import Kind
     from ...objectives.quantity import Array
-    from ...optimise.questions.measured import Measured
+    from ...objectives.tables.measured import Measured
 
 _LARGEST = 300_000_000  # bytes: millions of rows
 _MOST_COLUMNS = 1000
@@ -45,13 +46,25 @@ def text_of(path: Path) -> str:
 
 def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
     """Return the samples of a file's text. Raises `InputError` for what is no table, and for what cannot be."""
-    from ...optimise.questions.measured import columns_of, measured_from
+    from ...objectives.tables.measured import columns_of, measured_from
 
     text = text.removeprefix("\ufeff")
     if "\0" in text:
         raise InputError(f"{_NAME} is text; got a byte 0 in it; save it as CSV in UTF-8")
-    found = _columns(text, lambda names: columns_of(names, mechanism, linkage))
-    return measured_from(found, mechanism, linkage)
+    found = _columns(text, lambda names: columns_of(names, mechanism, linkage, _any_unit))
+    return measured_from(found, mechanism, linkage, _any_unit)
+
+
+def _any_unit(text: str, kind: Kind) -> float | None:
+    """Return the value of a unit in SI, any that a job may have; None for what is none of a kind."""
+    from ...objectives.tables.measured import squeezed
+    from ...optimise.job.units import to_si
+
+    typed = {squeezed(symbol): symbol for symbol in kind.typed}
+    try:
+        return to_si(f"1 {typed.get(squeezed(text), text.replace('_', ' '))}", kind)
+    except InputError:
+        return None
 
 
 def _columns(text: str, chosen: Callable[[list[str]], Collection[str]]) -> dict[str, Array]:

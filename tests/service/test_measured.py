@@ -63,6 +63,31 @@ def test_a_file_is_read_however_it_was_written(text: str) -> None:
     assert positions == pytest.approx([0.43, 0.3005, 0.16, 0.24], rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("name", "curve", "factor"),
+    [
+        ("torque_N_m", "torque", 1.0),
+        ("Drive torque (N·mm)", "torque", 1e-3),
+        ("TORQUE_Nmm", "torque", 1e-3),
+        ("slider_position_cm", "slider_position", 0.01),
+        ("Slider  Position, [µm]", "slider_position", 1e-6),
+        ("slider acceleration [m/s²]", "slider_acceleration", 1.0),
+        ("slider_velocity_mm_s", "slider_velocity", 1e-3),
+        ("slider_velocity_mm/s", "slider_velocity", 1e-3),
+        ("rod_angle_°", "rod_angle", math.pi / 180.0),
+        ("guide_force_kN", "guide", 1e3),
+        ("crank_pin_kN", "crank_pin", 1e3),
+        ("crank_pin_x_N", "crank_pin_x", 1.0),
+        ("power_hp", "power", 745.69987158227),
+    ],
+)
+def test_a_column_may_have_any_unit_of_its_kind(name: str, curve: str, factor: float) -> None:
+    found = read_measured(f'crank_angle_deg\t"{name}"\n0\t2\n', fronts.MACHINE, LINKAGE)
+    assert {given: float(values[0]) for given, values in found.values.items()} == {
+        curve: pytest.approx(2.0 * factor, rel=1e-12)
+    }
+
+
 @pytest.mark.parametrize("cell", ["", " ", "NaN", "nan", "n/a", "NA", "-", "null"])
 def test_what_was_not_measured_is_missing(cell: str) -> None:
     angles, positions = read(PLAIN.replace("300.5", cell).replace("180,", f"{cell},"))
@@ -84,7 +109,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("300.5", "1e999"), "'slider_position_mm' has numbers; got '1e999' in line 3"),
         (PLAIN.replace("300.5", "3_00"), "'slider_position_mm' has numbers; got '3_00' in line 3"),
         (PLAIN.replace("300.5", "0x1F"), "'slider_position_mm' has numbers; got '0x1F' in line 3"),
-        (PLAIN.replace("300.5", "1e90"), '"slider_position_mm" is at most 10000 m in size; got 1e+90 in row 2'),
+        (PLAIN.replace("300.5", "1e90"), "'slider_position_mm' is at most 10000 m in size; got 1e+90 in row 2"),
         (PLAIN.replace("\n0,", "\ndeg,"), "'crank_angle_deg' has numbers; got 'deg' in line 2"),
         (
             PLAIN.replace("300.5", "300,5"),
@@ -98,7 +123,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("300.5", '"300"x'), "is CSV; got ',' expected after '\"' in line 3; correct it"),
         (PLAIN.replace("slider_position_mm", "crank_angle_deg"), "has every column once; got 'crank_angle_deg' twice"),
         (PLAIN.replace("slider_position_mm", "slider_position"), "a column has its unit in its name"),
-        (PLAIN.replace("slider_position_mm", "slider_position_kg"), 'got "slider_position_kg", a mass'),
+        (PLAIN.replace("slider_position_mm", "slider_position_kg"), "got 'slider_position_kg', a mass"),
         (PLAIN.replace("slider_position_mm", "pressure_bar"), "no column is a curve with its unit"),
         (PLAIN.replace("crank_angle_deg", "angle"), "has the column crank_angle_deg, or time_s"),
         (PLAIN + "\0", "is text; got a byte 0"),

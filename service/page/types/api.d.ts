@@ -64,6 +64,16 @@ declare global {
     type Wrong = Schemas["WrongModel"];
     /** A design: its cells by the keys of columns. */
     type Row = Record<string, Cell>;
+    /** What /analysis gives for "extremes", which its description leaves open: values whose keys end with their units. */
+    interface Extremes {
+      curves: Record<string, Record<string, unknown> & { title: string }>;
+      strokes: Record<string, unknown> & { outward: Record<string, unknown>; inward: Record<string, unknown> };
+    }
+    /** What /inverse gives, which its description leaves open. */
+    interface Inverse {
+      solutions: { crank_angle_deg: number; stroke: string | null; crank_speed_rpm: number | null; crank_acceleration_rad_s2: number | null }[];
+      note: string;
+    }
     /** What /analysis gives for "sensitivity", which its description leaves open: rates such as crank_per_mm beside the rest. */
     interface Sensitivity {
       quantities: Sensitive[];

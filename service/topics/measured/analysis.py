@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.deviation import Deviation, deviations
-from ....optimise.questions.measured import Measured
+from ....objectives.tables.measured import Measured
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
 from ...figures.sheets import SAMPLES, Line, Panel, Sheet, lengths, over_turn, turn

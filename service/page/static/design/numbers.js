@@ -62,8 +62,8 @@ function heading({ name, series }) {
   return h("th", { scope: "col", class: "number", "data-series": series }, name);
 }
 
-/** @param {string} label @param {Element} node */
-function scrolled(label, node) {
+/** Return a node within a region that scrolls sideways, by keyboard, too. @param {string} label @param {Element} node */
+export function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
 }
 

@@ -1,7 +1,9 @@
-/** Slow topics: sensitivity and tolerances of a design, computed when the reader comes to it. */
+/** Slow topics: extremes, sensitivity and tolerances of a design, computed when the reader comes to it. */
 
 import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { readySystem } from "../lib/numbers.js";
+import { extremes } from "./extremes.js";
 import { sensitivity } from "./sensitivity.js";
 import { tolerances } from "./tolerances.js";
 
@@ -10,6 +12,7 @@ import { tolerances } from "./tolerances.js";
  * @type {{ name: string, title: string, show: (place: HTMLElement, found: unknown, given: { objectives: Api.Objective[], signal: AbortSignal }) => void }[]}
  */
 const TOPICS = [
+  { name: "extremes", title: "Extremes over the turn", show: (place, found, given) => extremes(place, /** @type {Api.Extremes} */ (found), given) },
   { name: "sensitivity", title: "What it is sensitive to", show: (place, found, given) => sensitivity(place, /** @type {Api.Sensitivity} */ (found), given) },
   { name: "tolerances", title: "What tolerances do to the slider's position", show: (place, found, given) => tolerances(place, /** @type {Api.Tolerances} */ (found), given) },
 ];
@@ -32,7 +35,7 @@ export function topics(place, { job, number, objectives, requirements, signal })
       if (!seen.some((one) => one.isIntersecting)) return;
       watcher.disconnect();
       try {
-        const { analysis } = await get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal);
+        const [{ analysis }] = await Promise.all([get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal), readySystem()]);
         show(body, analysis[name], { objectives, signal });
       } catch (error) {
         if (!isAbort(error)) fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, sentence(sentenceOf(error))));

@@ -4,6 +4,8 @@ import { get } from "./api.js";
 
 /** @type {{ si: Api.Units, inch: Api.Units | null }} */
 const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the service, when it is first needed
+/** @type {[string, string][]} */
+let suffixes = []; // units of the API, and how keys of values in them end, the longest first
 /** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
 
@@ -19,7 +21,23 @@ export function apiSystem() {
 
 /** Make ready to show numbers in any system. Without an answer of the service they are metric. */
 export async function readySystem() {
-  SYSTEMS.inch ??= (await get("units")).inch;
+  if (SYSTEMS.inch) return;
+  const units = await get("units");
+  suffixes = Object.entries(units.suffixes).sort(([, one], [, other]) => other.length - one.length);
+  SYSTEMS.inch = units.inch;
+}
+
+/**
+ * Return the value of a record of the API whose key begins with a name and ends with a unit, and that unit: `least_mm` for
+ * "least". Needs `readySystem`.
+ * @param {Record<string, unknown>} record @param {string} name @returns {{ value: number | null, unit: string }}
+ */
+export function valueOf(record, name) {
+  for (const [unit, suffix] of suffixes) {
+    const value = record[name + suffix];
+    if (typeof value === "number" || value === null) return { value, unit };
+  }
+  return { value: null, unit: "" };
 }
 
 /** Choose a system; everything that shows numbers is drawn again (event "units" of the window). @param {string} name */

@@ -12,6 +12,7 @@ import { topics } from "../design/topics.js";
 import { top } from "../design/top.js";
 import { tradeOffs } from "../design/trade_offs.js";
 import { turning } from "../design/turning.js";
+import { wayBack } from "../design/way_back.js";
 import { whatIf } from "../design/what_if.js";
 import { keep } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
@@ -43,10 +44,10 @@ export async function show(place, { parts, query, signal }) {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
   };
-  const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
+  const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "way-back", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
   const files = takeAway(job, number, { signal });
   fill(place, top(shared), files.node, places.objectives,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places.numbers, places.topics);
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics);
   for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
   const machines = stage(places.stage, angle);
   const charts = curveCharts(places.curves, hold);
@@ -87,6 +88,7 @@ export async function show(place, { parts, query, signal }) {
   };
   drawAll();
   tradeOffs(places["trade-offs"], shared);
+  wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(at, true), signal });
   topics(places.topics, shared);
   window.addEventListener("units", () => [drawAll, sliders.draw].forEach((each) => each()), { signal });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();

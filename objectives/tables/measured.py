@@ -1,9 +1,10 @@
-"""Measured curves of a machine: what the columns of a table mean, and their samples in SI over the crank angle."""
+"""Measured curves of a machine: columns of a table by their meaning, samples in SI over the crank angle."""
 
 from __future__ import annotations
 
+import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,15 +14,16 @@ from numpy.typing import ArrayLike
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...objectives.kinds import ANGLE, SHOWN, TIME, Face, Kind
-from ...objectives.quantity import Array
-from ...objectives.tables.curve_extremes import every_curve, undefined_because
-from ..job.units import closest, kind_for, shown, to_si
+from ..kinds import ANGLE, SHOWN, TIME, Face, Kind
+from ..quantity import Array
+from .curve_extremes import every_curve, undefined_because
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Table = Mapping[str, ArrayLike]
+Units = Callable[[str, Kind], float | None]
+"""Value of a unit in SI, as it stands in a column's name; None for what is no unit of a kind."""
 CRANK_ANGLE, TIME_OF = "crank_angle", "time"
 _FARTHEST = 1e9  # rad or s: beyond, a double does not tell a crank angle to a millionth
 _ANGLE_NEEDED = "a measured table has the column crank_angle_deg, or time_s at constant speed"
@@ -52,12 +54,14 @@ class Measured:
     by_time: bool = False
 
 
-def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> dict[str, Column]:
+def columns_of(
+    names: Iterable[str], mechanism: Mechanism, linkage: Linkage, units: Units | None = None
+) -> dict[str, Column]:
     """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
 
-    A column is called as in the tables of this project, with any unit of its kind: slider_position_mm,
-    slider_position_in, "slider position [m]", torque_N_m. Raises `InputError` for a known name without its unit or with
-    one of another kind, for two columns of the same, and without a crank angle or a curve.
+    A column is called as in the tables of this project: slider_position_mm, slider_position_in, "slider position [m]",
+    torque_N_m. units: further ones than those in which values are shown. Raises `InputError` for a known name without
+    its unit or with one of another kind, for two columns of the same, and without a crank angle or a curve.
     """
     names = [str(name) for name in names]
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
@@ -67,19 +71,19 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
     kinds = {name: _kind_of(curve.shown) for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
     found: dict[str, Column] = {}
     for name in names:
-        column = _meaning(name, spoken, kinds)
+        column = _meaning(name, spoken, kinds, units)
         if column is None:
             continue
         first = next((other for other, given in found.items() if given.name == column.name), None)
         if first is not None:
-            raise InputError(f"a curve is measured once; got the columns {shown(first)} and {shown(name)}; drop one")
+            raise InputError(f"a curve is measured once; got the columns {first!r} and {name!r}; drop one")
         found[name] = column
     given = {column.name: name for name, column in found.items()}
     if CRANK_ANGLE in given:
         found.pop(given.get(TIME_OF, ""), None)
     elif TIME_OF not in given:
-        near = next((name for name in names if closest(_plain(name), ("crank_angle_deg", "time_s"))), None)
-        hint = f"is {shown(near)} one of them?" if near is not None else f"add one to {_listed(names)}"
+        near = next((name for name in names if _near(name, ("crank_angle_deg", "time_s"))), None)
+        hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
         raise InputError("time becomes a crank angle at the crank speed; got speed 0; give the speed, or crank angles")
@@ -90,7 +94,7 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
         )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:
-        near = next((close for name in names if name not in found and (close := closest(_plain(name), spoken))), None)
+        near = next((close for name in names if name not in found and (close := _near(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
             f"no column is a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
@@ -98,27 +102,29 @@ def columns_of(names: Iterable[str], mechanism: Mechanism, linkage: Linkage) -> 
     return found
 
 
-def measured_from(table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage) -> Measured:
+def measured_from(
+    table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage, units: Units | None = None
+) -> Measured:
     """Return the samples of a table; columns without a number are left out.
 
     Raises `InputError` as `columns_of` does, for values that cannot be, and for what the machine does not define.
     """
     names = [str(name) for name in table]
-    columns = columns_of(names, mechanism, linkage)
+    columns = columns_of(names, mechanism, linkage, units)
     values: dict[str, Array] = {}
     for name, column in columns.items():
         try:
             read = np.asarray(table[name], dtype=np.float64)
         except (TypeError, ValueError):
-            raise InputError(f"{shown(name)} has numbers; got others; leave empty what was not measured") from None
+            raise InputError(f"{name!r} has numbers; got others; leave empty what was not measured") from None
         if read.ndim != 1 or (values and len(read) != len(next(iter(values.values())))):
-            raise InputError(f"columns are lists of one length; got {shown(name)} of shape {read.shape}; correct it")
+            raise InputError(f"columns are lists of one length; got {name!r} of shape {read.shape}; correct it")
         scaled = column.factor * read
         limit = _FARTHEST if column.name in (CRANK_ANGLE, TIME_OF) else column.kind.limit
         wrong = np.flatnonzero(np.abs(scaled) > limit)
         if len(wrong):
             raise InputError(
-                f"{shown(name)} is at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
+                f"{name!r} is at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
                 f"{wrong[0] + 1}; check the unit, or leave empty what was not measured"
             )
         values[column.name] = scaled
@@ -131,12 +137,12 @@ def measured_from(table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Li
     for name in empty:
         del kept[name]
     if not kept:
-        asked = ", ".join(shown(given[name]) for name in empty)
+        asked = ", ".join(repr(given[name]) for name in empty)
         raise InputError(f"a curve has a number in a row with a crank angle; got none in {asked}; fill them in")
     for name in kept:
         reason = undefined_because(name, mechanism)
         if reason:
-            raise InputError(f"{shown(given[name])} is not defined for this machine: {reason}; or drop the column")
+            raise InputError(f"{given[name]!r} is not defined for this machine: {reason}; or drop the column")
     left_out = tuple(name for name in names if name not in columns or columns[name].name in empty)
     return Measured(theta[there], kept, left_out, int(len(theta) - there.sum()), by_time)
 
@@ -150,7 +156,7 @@ def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
     return turned
 
 
-def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind]) -> Column | None:
+def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], units: Units | None) -> Column | None:
     """Return the meaning of a column; None where it has none."""
     bracketed = _BRACKETED.fullmatch(text)
     stem = _plain(text if bracketed is None else bracketed[1])
@@ -164,36 +170,44 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind]) ->
     kind = kinds[spoken[said]]
     example = said + kind.metric.suffix
     if not unit:
-        raise InputError(f"a column has its unit in its name; got {shown(text)}; write it like {example}")
+        raise InputError(f"a column has its unit in its name; got {text!r}; write it like {example}")
     factor = _factor(unit, kind)
+    if factor is None and units is not None:
+        factor = units(unit, kind)
     if factor is not None:
         return Column(spoken[said], factor, kind)
-    try:
-        other = kind_for(unit.replace("_", " "))
-    except InputError:  # no unit: more of a name that is none here
+    if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
+        raise InputError(f"{said} is read in {_units_of(kind)}; got {text!r}; write it like {example}")
+    known = (other for other in SHOWN if _factor(unit, other) or (units is not None and units(unit, other)))
+    other = next(known, None)
+    if other is None:  # no unit: more of a name that is none here
         return None
-    raise InputError(f"{said} is {kind.name}; got {shown(text)}, {other.name}; write it like {example}")
+    raise InputError(f"{said} is {kind.name}; got {text!r}, {other.name}; write it like {example}")
 
 
 def _factor(unit: str, kind: Kind) -> float | None:
-    """Return the value of a unit in SI; None if it is none of the kind's."""
-    faces = [face for face in (Face(kind.unit, ""), kind.metric, kind.inch) if face is not None]
-    for face in faces:
-        if _squeezed(unit) in (_squeezed(face.symbol), _squeezed(face.suffix)):
+    """Return the value of a unit of tables in SI; None if it is none of the kind's."""
+    for face in _faces(kind):
+        if squeezed(unit) in (squeezed(face.symbol), squeezed(face.suffix)):
             return 1.0 / face.factor
-    symbols = {_squeezed(symbol): symbol for symbol in kind.typed}
-    try:
-        return to_si(f"1 {symbols.get(_squeezed(unit), unit.replace('_', ' '))}", kind)
-    except InputError:
-        return None
+    return None
+
+
+def _faces(kind: Kind) -> list[Face]:
+    return [face for face in (kind.metric, Face(kind.unit, ""), kind.inch) if face is not None and face.symbol]
+
+
+def _units_of(kind: Kind) -> str:
+    return " or ".join(dict.fromkeys(face.symbol for face in _faces(kind)))
 
 
 def _after(said: str, text: str) -> str:
-    """Return what follows a name, whatever separates its words."""
+    """Return the rest of a text after a name, whose words anything may separate."""
     return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(said.split("_")), "", text, count=1, flags=re.IGNORECASE)
 
 
-def _squeezed(unit: str) -> str:
+def squeezed(unit: str) -> str:
+    """Return the letters and digits of a unit, by which one in a column's name is told: Nm for N_m, N m and N·m."""
     return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
 
 
@@ -206,6 +220,11 @@ def _kind_of(face: Face) -> Kind:
     return next(kind for kind in SHOWN if kind.metric.symbol == face.symbol)
 
 
+def _near(name: str, words: Iterable[str]) -> str | None:
+    """Return which of some words a misspelt name means; None if none is near."""
+    return next(iter(difflib.get_close_matches(_plain(name)[:60], list(words), n=1)), None)
+
+
 def _listed(names: list[str]) -> str:
-    some = [shown(name) for name in names[:6]]
+    some = [repr(name) for name in names[:6]]
     return ", ".join(some) + (" ..." if len(names) > 6 else "") if some else "no columns"

@@ -1,0 +1,57 @@
+/** Least and greatest value of every curve of a design over the turn, and how its strokes differ. */
+
+import { fill, h } from "../lib/dom.js";
+import { text, unitOf, valueOf } from "../lib/numbers.js";
+import { scrolled } from "./numbers.js";
+
+const ENDS = ["least", "greatest"];
+const HEADS = ["Curve", ...ENDS.flatMap((end) => [end, "at crank angle", "at slider position"]), "Unit"];
+const STROKES = /** @type {const} */ (["outward", "inward"]);
+/** @type {[string, string, string, string][]} */
+const ROWS = [ // of the strokes: title, key of a stroke, of the difference, of the ratio
+  ["crank angle", "crank_angle", "", "duration_ratio"],
+  ["duration", "duration", "duration_difference", "duration_ratio"],
+  ["greatest slider speed", "greatest_speed", "greatest_speed_difference", "greatest_speed_ratio"],
+  ["– at crank angle", "greatest_speed_at_crank_angle", "", ""],
+  ["– at slider position", "greatest_speed_at_slider_position", "", ""],
+];
+
+/** Put the tables into `place`. @param {HTMLElement} place @param {Api.Extremes} found @param {{ signal: AbortSignal }} given */
+export function extremes(place, found, { signal }) {
+  const draw = () => fill(place, h("h3", {}, "Every curve"), scrolled("Every curve", curves(found)),
+    h("h3", {}, "Strokes"), scrolled("Strokes", strokes(found)),
+    h("p", { class: "quiet hint" }, "Found between the crank angles of the curves above as well. Difference and ratio are those of the outward stroke against the inward one."));
+  draw();
+  window.addEventListener("units", draw, { signal });
+}
+
+/** @param {Api.Extremes} found */
+function curves({ curves: every }) {
+  const rows = Object.values(every).map((curve) => {
+    const ends = ENDS.map((end) => [cell(curve, end), cell(curve, `${end}_at_crank_angle`, { withUnit: true }), cell(curve, `${end}_at_slider_position`, { withUnit: true })]);
+    return h("tr", {}, h("th", { scope: "row" }, curve.title), ends, h("td", { class: "quiet" }, unitOf(valueOf(curve, "least").unit)));
+  });
+  return table("Extremes of every curve", HEADS, rows);
+}
+
+/** @param {Api.Extremes} found */
+function strokes({ strokes: both }) {
+  const known = ROWS.filter(([, key]) => valueOf(both.outward, key).unit);
+  const rows = known.map(([title, key, difference, ratio]) =>
+    h("tr", {}, h("th", { scope: "row" }, title), STROKES.map((stroke) => cell(both[stroke], key, { withUnit: true })), cell(both, difference, { withUnit: true }), cell(both, ratio)));
+  return table("Outward and inward stroke", ["Stroke", ...STROKES, "difference", "ratio"], rows);
+}
+
+/** @param {Record<string, unknown>} record @param {string} name @param {{ withUnit?: boolean }} looks */
+function cell(record, name, { withUnit = false } = {}) {
+  if (!name) return h("td", {});
+  const { value, unit } = valueOf(record, name);
+  const shown = withUnit && value !== null && unit ? unitOf(unit) : "";
+  return h("td", { class: "number", "data-key": name, "data-value": value === null ? "" : String(value) }, text(value, unit), shown && shown !== "°" ? `\u00a0${shown}` : shown);
+}
+
+/** @param {string} caption @param {readonly string[]} heads @param {Node[]} rows */
+function table(caption, heads, rows) {
+  return h("table", {}, h("caption", { class: "hidden" }, caption),
+    h("thead", {}, h("tr", {}, heads.map((head, n) => h("th", { scope: "col", class: n && head !== "Unit" ? "number" : null }, head)))), h("tbody", {}, rows));
+}

@@ -1,0 +1,93 @@
+/** The way back: crank angles, speeds and accelerations of a design that move its slider as given. */
+
+import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { scrolled } from "./numbers.js";
+
+/** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
+/** @type {[Key, string, string][]} */
+const FIELDS = [
+  ["slider_position_mm", "Slider position", "mm"],
+  ["slider_velocity_m_s", "Slider velocity, if known", "m/s"],
+  ["slider_acceleration_m_s2", "Slider acceleration, if known", "m/s^2"],
+];
+
+/**
+ * Put a form into `place`. path: of the design in the API; positions: of its slider over the turn, mm; turnTo(angle): lets the crank
+ * stand there, deg.
+ * @param {HTMLElement} place
+ * @param {{ path: `jobs/${string}/designs/${number}`, positions: (number | null)[], turnTo: (angle: number) => void, signal: AbortSignal }} given
+ */
+export function wayBack(place, { path, positions, turnTo, signal }) {
+  const known = positions.filter((one) => one !== null);
+  const ends = [Math.min(...known), Math.max(...known)];
+  /** @type {Partial<Record<Key, number>>} */
+  const asked = { slider_position_mm: (ends[0] + ends[1]) / 2 };
+  /** @type {Api.Inverse | null} */
+  let found = null;
+  const fields = h("div", { class: "row" });
+  const answer = h("div", { "aria-live": "polite" });
+  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, fields);
+  fill(place, h("h2", {}, "From the slider back to the crank"), h("div", { class: "panel" }, form, answer));
+
+  function drawFields() {
+    fill(fields, FIELDS.map(([key, title, unit]) => {
+      const id = `way-back-${key}`;
+      const value = asked[key];
+      const input = h("input", { id, type: "text", inputmode: "decimal", autocomplete: "off", value: value === undefined ? "" : String(Number(inShown(value, unit).toPrecision(8))), oninput: ({ currentTarget }) => take(currentTarget, key, unit) });
+      return h("div", { class: "asked-for" }, h("label", { for: id }, title), h("div", {}, input, h("span", { class: "quiet" }, ` ${unitOf(unit)}`)));
+    }), h("button", { type: "submit" }, "Find crank angles"));
+  }
+
+  /** Keep what was typed, in the unit of the API. @param {HTMLInputElement} input @param {Key} key @param {string} unit */
+  function take(input, key, unit) {
+    const typed = input.value.trim().replaceAll("−", "-");
+    const value = Number(typed);
+    input.setAttribute("aria-invalid", String(!Number.isFinite(value)));
+    if (typed === "") delete asked[key];
+    else asked[key] = fromShown(value, unit);
+  }
+
+  async function ask() {
+    const wrong = FIELDS.find(([key]) => Number.isNaN(asked[key] ?? 0) || !Number.isFinite(asked[key] ?? 0));
+    if (wrong) return refuse(`${wrong[1].replace(", if known", "")} is a number; correct it, or leave it empty.`);
+    if (asked.slider_position_mm === undefined) return refuse(`A slider position is needed; it is ${reach()}.`);
+    try {
+      const { inverse } = await get(`${path}/inverse`, { ...asked }, signal);
+      found = /** @type {Api.Inverse} */ (/** @type {unknown} */ (inverse));
+      tell();
+    } catch (error) {
+      if (!isAbort(error)) refuse(`${sentenceOf(error)}.`);
+    }
+  }
+
+  /** @param {string} sentence */
+  function refuse(sentence) {
+    found = null;
+    fill(answer, h("p", { class: "bad", role: "alert" }, sentence.charAt(0).toUpperCase() + sentence.slice(1)));
+  }
+
+  const reach = () => `between ${text(ends[0], "mm")} and ${withUnit(ends[1], "mm")}`;
+
+  function tell() {
+    if (!found) {
+      fill(answer, h("p", { class: "quiet hint" }, `The slider of this design is ${reach()} from the crank pivot. Its velocity gives the crank speed; with its acceleration, too, the crank's acceleration. The slider's are positive along +x, as in the curves above, the crank's counter-clockwise.`));
+      return;
+    }
+    const { solutions, note } = found;
+    const heads = ["Crank angle", "Stroke, counter-clockwise", "Crank speed", "Crank acceleration", ""];
+    const rows = solutions.map(({ crank_angle_deg: at, stroke, crank_speed_rpm: speed, crank_acceleration_rad_s2: acceleration }) => h("tr", {},
+      h("th", { scope: "row", class: "number", "data-value": String(at) }, withUnit(at, "deg", 6)), h("td", {}, stroke ?? "dead centre"),
+      h("td", { class: "number", "data-value": speed === null ? "" : String(speed) }, withUnit(speed, "rpm", 6)),
+      h("td", { class: "number", "data-value": acceleration === null ? "" : String(acceleration) }, withUnit(acceleration, "rad/s^2", 6)),
+      h("td", {}, h("button", { type: "button", onclick: () => turnTo(at), "aria-label": `Turn the crank to ${withUnit(at, "deg", 6)}` }, "Turn there"))));
+    fill(answer, scrolled("Crank angles found",
+      h("table", {}, h("caption", { class: "hidden" }, "Crank angles found"), h("thead", {}, h("tr", {}, heads.map((head, n) => h(head ? "th" : "td", { scope: head ? "col" : null, class: n !== 1 && head ? "number" : null }, head)))), h("tbody", {}, rows))),
+      note ? h("p", { class: "quiet hint" }, `${note.charAt(0).toUpperCase()}${note.slice(1)}.`) : null);
+  }
+
+  const draw = () => [drawFields, tell].forEach((each) => each());
+  draw();
+  window.addEventListener("units", draw, { signal });
+}
