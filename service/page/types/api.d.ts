@@ -73,6 +73,8 @@ declare global {
     interface Inverse {
       solutions: { crank_angle_deg: number; stroke: string | null; crank_speed_rpm: number | null; crank_acceleration_rad_s2: number | null }[];
       note: string;
+      slider_velocity_m_s: number | null;
+      slider_acceleration_m_s2: number | null;
     }
     /** What /analysis gives for "sensitivity", which its description leaves open: rates such as crank_per_mm beside the rest. */
     interface Sensitivity {

@@ -36,7 +36,7 @@ function curves({ curves: every }) {
 
 /** @param {Api.Extremes} found */
 function strokes({ strokes: both }) {
-  const known = ROWS.filter(([, key]) => valueOf(both.outward, key).unit);
+  const known = ROWS.filter(([, key]) => valueOf(both.outward, key).value !== null); // no durations without a speed
   const rows = known.map(([title, key, difference, ratio]) =>
     h("tr", {}, h("th", { scope: "row" }, title), STROKES.map((stroke) => cell(both[stroke], key, { withUnit: true })), cell(both, difference, { withUnit: true }), cell(both, ratio)));
   return table("Outward and inward stroke", ["Stroke", ...STROKES, "difference", "ratio"], rows);

@@ -23,7 +23,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   const known = positions.filter((one) => one !== null);
   const ends = [Math.min(...known), Math.max(...known)];
   /** @type {Partial<Record<Key, number>>} */
-  const asked = { slider_position_mm: (ends[0] + ends[1]) / 2 };
+  const asked = { slider_position_mm: Number(((ends[0] + ends[1]) / 2).toPrecision(4)) };
   /** @type {Api.Inverse | null} */
   let found = null;
   const fields = h("div", { class: "row" });
@@ -75,16 +75,17 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
       fill(answer, h("p", { class: "quiet hint" }, `The slider of this design is ${reach()} from the crank pivot. Its velocity gives the crank speed; with its acceleration, too, the crank's acceleration. The slider's are positive along +x, as in the curves above, the crank's counter-clockwise.`));
       return;
     }
-    const { solutions, note } = found;
-    const heads = ["Crank angle", "Stroke, counter-clockwise", "Crank speed", "Crank acceleration", ""];
+    const { solutions, note, slider_velocity_m_s: velocity, slider_acceleration_m_s2: further } = found;
+    const heads = ["Crank angle", "Stroke", ...(velocity === null ? [] : ["Crank speed"]), ...(further === null ? [] : ["Crank acceleration"]), ""];
+    /** @param {number | null} value @param {string} unit */
+    const cell = (value, unit) => h("td", { class: "number", "data-value": value === null ? "" : String(value) }, withUnit(value, unit, 6));
     const rows = solutions.map(({ crank_angle_deg: at, stroke, crank_speed_rpm: speed, crank_acceleration_rad_s2: acceleration }) => h("tr", {},
       h("th", { scope: "row", class: "number", "data-value": String(at) }, withUnit(at, "deg", 6)), h("td", {}, stroke ?? "dead centre"),
-      h("td", { class: "number", "data-value": speed === null ? "" : String(speed) }, withUnit(speed, "rpm", 6)),
-      h("td", { class: "number", "data-value": acceleration === null ? "" : String(acceleration) }, withUnit(acceleration, "rad/s^2", 6)),
+      velocity === null ? null : cell(speed, "rpm"), further === null ? null : cell(acceleration, "rad/s^2"),
       h("td", {}, h("button", { type: "button", onclick: () => turnTo(at), "aria-label": `Turn the crank to ${withUnit(at, "deg", 6)}` }, "Turn there"))));
     fill(answer, scrolled("Crank angles found",
       h("table", {}, h("caption", { class: "hidden" }, "Crank angles found"), h("thead", {}, h("tr", {}, heads.map((head, n) => h(head ? "th" : "td", { scope: head ? "col" : null, class: n !== 1 && head ? "number" : null }, head)))), h("tbody", {}, rows))),
-      note ? h("p", { class: "quiet hint" }, `${note.charAt(0).toUpperCase()}${note.slice(1)}.`) : null);
+      h("p", { class: "quiet hint" }, "Strokes are those of a crank that turns counter-clockwise.", note ? ` ${note.charAt(0).toUpperCase()}${note.slice(1)}.` : null));
   }
 
   const draw = () => [drawFields, tell].forEach((each) => each());

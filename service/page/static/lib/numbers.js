@@ -29,11 +29,11 @@ export async function readySystem() {
 
 /**
  * Return the value of a record of the API whose key begins with a name and ends with a unit, and that unit: `least_mm` for
- * "least". Needs `readySystem`.
+ * "least"; a ratio has no unit. Needs `readySystem`.
  * @param {Record<string, unknown>} record @param {string} name @returns {{ value: number | null, unit: string }}
  */
 export function valueOf(record, name) {
-  for (const [unit, suffix] of suffixes) {
+  for (const [unit, suffix] of [...suffixes, ["", ""]]) {
     const value = record[name + suffix];
     if (typeof value === "number" || value === null) return { value, unit };
   }

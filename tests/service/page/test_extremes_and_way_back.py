@@ -1,0 +1,156 @@
+"""The view of a design: extremes of its curves, and the way back from its slider to the crank."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+from typer.testing import CliRunner
+
+from slidercrank.service.cli import app as command_line
+from tests.service.api.fixed_front import Solved
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+
+DESIGN = 3
+STILL: dict[str, Any] = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 900}}
+CELLS = """table => [...table.tBodies[0].rows].map(row => [row.cells[0].textContent,
+  ...[...row.cells].slice(1).filter(cell => cell.dataset.value !== undefined)
+    .map(cell => cell.dataset.value === "" ? null : Number(cell.dataset.value))])"""
+
+
+def told(solved: Solved, *arguments: str) -> Any:
+    run = ("latest", "--runs", str(solved.folder.parent), "--design", str(DESIGN), "--json")
+    done = CliRunner().invoke(command_line, [arguments[0], *run, *arguments[1:]])
+    assert done.exit_code == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.fixture
+def page(open_page: Open, solved: Solved) -> Page:
+    """Return the view of a design."""
+    opened = open_page(solved.store, f"#/jobs/{solved.number}/designs/{DESIGN}", expected=("422",), **STILL)
+    expect(opened.locator(".mechanism .link.crank").first).to_be_visible(timeout=30_000)
+    return opened
+
+
+def table(page: Page, name: str) -> Locator:
+    return page.get_by_role("table", name=name)
+
+
+def field(page: Page, name: str) -> Locator:
+    return page.get_by_role("textbox", name=name)
+
+
+def test_extremes_are_those_of_the_command_line_in_either_system(page: Page, solved: Solved) -> None:
+    record = told(solved, "analyse", "--show", "extremes")["extremes"]
+    page.locator("section.extremes").scroll_into_view_if_needed()
+    expect(table(page, "Extremes of every curve")).to_be_visible(timeout=30_000)
+    rows = table(page, "Extremes of every curve").evaluate(CELLS)
+    # The run of the command line has the same designs but for rounding; an angle on a flat top feels more of that.
+    assert [row[0] for row in rows] == [entry["title"] for entry in record["curves"].values()]
+    for row, entry in zip(rows, record["curves"].values(), strict=True):
+        values = [value for key, value in entry.items() if key != "title"]
+        assert row[1:] == pytest.approx(values, rel=1e-3, abs=1e-3), row[0]
+    strokes = {row[0]: row[1:] for row in table(page, "Outward and inward stroke").evaluate(CELLS)}
+    expected = record["strokes"]
+    assert strokes["duration"] == pytest.approx(
+        [
+            *(expected[name]["duration_s"] for name in ("outward", "inward")),
+            expected["duration_difference_s"],
+            expected["duration_ratio"],
+        ],
+        rel=1e-6,
+    )
+    assert strokes["greatest slider speed"][2:] == pytest.approx(
+        [expected["greatest_speed_difference_m_s"], expected["greatest_speed_ratio"]], rel=1e-6
+    )
+    first = table(page, "Extremes of every curve").locator("tbody tr").first
+    expect(first).to_contain_text("mm")
+    page.get_by_label("Units").select_option("inch")
+    expect(first.locator("td").last).to_have_text("in")
+    shown = float(first.locator("td").first.inner_text().replace("−", "-"))
+    assert shown == pytest.approx(record["curves"]["slider_position"]["least_mm"] / 25.4, rel=1e-3)
+
+
+def test_the_way_back_is_that_of_the_command_line(page: Page, solved: Solved) -> None:
+    position = field(page, "Slider position")
+    middle = float(position.input_value())
+    position.press("Enter")
+    found = table(page, "Crank angles found")
+    expect(found.locator("tbody tr")).to_have_count(2)
+    expect(found).not_to_contain_text("Crank speed")
+    field(page, "Slider velocity").fill("−1.5")
+    field(page, "Slider acceleration").fill("4")
+    page.get_by_role("button", name="Find crank angles").click()
+    expect(found).to_contain_text("Crank acceleration")
+    motion = (f"--slider-position={middle} mm", "--slider-velocity=-1.5 m/s", "--slider-acceleration=4 m/s^2")
+    expected = told(solved, "inverse", *motion)["solutions"]
+    angles = [float(str(cell.get_attribute("data-value"))) for cell in found.locator("tbody th").all()]
+    assert angles == pytest.approx([solution["crank_angle_deg"] for solution in expected], rel=1e-6)
+    for row, solution in zip(found.evaluate(CELLS), expected, strict=True):
+        values = [solution["crank_speed_rpm"], solution["crank_acceleration_rad_s2"]]
+        assert row[1:] == pytest.approx(values, rel=1e-6)
+    page.get_by_role("button", name="Turn the crank to").nth(1).click()
+    crank = page.get_by_role("slider", name="Crank angle")
+    assert float(crank.input_value()) == pytest.approx(angles[1], abs=1.0)
+
+
+def test_the_way_back_in_inches_is_the_same(page: Page) -> None:
+    position = field(page, "Slider position")
+    middle = float(position.input_value())
+    field(page, "Slider velocity").fill("2")
+    field(page, "Slider velocity").press("Enter")
+    found = table(page, "Crank angles found")
+    before = found.evaluate(CELLS)
+    page.get_by_label("Units").select_option("inch")
+    assert float(position.input_value()) == pytest.approx(middle / 25.4, rel=1e-7)
+    assert float(field(page, "Slider velocity").input_value()) == pytest.approx(2.0 / 0.0254, rel=1e-7)
+    position.press("End")
+    position.press("Enter")
+    page.wait_for_load_state("networkidle")
+    for row, other in zip(before, found.evaluate(CELLS), strict=True):
+        assert row[1:] == pytest.approx(other[1:], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("typed", "sentence"),
+    [
+        ({"Slider position": ""}, "A slider position is needed; it is between"),
+        ({"Slider position": "abc"}, "Slider position is a number; correct it, or leave it empty."),
+        ({"Slider velocity": "Infinity"}, "Slider velocity is a number; correct it, or leave it empty."),
+        ({"Slider position": "100000"}, "The slider position must be in reach of the open branch"),
+        ({"Slider position": "1e99"}, "slider_position_mm"),
+        ({"Slider acceleration": "4"}, "got acceleration 4 m/s^2 alone"),
+    ],
+)
+def test_what_cannot_be_is_said_in_a_sentence(page: Page, typed: dict[str, str], sentence: str) -> None:
+    for name, text in typed.items():
+        field(page, name).fill(text)
+        field(page, name).press("Enter")
+    expect(page.locator(".way-back [role=alert]")).to_contain_text(sentence)
+    expect(table(page, "Crank angles found")).to_have_count(0)
+    for name in typed:
+        field(page, name).fill("" if name != "Slider position" else "300")
+    page.get_by_role("button", name="Find crank angles").click()
+
+
+def test_at_a_dead_centre_the_speed_is_undefined_and_says_so(page: Page) -> None:
+    page.locator("section.extremes").scroll_into_view_if_needed()
+    outermost = table(page, "Extremes of every curve").locator("[data-key=greatest]").first
+    field(page, "Slider position").fill(str(outermost.get_attribute("data-value", timeout=30_000)))
+    field(page, "Slider velocity").fill("0")
+    field(page, "Slider velocity").press("Enter")
+    expect(page.locator(".way-back")).to_contain_text("crank speed and acceleration are undefined")
+    expect(table(page, "Crank angles found").locator("tbody tr")).to_have_count(1)
+
+
+def test_nothing_bars_the_way_of_anybody(page: Page) -> None:
+    page.locator("section.extremes").scroll_into_view_if_needed()
+    expect(table(page, "Extremes of every curve")).to_be_visible(timeout=30_000)
+    field(page, "Slider velocity").fill("1")
+    field(page, "Slider velocity").press("Enter")
+    expect(table(page, "Crank angles found")).to_be_visible()
+    require_accessible(page)
