@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,6 +24,7 @@ def report(
         File, "Where to write it: HTML, or PDF for a name that ends in .pdf.  [default: <run>-design-<NO>.html here]"
     ] = None,
     pdf: Annotated[bool, "Write PDF instead of HTML."] = False,
+    measured: Annotated[File, "A CSV file of measured curves to compare, as for `analyse`."] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:
@@ -38,6 +40,7 @@ def report(
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with waiting("writing the report"):
+        from ..designs.measured_file import read_measured, text_of
         from ..report.design_report import design_report
         from ..report.html import html_file
         from ..report.pdf import pdf_file
@@ -45,7 +48,12 @@ def report(
 
         versions, certificate = _kept(folder / "versions.json") or {}, _kept(folder / "certificate.json")
         kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
-        made = design_report(subject_of(problem_of(folder, result), result, number, run=folder.name, **kept))
+        subject = subject_of(problem_of(folder, result), result, number, run=folder.name, **kept)
+        if measured is not None:
+            design = subject.design
+            samples = read_measured(text_of(measured), design.mechanism, design.linkage)
+            subject = replace(subject, measured=samples)
+        made = design_report(subject)
         content = pdf_file(made) if pdf else html_file(made)
     write_file(file, content)
     say(f"report: {file}")

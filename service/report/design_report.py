@@ -15,6 +15,7 @@ from .document import Facts, Paragraph, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
 from .front_section import front_section
 from .job_section import job_section, search_section
+from .measured_section import measured_section
 from .subject import Subject
 
 _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
@@ -36,6 +37,7 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
             design_section(subject),
             sensitivity_section(subject),
             *([] if tolerances is None else [tolerances]),
+            *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
             numbers_section(subject),
             _versions(subject, when),
         ),

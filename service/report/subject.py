@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...objectives.kinds import System
+from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.shown_units import result_in, row_in
@@ -21,7 +22,8 @@ class Subject:
 
     result: in the units of the system.
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
-    changed: the design with other lengths than it has in the front; None for the design as it is.
+    changed: the design with other lengths than it has in the front; None for the design as it is. measured: curves to
+    put beside those of the design.
     """
 
     result: Result
@@ -34,6 +36,7 @@ class Subject:
     certificate: Mapping[str, Any] | None = None
     changed: Variation | None = None
     system: System = "metric"
+    measured: Measured | None = None
 
     @property
     def row(self) -> Row:

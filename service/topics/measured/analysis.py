@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from ...figures.sheets import SAMPLES, Line, Panel, Sheet, lengths, over_turn, t
 from ...text.tables import plain, print_table, table
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
+_NAMED = 12  # of the columns that were left out
 _UNDETERMINED = "undetermined where friction locks"
 
 
@@ -69,8 +71,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at\ndeg", "unit", ruled=True)
     fits = table("curve", ">crank angle\ndeg", ">value", ">RMS left", "unit", ruled=True)
     for entry in numbers["curves"].values():
-        given = {split_unit(key)[0]: value for key, value in entry.items()}
-        unit = next(split_unit(key)[1] for key in entry if split_unit(key)[0] == "rms")
+        given, unit = told(entry)
         at = given["largest_at_crank_angle"]
         cells = [_text(given[name]) for name in ("rms", "mean", "largest")]
         rows.add_row(given["title"], str(given["samples"]), *cells, "" if at is None else f"{at:.2f}", unit)
@@ -85,12 +86,25 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     console.print()
     console.print("Shifts that, added to what was measured, fit best; not applied above", style="bold", soft_wrap=True)
     print_table(console, fits)
-    if numbers["rows_without_crank_angle"]:
-        console.print(f"Rows without a crank angle, left out: {numbers['rows_without_crank_angle']}", soft_wrap=True)
-    if numbers["left_out"]:
-        console.print(
-            f"Columns that are no curve, left out: {', '.join(numbers['left_out'])}", soft_wrap=True, markup=False
-        )
+    for line in left_out(numbers):
+        console.print(line, soft_wrap=True, markup=False)
+
+
+def told(entry: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+    """Return the numbers of a curve by their names without units, and the unit of its values."""
+    unit = next(split_unit(key)[1] for key in entry if split_unit(key)[0] == "rms")
+    return {split_unit(key)[0]: value for key, value in entry.items()}, unit
+
+
+def left_out(numbers: Mapping[str, Any]) -> list[str]:
+    """Return sentences on the rows and columns that were left out."""
+    rows, names = numbers["rows_without_crank_angle"], numbers["left_out"]
+    lines = [f"Rows without a crank angle, left out: {rows}"] if rows else []
+    if names:
+        some = [name if name.isprintable() else ascii(name) for name in names[:_NAMED]]
+        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        lines.append(f"Columns that are no curve or empty, left out: {', '.join(some)}{more}")
+    return lines
 
 
 def _text(value: float | None) -> str:
