@@ -94,7 +94,7 @@ def columns_of(
         )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:
-        near = next((close for name in names if name not in found and (close := _near(name, spoken))), None)
+        near = next((close for name in names if name not in found and (close := _curve_near(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
             f"no column is a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
@@ -218,6 +218,12 @@ def _plain(text: str) -> str:
 def _kind_of(face: Face) -> Kind:
     """Return the kind of a curve by the unit in which it is shown."""
     return next(kind for kind in SHOWN if kind.metric.symbol == face.symbol)
+
+
+def _curve_near(name: str, spoken: Iterable[str]) -> str | None:
+    """Return the curve that a column may mean: one with its first word, "Position [mm]", or else with a like name."""
+    word = _plain(name).partition("_")[0]
+    return next((curve for curve in spoken if word in curve.split("_")), None) or _near(name, spoken)
 
 
 def _near(name: str, words: Iterable[str]) -> str | None:

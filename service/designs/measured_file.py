@@ -111,7 +111,8 @@ def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
             if (begin and not begin.startswith("#")) or (not begin and any(cell.strip() for cell in cells)):
                 yield reader.line_num, cells
     except csv.Error as error:
-        raise InputError(f"{_NAME} is CSV; got {error} in line {reader.line_num}; correct it") from None
+        why = str(error).encode("unicode_escape").decode()  # it names the sign between the values, perhaps a tab
+        raise InputError(f"{_NAME} is CSV; got {why} in line {reader.line_num}; correct it") from None
 
 
 def _portions(lines: Iterator[tuple[int, list[str]]], width: int) -> Iterator[tuple[list[int], list[list[str]]]]:

@@ -59,6 +59,8 @@ def test_other_columns_are_left_out(name: str) -> None:
         ([], "got neither; add one to no columns"),
         (["crank_angle_deg"], "no column is a curve with its unit, such as slider_position_mm"),
         (["crank_angle_deg", "slider_positon_mm"], "did you mean slider_position?"),
+        (["crank_angle_deg", "Velocity [m/s]"], "did you mean slider_velocity?"),
+        (["crank_angle_deg", "u"], "curves are slider_position, slider_velocity,"),
     ],
 )
 def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> None:

@@ -19,6 +19,7 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.tables.deviation import deviations
 from slidercrank.service.designs.measured_file import read_measured, text_of
 from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.runs.result import json_text
 from slidercrank.service.topics.measured import MEASURED
 from slidercrank.service.topics.measured import analysis as topic
 from tests.service import fronts
@@ -137,6 +138,27 @@ def test_a_file_that_cannot_be_is_refused_in_a_sentence(text: str, words: str) -
         read(text)
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_damaged_files_are_read_or_refused_in_one_line() -> None:
+    random = np.random.default_rng(52)
+    pieces = [*",;\t\n\r\"'.-+eE09 \0#_[]()°²\x1b", "nan", "inf", "1e308", "1e-320", "_N", "slider_position_mm", '""']
+    ends = {"read": 0, "refused": 0}
+    for _ in range(400):
+        text = PLAIN
+        for _ in range(random.integers(1, 5)):
+            start = int(random.integers(0, len(text) + 1))
+            text = text[:start] + str(random.choice(pieces)) + text[start + int(random.choice([0, 0, 1, 8])) :]
+        said = ""
+        try:
+            measured = read_measured(text, fronts.MACHINE, LINKAGE)
+            numbers = MEASURED.of(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(lambda: False)
+            assert json.loads(json_text(numbers)) == numbers
+        except InputError as error:
+            said = str(error)
+        assert said.isprintable(), text
+        ends["refused" if said else "read"] += 1
+    assert min(ends.values()) > 20
 
 
 def test_files_that_are_none_are_refused(tmp_path: Path, command: Command) -> None:
