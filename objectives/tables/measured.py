@@ -207,7 +207,7 @@ def _after(said: str, text: str) -> str:
 
 
 def squeezed(unit: str) -> str:
-    """Return the letters and digits of a unit, by which one in a column's name is told: Nm for N_m, N m and N·m."""
+    """Return the letters and digits of a unit: Nm for N_m, N m and N·m."""
     return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
 
 
@@ -221,7 +221,7 @@ def _kind_of(face: Face) -> Kind:
 
 
 def _curve_near(name: str, spoken: Iterable[str]) -> str | None:
-    """Return the curve that a column may mean: one with its first word, "Position [mm]", or else with a like name."""
+    """Return the curve that a column may mean: one with its first word, or else with a like name."""
     word = _plain(name).partition("_")[0]
     return next((curve for curve in spoken if word in curve.split("_")), None) or _near(name, spoken)
 

@@ -69,8 +69,8 @@ def analyse(
     ] = None,
     measured: Annotated[
         File,
-        "A CSV file of measured curves to compare: a column crank_angle_deg or time_s, and others such as "
-        "slider_position_mm or torque_Nm.",
+        "A CSV file of measured curves to compare: a column crank_angle_deg, or time_s from crank angle 0 on, and "
+        "others such as slider_position_mm or torque_Nm.",
     ] = None,
     figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None,
     cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None,
