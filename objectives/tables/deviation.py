@@ -47,8 +47,8 @@ class Fit:
 class Deviation:
     """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
 
-    count: samples. rms: root mean square. largest: the one of the greatest size, with its sign; crank_angle: there,
-    rad in [0, 2 pi). fit: None for samples at less than three crank angles, and for a curve
+    count: samples. rms: root mean square. largest: the one of the greatest size, with its sign; crank_angle, rad in
+    [0, 2 pi), and sample: there. fit: None for samples at less than three crank angles, and for a curve
     that is constant or undetermined somewhere.
     """
 
@@ -61,6 +61,7 @@ class Deviation:
     mean: float
     largest: float
     crank_angle: float
+    sample: float
     fit: Fit | None
 
 
@@ -83,10 +84,10 @@ def deviations(
         off = values - curve.values[there]
         if np.isfinite(off).all():
             at = int(np.argmax(np.abs(off)))
-            numbers = (_rms(off), float(off.mean()), float(off[at]), float(angles[at]))
+            numbers = (_rms(off), float(off.mean()), float(off[at]), float(angles[at]), float(values[at]))
             fit = _fit(mechanism, linkage, name, angles, values, nodes, table[name])
         else:
-            numbers, fit = (math.nan, math.nan, math.nan, math.nan), None
+            numbers, fit = (math.nan,) * 5, None
         found.append(Deviation(name, curve.title, curve.si, curve.shown, len(values), *numbers, fit))
     return found
 

@@ -234,10 +234,11 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
         assert words in told.stdout
     assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
     sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(text_of(file), fronts.MACHINE, LINKAGE))
-    assert [len(panel.lines) for panel in sheet.panels] == [3, 3]
+    assert [len(panel.lines) for panel in sheet.panels] == [4, 4]
     assert overlaps(draw_sheet(sheet)) == []
     for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):
-        ring = panel.lines[2]
+        _, fitted, measured, ring = panel.lines
+        assert np.interp(measured.x, fitted.x, fitted.y) == pytest.approx(measured.y, abs=1e-2)
         assert ring.x == pytest.approx([entry["largest_at_crank_angle_deg"]], rel=1e-9)
 
 
@@ -276,6 +277,6 @@ def test_at_most_some_thousand_samples_are_drawn() -> None:
     text = "crank_angle_deg,slider_position_mm\n" + "\n".join(f"{angle},300" for angle in angles)
     measured = read_measured(text, fronts.MACHINE, LINKAGE)
     (panel,) = topic.figure(fronts.MACHINE, LINKAGE, measured=measured).panels
-    assert len(panel.lines[1].x) == 3000
+    assert len(panel.lines[-2].x) == 3000
     (found,) = deviations(fronts.MACHINE, LINKAGE, measured.crank_angle, measured.values)
-    assert panel.lines[2].x == pytest.approx([math.degrees(found.crank_angle)], abs=1e-9)
+    assert panel.lines[-1].x == pytest.approx([math.degrees(found.crank_angle)], abs=1e-9)

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 
 from ....model.linkage.linkage import Linkage
@@ -17,7 +16,7 @@ from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
-from ...figures.sheets import SAMPLES, Line, Panel, Sheet, lengths, over_turn, turn
+from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, lengths, over_turn, turn
 from ...text.tables import plain, print_table, table
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
@@ -112,36 +111,37 @@ def _text(value: float | None) -> str:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Sheet:
-    """Return a panel for each measured curve: the computed one, the samples, and the largest deviation."""
-    found = deviations(mechanism, linkage, measured.crank_angle, measured.values)
-    theta = turn(cuts_of(mechanism, linkage))
-    computed = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
+    """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
     degrees = np.degrees(np.mod(measured.crank_angle, 2.0 * np.pi))
     panels = tuple(
-        _panel(one, np.degrees(theta), computed[one.name], degrees, measured.values[one.name]) for one in found
+        _panel(found, _curves(mechanism, linkage, found), degrees, measured.values[found.name])
+        for found in deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
-    subtitle = f"{lengths(linkage)}; line: computed, dots: measured, ring: the largest deviation"
+    subtitle = f"{lengths(linkage)}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation"
     return Sheet("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
-def _panel(
-    found: Deviation,
-    across: NDArray[np.float64],
-    curve: NDArray[np.float64],
-    at: NDArray[np.float64],
-    samples: NDArray[np.float64],
-) -> Panel:
+def _curves(mechanism: Mechanism, linkage: Linkage, found: Deviation) -> list[Line]:
+    """Return the computed curve, and where there is a fit, the same where the samples would then lie."""
+
+    def line(style: int, angle: float, value: float) -> Line:
+        theta = turn(cuts_of(mechanism, linkage) - angle)
+        at = np.mod(theta + angle, 2.0 * np.pi)
+        (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == found.name)
+        return Line("", np.degrees(theta), found.shown.factor * (curve - value), style=style)
+
+    fit = found.fit
+    return [line(0, 0.0, 0.0), *([] if fit is None else [line(DASHED, fit.crank_angle, fit.value)])]
+
+
+def _panel(found: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
     factor = found.shown.factor
     there = np.flatnonzero(np.isfinite(samples))
     drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
-    lines = [
-        Line("", across, factor * curve),
-        Line("", at[drawn], factor * samples[drawn], style=SAMPLES),
-    ]
+    lines = [*computed, Line("", at[drawn], factor * samples[drawn], style=SAMPLES)]
     note = _UNDETERMINED
     if math.isfinite(found.rms):
-        worst = there[np.argmax(np.abs(at[there] - math.degrees(found.crank_angle)) < 1e-9)]
-        lines.append(Line("", at[worst : worst + 1], factor * samples[worst : worst + 1], points=True))
-        largest = f"{shown(factor * found.largest)} at {shown(math.degrees(found.crank_angle))}°"
-        note = f"RMS {shown(factor * found.rms)}, largest {largest}"
+        place, sample = np.degrees([found.crank_angle]), factor * np.array([found.sample])
+        lines.append(Line("", place, sample, points=True))
+        note = f"RMS {shown(factor * found.rms)}, largest {shown(factor * found.largest)} at {shown(place[0])}°"
     return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note)
