@@ -35,9 +35,11 @@ _NAME = "a measured file"
 def text_of(path: Path) -> str:
     """Return the text of a file. Raises `InputError` for one that cannot be read, is large or is no text."""
     try:
-        if path.is_file() and path.stat().st_size > _LARGEST:
-            raise InputError(f"{_NAME} has at most {_LARGEST // 1_000_000} MB; got {path}; keep fewer rows")
-        return path.read_bytes().decode("utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(_LARGEST + 1)
+        if len(content) > _LARGEST:
+            raise InputError(f"{_NAME} has at most {_LARGEST // 1_000_000} MB; got more in {path}; keep fewer rows")
+        return content.decode("utf-8-sig")
     except OSError as error:
         raise InputError(f"{_NAME} is one that can be read; got {path}: {error.strerror}; name it") from None
     except UnicodeDecodeError:
@@ -81,9 +83,6 @@ def _columns(text: str, chosen: Callable[[list[str]], Collection[str]]) -> dict[
             f"{_NAME} begins with a line that names its columns; got {', '.join(names)[:60]!r}; add one such as "
             "crank_angle_deg,slider_position_mm"
         )
-    twice = next((name for name in names if name and names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f"{_NAME} has every column once; got {twice!r} twice; drop one")
     meant = chosen([name for name in names if name])
     wanted = [place for place, name in enumerate(names) if name in meant]
     parts: list[list[Array]] = [[] for _ in wanted]

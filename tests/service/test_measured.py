@@ -17,6 +17,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.tables.deviation import deviations
+from slidercrank.service.designs import measured_file
 from slidercrank.service.designs.measured_file import read_measured, text_of
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.runs.result import json_text
@@ -55,6 +56,7 @@ def read(text: str) -> list[list[float]]:
         PLAIN.replace("300.5", "3.005E+2"),
         PLAIN.replace("slider_position_mm", "Slider position [mm]"),
         PLAIN.replace("\n", ",20 C,\n").replace("20 C", "note", 1),
+        PLAIN.replace("\n", ",1,2\n").replace("1,2", "a,a", 1),
         PLAIN.rstrip("\n"),
     ],
 )
@@ -122,7 +124,10 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         ),
         (PLAIN.replace("300.5", '"1,300.5"'), "'slider_position_mm' has numbers; got '1,300.5' in line 3"),
         (PLAIN.replace("300.5", '"300"x'), "is CSV; got ',' expected after '\"' in line 3; correct it"),
-        (PLAIN.replace("slider_position_mm", "crank_angle_deg"), "has every column once; got 'crank_angle_deg' twice"),
+        (
+            PLAIN.replace("slider_position_mm", "crank_angle_deg"),
+            "is measured once; got the columns 'crank_angle_deg'",
+        ),
         (PLAIN.replace("slider_position_mm", "slider_position"), "a column has its unit in its name"),
         (PLAIN.replace("slider_position_mm", "slider_position_kg"), "got 'slider_position_kg', a mass"),
         (PLAIN.replace("slider_position_mm", "pressure_bar"), "no column is a curve with its unit"),
@@ -161,14 +166,17 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
     assert min(ends.values()) > 20
 
 
-def test_files_that_are_none_are_refused(tmp_path: Path, command: Command) -> None:
-    latin, wide = tmp_path / "latin.csv", tmp_path / "wide.csv"
+def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measured_file, "_LARGEST", 1000)
+    latin, wide, large = tmp_path / "latin.csv", tmp_path / "wide.csv", tmp_path / "large.csv"
+    large.write_text(PLAIN + "\n" * 1000)
     latin.write_bytes("crank angle [°],slider_position_mm\n0,430\n".encode("latin-1"))
     wide.write_bytes(PLAIN.encode("utf-16"))
     for file, words in (
         (latin, "is UTF-8 text; got other bytes"),
         (wide, "is UTF-8 text; got other bytes"),
         (tmp_path, "Is a directory"),
+        (large, "has at most 0 MB; got more in"),
         (tmp_path / "none.csv", "No such file"),
     ):
         with pytest.raises(InputError, match=words):
