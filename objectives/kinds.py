@@ -145,7 +145,31 @@ QUADRATIC_DAMPING = Kind(
     typed=("N s^2/m^2", "N s^2/mm^2", "lbf s^2/in^2"),
 )
 PRESSURE = Kind(
-    "a pressure", "Pa", "207 GPa", 1e15, face("MPa", 1e-6), face("psi", _INCH**2 / _LBF), ("Pa", "MPa", "GPa", "psi")
+    name="a pressure",
+    unit="Pa",
+    example="207 GPa",
+    limit=1e15,
+    metric=face("MPa", 1e-6),
+    inch=face("psi", _INCH**2 / _LBF),
+    typed=("Pa", "kPa", "bar", "MPa", "GPa", "psi"),
+)
+VOLUME = Kind(
+    name="a volume",
+    unit="m^3",
+    example="250 cm^3",
+    limit=1e12,
+    metric=face("cm^3", 1e6),
+    inch=face("in^3", 1.0 / _INCH**3),
+    typed=("m^3", "cm^3", "mm^3", "in^3"),
+)
+ENERGY = Kind(
+    name="an energy",
+    unit="J",
+    example="60 J",
+    limit=1e15,
+    metric=face("J"),
+    inch=face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)),
+    typed=("J", "kJ", "ft lbf"),
 )
 RATIO = Kind("a ratio", "", "3.2", 1e9, face(""))
 JERK = Kind("a jerk", "m/s^3", "2000 m/s^3", 1e12, face("m/s^3"), face("in/s^3", _PER_INCH), ("m/s^3", "in/s^3"))
@@ -169,7 +193,21 @@ _PER_SQUARED_ANGLE = Kind(
 
 KINDS = (
     *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(SPEED, ACCELERATION, FORCE, TORQUE, POWER, STIFFNESS, DAMPING, QUADRATIC_DAMPING, PRESSURE, RATIO, JERK),
+    *(
+        SPEED,
+        ACCELERATION,
+        FORCE,
+        TORQUE,
+        POWER,
+        STIFFNESS,
+        DAMPING,
+        QUADRATIC_DAMPING,
+        PRESSURE,
+        RATIO,
+        JERK,
+        VOLUME,
+        ENERGY,
+    ),
 )
 SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""

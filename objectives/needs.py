@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from ..model.cycle.gas_cycle import compressors, cylinders
 from ..model.machine.dissipation import crank_weighs, linkage_loaded, moves, pivot_loaded, works_over_a_turn
 from ..model.machine.mechanism import Mechanism
 
@@ -96,4 +97,16 @@ WORK = Need(
     "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no load that "
     "always resists (viscous, drag) and none that differs between the strokes; use {instead}, or add what the machine "
     "works against",
+)
+CYLINDER = Need(
+    lambda machine: bool(cylinders(machine)),
+    "it comes from a cylinder; got none; add for example "
+    '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
+    without="undefined",
+)
+COMPRESSOR = Need(
+    lambda machine: bool(compressors(machine)),
+    "it comes from a compressor or pump; got none; add for example "
+    '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
+    without="undefined",
 )

@@ -13,7 +13,7 @@ from ..dynamics.torque import Balance, balance
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
-from ..machine.design import DESIGN, Design, derive, design_at
+from ..machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
@@ -84,7 +84,7 @@ def _dimensions(linkage: Linkage) -> tuple[float, float, float]:
 def _design(mechanism: Mechanism, linkage: Linkage) -> Design:
     raw, loads = raw_vector(mechanism)[:, None], load_structure(mechanism)
     raw[:3, 0] = _dimensions(linkage)
-    block = np.empty((DESIGN + 2 * len(loads.kind), 1))
+    block = np.empty((DESIGN + LOAD_ROWS * len(loads.kind), 1))
     derive(raw, loads.kind, loads.datum, block)
     found: Design = design_at(block, 0)
     return found

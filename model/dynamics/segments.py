@@ -1,8 +1,9 @@
 """The cycle cut into segments on which every curve is smooth.
 
-Loads that change at a dead centre, tables with knots, and a position error that counts only over a part of the stroke
-make the curves piecewise: smooth between *breakpoints*, with a kink or a jump on them. Within a segment the stroke and
-the piece of every table are fixed, so the curve there is an analytic function of crank angle and design.
+Loads that change at a dead centre, tables with knots, valves that open, and a position error that counts only over a
+part of the stroke make the curves piecewise: smooth between *breakpoints*, with a kink or a jump on them. Within a
+segment the stroke and the piece of every table and cylinder are fixed, so the curve there is an analytic function of
+crank angle and design.
 """
 
 from __future__ import annotations
@@ -14,19 +15,22 @@ from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Integers, Row
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
-from ..machine.design import DESIGN, Design
+from ..machine.design import DESIGN, LOAD_ROWS, Design
 from ..machine.loads.load import Enters
 from ..machine.loads.registry import force_of
 from ..machine.raw import Loads
+from .gas import events_of, gas_force, piece_at
 from .torque import smooth_load
 
-_ANGLE_TABLE, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.FORMULA)
+_ANGLE_TABLE, _CYLINDER, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER), int(Enters.FORMULA)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
+_EXPANDED, _COMPRESSED = 6, 7  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
 """|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
 ROOM = 40
-"""Breakpoints there is room for, besides two for each knot: 8 at most, and those that friction makes."""
+"""Breakpoints there is room for, besides two for each knot and four for each cylinder: 8 at most, and those that
+friction makes."""
 
 
 class Watch(NamedTuple):
@@ -68,7 +72,7 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 @analytic
 def room_for(loads: Loads) -> int:
     """Return how many breakpoints a design has at most."""
-    return int(ROOM + 2 * loads.at.shape[0])
+    return int(ROOM + 2 * loads.at.shape[0] + 4 * loads.kind.shape[0])
 
 
 @analytic
@@ -84,6 +88,22 @@ def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: in
         i -= 1
     cuts.angle[i], cuts.code[i], cuts.number[i], cuts.load[i] = wrapped, code, number, load
     return n + 1
+
+
+@analytic
+def _cut_valves(d: Design, block: Any, j: int, k: int, margin: float, cuts: Cuts, n: int) -> int:
+    """Add the valve events of a cylinder to the first `n` cuts, each in its stroke; at rest in both."""
+    sign, origin = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
+    expanded, compressed = events_of(d, block, j, k)
+    for event in range(2):
+        x = origin + sign * (compressed if event else expanded)
+        if d.inner + margin < x < d.outer - margin:
+            for second in (False, True):
+                outward = second == (d.speed < 0.0)
+                if d.speed == 0.0 or outward == ((event == 0) == (sign > 0.0)):
+                    angle = crank_angle_at(d.branch * x, d.r, d.l, d.e, second)
+                    n = add_cut(cuts, n, angle, _COMPRESSED if event else _EXPANDED, 0.0, k)
+    return n
 
 
 @analytic
@@ -108,11 +128,14 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
     margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
+        if loads.kind[k] == _CYLINDER:
+            n = _cut_valves(d, block, j, k, margin, cuts, n)
+            continue
         if loads.kind[k] == _ANGLE_TABLE:
             for i in range(first, last - 1):
                 n = add_cut(cuts, n, loads.at[i], _FIXED, loads.at[i], k)
             continue
-        scale, datum = block[DESIGN + 2 * k, j], block[DESIGN + 2 * k + 1, j]
+        scale, datum = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
         for second in (True, False):
             # Knots by rising crank angle: most are then added behind all others.
             rising = (d.branch * scale > 0.0) != second
@@ -139,8 +162,12 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
         return float(sign * inner_crank_angle(d.r, d.l, d.e).imag)
     if code == _FRACTION:
         target = (d.inner + cuts.number[i] * (d.outer - d.inner)).imag
+    elif code in (_EXPANDED, _COMPRESSED):
+        row = DESIGN + LOAD_ROWS * cuts.load[i]
+        expanded, compressed = events_of(d, block, j, cuts.load[i])
+        target = (block[row + 1, j] + block[row, j] * (compressed if code == _COMPRESSED else expanded)).imag
     else:
-        row = DESIGN + 2 * cuts.load[i]
+        row = DESIGN + LOAD_ROWS * cuts.load[i]
         target = (block[row + 1, j] + block[row, j] * cuts.number[i]).imag
     # Implicit function theorem on x(theta, design) = target.
     m = motion(math.sin(theta), math.cos(theta), d.r, d.l, d.e, d.branch)
@@ -159,16 +186,18 @@ def within(a: float, b: float) -> float:
 
 @analytic
 def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
-    """Fix the piece of every table at a crank angle and a slider distance x from the crank pivot."""
+    """Fix the piece of every table and cylinder at a crank angle and a slider distance x from the crank pivot."""
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
+        if loads.kind[k] == _CYLINDER:
+            piece[k] = piece_at(d, block, j, k, x)
         if first == last:
             continue
         if loads.kind[k] == _ANGLE_TABLE:
             shift[k] = -_TURN * math.floor((theta - loads.at[first]) / _TURN)
             at = theta + shift[k]
         else:
-            at = block[DESIGN + 2 * k, j] * (x - block[DESIGN + 2 * k + 1, j])
+            at = block[DESIGN + LOAD_ROWS * k, j] * (x - block[DESIGN + LOAD_ROWS * k + 1, j])
         low, high, near = first, last, piece[k]
         if first <= near < last:  # mostly the piece of the segment before, or one beside it
             if loads.at[near] < at:
@@ -217,7 +246,7 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
             # Chosen, not multiplied by the branch: of a product shared with `smooth_load` the compiler groups the
             # factors anew, which changes the last digits of machines without such a load.
             position, pace = (m.x, m.x_1) if d.branch.real > 0.0 else (-m.x, -m.x_1)
-            first, second = block[DESIGN + 2 * k, j], block[DESIGN + 2 * k + 1, j]
+            first, second = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
             force = force + force_of(loads.kind[k], position, pace * d.speed, way, first, second)
     return force
 
@@ -231,6 +260,8 @@ def load_on_slider(
     force = with_formulas(force, m, d, block, j, outward, loads)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
+        if loads.kind[k] == _CYLINDER:
+            force = force + gas_force(m, d, block, j, k, outward, piece[k])
         if first == last:
             continue
         factor = loads.factor[k, 0] if outward else loads.factor[k, 1]
@@ -244,7 +275,7 @@ def load_on_slider(
             if loads.kind[k] == _ANGLE_TABLE:
                 force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
             else:
-                at = block[DESIGN + 2 * k, j] * (d.branch * m.x - block[DESIGN + 2 * k + 1, j])
+                at = block[DESIGN + LOAD_ROWS * k, j] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, j])
                 force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))
     return force
 

@@ -43,6 +43,11 @@ def root(z: Any) -> Any:
     return np.sqrt(z)
 
 
+def power(base: Any, exponent: Any) -> Any:
+    """Return a positive base to an exponent."""
+    return base**exponent
+
+
 def arcsine(z: Any) -> Any:
     """Return the angle in [-pi/2, pi/2], in radians, whose sine is z."""
     return np.arcsin(z)

@@ -17,7 +17,7 @@ from numba.core import event
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from numba.extending import overload, register_jitable
 
-from .arithmetic import FORMULAS, arcsine, inverse, magnitude, root
+from .arithmetic import FORMULAS, arcsine, inverse, magnitude, power, root
 from .machine_code import MachineCode
 
 # Without `nnan` and `ninf`: a NaN must stay a NaN. Contraction and reassociation are what vectorisation needs.
@@ -131,6 +131,21 @@ def _root(z: Any) -> Any:
 
         def compiled(z: Any) -> Any:
             return math.sqrt(z)
+
+    return compiled
+
+
+@overload(power, jit_options=_FORMULA)
+def _power(base: Any, exponent: Any) -> Any:
+    if isinstance(base, types.Complex) or isinstance(exponent, types.Complex):
+
+        def compiled(base: Any, exponent: Any) -> Any:
+            q = base.real**exponent.real
+            return complex(q, q * (exponent.real * base.imag / base.real + math.log(base.real) * exponent.imag))
+    else:
+
+        def compiled(base: Any, exponent: Any) -> Any:
+            return base**exponent
 
     return compiled
 

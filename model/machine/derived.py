@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Integers, Row, Table, kernel
-from .design import DESIGN, derive
+from .design import DESIGN, LOAD_ROWS, derive
 from .raw import Loads
 
 Array = NDArray[np.float64]
@@ -46,12 +46,12 @@ def _derive(
 def derived(
     raw: Array, loads: Loads, columns: NDArray[np.int64] = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
-    """Return blocks (n, DESIGN + 2 k, 1) of raw numbers (END + 4 k,); designs (n, c) set `columns`.
+    """Return blocks (n, DESIGN + LOAD_ROWS k, 1) of raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
 
-    By default there is one design, which sets none. steps: whether to give blocks (n c, DESIGN + 2 k, 1) for an
+    By default there is one design, which sets none. steps: whether to give blocks (n c, DESIGN + LOAD_ROWS k, 1) for an
     imaginary step of each of the columns too; else there are none of these.
     """
-    rows, n = DESIGN + 2 * len(loads.kind), len(designs)
+    rows, n = DESIGN + LOAD_ROWS * len(loads.kind), len(designs)
     blocks = np.empty((n, rows, 1))
     stepped = np.empty((n * len(columns) if steps else 0, rows, 1), np.complex128)
     if n:

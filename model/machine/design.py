@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..kernel.arithmetic import analytic, magnitude, root
+from ..kernel.arithmetic import analytic, inverse, magnitude, root
 from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
@@ -19,7 +19,7 @@ _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
 _END = int(Raw.END)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
-_FORMULA = int(Enters.FORMULA)
+_CYLINDER, _FORMULA = int(Enters.CYLINDER), int(Enters.FORMULA)
 
 
 class Design(NamedTuple):
@@ -71,8 +71,11 @@ class Design(NamedTuple):
 
 
 DESIGN = len(Design._fields)
-"""Rows of a derived block before those of the loads, two each: sign and origin of a table's own coordinate, or the two
-numbers of a formula."""
+"""Rows of a derived block before those of the loads."""
+LOAD_ROWS, AREA = 9, 2
+"""Rows of each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers of a formula; then
+of a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
+expansion, back pressure."""
 _OUTWARD = Design._fields.index("outward_force")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
@@ -179,7 +182,7 @@ def _derive_offset(raw: Any, out: Any) -> None:
 
 @analytic
 def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
-    """Fill `out` (DESIGN + 2 k, n) from raw numbers (END + 4 k, n), real or complex.
+    """Fill `out` (DESIGN + LOAD_ROWS k, n) from raw numbers (END + LOAD_SLOTS k, n), real or complex.
 
     moved: the one raw number that has changed since `out` was filled; where it is a dimension, less is done.
     """
@@ -207,7 +210,7 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
             out[i, j] = 0.0
     for k in range(kind.shape[0]):
         p = _END + LOAD_SLOTS * k
-        q = DESIGN + 2 * k
+        q = DESIGN + LOAD_ROWS * k
         for j in range(raw.shape[1]):
             if datum[k] == 0:
                 sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not of a dead centre, which a swing need not have
@@ -225,5 +228,12 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
                 out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
             elif kind[k] == _VISCOUS:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
+            elif kind[k] == _CYLINDER:
+                bore, rod = raw[p + 2, j], raw[p + 3, j]
+                area = (math.pi / 4.0) * (bore * bore - rod * rod)
+                out[q + AREA, j] = area
+                out[q + AREA + 1, j] = raw[p + 4, j] * (out[22, j] - out[21, j]) + raw[p + 5, j] * inverse(area)
+                for i in range(5):
+                    out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
             elif kind[k] >= _FORMULA:
                 out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]

@@ -34,8 +34,8 @@ Raw = IntEnum(
     "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
     start=0,
 )
-LOAD_SLOTS = 4
-"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and two of its own."""
+LOAD_SLOTS = 11
+"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and those of its own."""
 
 _DATUMS = {"crank pivot": 0, "inner dead centre": 1, "outer dead centre": 2}
 
@@ -93,7 +93,8 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
         raw[place : place + 2] = pin.radius, pin.coefficient
     for index, load in enumerate(mechanism.loads):
         place = Raw.END + LOAD_SLOTS * index
-        raw[place : place + LOAD_SLOTS] = load.numbers()
+        numbers = load.numbers()
+        raw[place : place + len(numbers)] = numbers
     return np.array(raw, dtype=np.float64)
 
 

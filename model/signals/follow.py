@@ -16,7 +16,7 @@ from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, kernel
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
 from .signals import design_motion
@@ -31,7 +31,7 @@ def _follow(
     raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool
 ) -> None:
     watch = Watch(0, 0.0, 1.0, False)
-    rows = DESIGN + 2 * loads.kind.shape[0]
+    rows = DESIGN + LOAD_ROWS * loads.kind.shape[0]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     block = np.empty((rows, 1))
     stepped, curved = np.empty((raw.shape[0], 1), np.complex128), np.empty((rows, 1), np.complex128)

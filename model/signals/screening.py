@@ -22,7 +22,7 @@ from ..dynamics.torque import forces, smooth_load
 from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
@@ -230,7 +230,7 @@ def _screen(
     gradients: Cube,
 ) -> None:
     n, signals = designs.shape[0], kinds.shape[0]
-    rows = DESIGN + 2 * load_kind.shape[0]
+    rows = DESIGN + LOAD_ROWS * load_kind.shape[0]
     lanes, stepped = np.empty((raw.shape[0], LANES)), np.empty((raw.shape[0], LANES), np.complex128)
     block, complex_block = np.empty((rows, LANES)), np.empty((rows, LANES), np.complex128)
     for i in range(raw.shape[0]):

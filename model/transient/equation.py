@@ -74,12 +74,12 @@ class Terms:
 
 @kernel
 def _cut(block: Table, loads: Loads, watch: Watch, cuts: Cuts) -> int:
-    return cut_cycle(design_at(block, 1), block, 1, loads, watch, cuts)
+    return cut_cycle(design_at(block, 0), block, 0, loads, watch, cuts)
 
 
 @kernel
 def _enter(block: Table, loads: Loads, watch: Watch, inside: float, piece: Integers, shift: Row) -> bool:
-    _, outward = enter(design_at(block, 1), block, 1, inside, loads, watch, piece, shift)
+    _, outward = enter(design_at(block, 0), block, 0, inside, loads, watch, piece, shift)
     return outward
 
 

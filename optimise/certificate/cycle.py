@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from ...model.dynamics.torque import Forces, forces, smooth_load
 from ...model.kernel.arithmetic import magnitude, root
 from ...model.kinematics.position import motion
-from ...model.machine.design import DESIGN, Design, derive, design_at
+from ...model.machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
+from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
@@ -28,6 +29,7 @@ from ...model.signals.signals import Signal, design_motion, signal
 from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
 from .enclosure import UNIT, Array, Enclosure, beside, between, chosen
+from .gas import gas_force
 
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
@@ -64,7 +66,7 @@ class Curve:
         """
         raw = self.raw.astype(object)[:, None]
         raw[:3, 0] = dimensions
-        block = np.empty((DESIGN + 2 * len(self.loads.kind), 1), dtype=object)
+        block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)
         _derive(raw, self.loads.kind, self.loads.datum, block)
         d = design_at(block, 0)
         theta = angles[:, None]
@@ -98,9 +100,14 @@ class Curve:
             way = _by_stroke(outward, 1.0, -1.0)
             for k, code in enumerate(self.loads.kind.tolist()):
                 if code >= Enters.FORMULA:
-                    first, second = block[DESIGN + 2 * k : DESIGN + 2 * k + 2, 0]
+                    first, second = block[DESIGN + LOAD_ROWS * k : DESIGN + LOAD_ROWS * k + 2, 0]
                     velocity = m.x_1 * d.branch * d.speed
                     load = load + force_of(code, m.x * d.branch, velocity, way, first, second)
+                elif code == Enters.CYLINDER:
+                    stroke = d.outer - d.inner
+                    z = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
+                    cylinder = cast(Cylinder, self.mechanism.loads[k])
+                    load = load + gas_force(cylinder, z / stroke, stroke, outward)
                 if self.loads.start[k] < self.loads.start[k + 1]:
                     load = load + self._table(k, m, d, block, theta, outward)
             return _of_forces(self.kind, forces(sine, cosine, m, d, load), d)
@@ -114,7 +121,7 @@ class Curve:
         if loads.kind[k] == Enters.ANGLE_TABLE:
             turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
             return cast(Enclosure, factor * np.interp(turned, at, force))
-        at_x = (m.x * d.branch - block[DESIGN + 2 * k + 1, 0]) * block[DESIGN + 2 * k, 0]
+        at_x = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
         return factor * interpolated(at_x, at, force)
 
 

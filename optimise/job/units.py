@@ -69,6 +69,7 @@ newton_centimetre = 0.01 * newton * metre = Ncm
 newton_millimetre = 0.001 * newton * metre = Nmm
 newton_second = newton * second = Ns
 watt = newton * metre / second = W
+joule = newton * metre = J
 pascal = newton / metre ** 2 = Pa
 bar = 1e5 * pascal
 pound_force = 4.4482216152605 * newton = lbf
@@ -231,6 +232,8 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         factor, dimension = _unit(unit)
     except InputError as error:
         raise InputError(f"{rule}; got {shown(text)}: {error}; {write}") from None
+    if kind.unit == "N m" and re.search(r"J\b", unit):  # of the same dimension
+        raise InputError(f"{rule}; got {shown(text)}, which is an energy; {_HINTS['J']}; {write}")
     if dimension != _unit(kind.unit)[1]:
         others = [other.name for other in (*KINDS, *_OTHERS) if _unit(other.unit)[1] == dimension]
         which = f", which is {others[0]}" if others else ""

@@ -7,10 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
+from ...objectives.volumetric_efficiency import VOLUMETRIC_EFFICIENCY
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
@@ -30,12 +32,14 @@ Side = tuple[float, float, float]
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
-    They are on the transmission angle, where there is friction on the self-locking margin, and where a slow stroke is
-    asked on the time ratio.
+    They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
+    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio.
     """
     found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
     if problem.mechanism.fullest.friction.acts:
         found = _with_floor(found, SELF_LOCKING_MARGIN)
+    if may_deliver_nothing(problem.mechanism):
+        found = _with_floor(found, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
         found = _with_floor(found, TIME_RATIO, above=1.0)
     return found

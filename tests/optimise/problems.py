@@ -19,7 +19,7 @@ from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 from slidercrank.optimise.solve import solve
 
-JOBS = ("feeder", "sieve", "support")
+JOBS = ("feeder", "sieve", "support", "compressor")
 RUNS = Path(__file__).parents[2] / "runs"
 
 MACHINE = Mechanism(

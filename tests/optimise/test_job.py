@@ -28,7 +28,7 @@ from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 
 RUNS = Path(__file__).parents[2] / "runs"
-SHIPPED = ["feeder", "sieve", "support"]
+SHIPPED = ["feeder", "sieve", "support", "compressor"]
 
 # The smallest job that says something.
 SMALL: dict[str, Any] = {

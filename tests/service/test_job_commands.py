@@ -36,7 +36,7 @@ def test_check_gives_json(tmp_path: Path, command: Command) -> None:
     assert record["eliminated"] == ["stroke"]
 
 
-@pytest.mark.parametrize("name", ["feeder", "sieve", "support"])
+@pytest.mark.parametrize("name", ["feeder", "sieve", "support", "compressor"])
 def test_shipped_jobs_pass_the_check(name: str, pytestconfig: pytest.Config, command: Command) -> None:
     done = command("check", pytestconfig.rootpath / "runs" / f"{name}.toml")
     assert done.exit_code == 0, done.stderr

@@ -27,7 +27,7 @@ class Enters(IntEnum):
     """The way by which a kind of load enters the kernels; the order in which lists name kinds.
 
     Stroke forces, springs and viscous loads are summed for each design before a sweep, so that any number of them
-    costs what one does. Tables make breakpoints. All others are evaluated one by one.
+    costs what one does. Tables and cylinders make breakpoints. All others are evaluated one by one.
     """
 
     STROKE_FORCE = 0
@@ -35,7 +35,8 @@ class Enters(IntEnum):
     VISCOUS = 2
     POSITION_TABLE = 3
     ANGLE_TABLE = 4
-    FORMULA = 5
+    CYLINDER = 5
+    FORMULA = 6
 
 
 class Passage(NamedTuple):
@@ -104,8 +105,8 @@ class Load:
     slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
     tables: ClassVar[tuple[Table, ...]]
 
-    def numbers(self) -> tuple[float, float, float, float]:
-        """Return factors in the outward and the inward stroke, and two numbers of the load's own."""
+    def numbers(self) -> tuple[float, ...]:
+        """Return factors in the outward and the inward stroke, and two numbers of the load's own; a cylinder's nine."""
         raise NotImplementedError
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:

@@ -19,7 +19,7 @@ from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
 TOML = {"Content-Type": "application/toml"}
-SHIPPED = ("feeder", "sieve", "support")
+SHIPPED = ("feeder", "sieve", "support", "compressor")
 
 
 def shipped(root: Path) -> dict[str, Any]:

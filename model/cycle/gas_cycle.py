@@ -1,0 +1,119 @@
+"""Work and volumes of the gas in the cylinders of a machine over a turn, in closed form, with exact derivatives.
+
+With L the logarithm of the ratio of volumes that the gas expands by, p V^n = const does the work
+
+    p_1 V_1 L f((n - 1) L),    f(x) = (1 - exp(-x)) / x,
+
+which is p_1 V_1 L for n = 1; compression likewise with -(n - 1) L. While a valve is open the work is pressure times
+volume. Over a turn the back pressure does none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.gas import compressed_at, expanded_at
+from ..kernel.arithmetic import STEP
+from ..kernel.batches import turning
+from ..machine.derived import derived
+from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
+from ..machine.loads.compressor import Compressor
+from ..machine.loads.cylinder import Cylinder
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import numbers_of
+from ..machine.raw import fullest_inputs
+
+Array = NDArray[np.float64]
+
+_INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
+_SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below rounding
+
+
+class GasCycle(NamedTuple):
+    """Sums over the cylinders of n designs, each (n,), real or complex.
+
+    swept, clearance: volumes, m^3. work: of the gas on the pistons over a turn, J. delivers: of compressors alone, the
+    volume taken in over the swept one; zero or less where nothing is delivered.
+    """
+
+    swept: Any
+    clearance: Any
+    work: Any
+    delivers: Any
+
+
+def cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
+    """Return the cylinders among the loads of a machine, each after its place."""
+    return tuple((k, load) for k, load in enumerate(mechanism.loads) if isinstance(load, Cylinder))
+
+
+def compressors(mechanism: Mechanism) -> tuple[Compressor, ...]:
+    """Return the compressors and pumps among the loads of a machine."""
+    return tuple(load for load in mechanism.loads if isinstance(load, Compressor))
+
+
+def may_deliver_nothing(mechanism: Mechanism) -> bool:
+    """Return whether it depends on the design that a compressor delivers: else the compressor has been checked."""
+    gas = {k: load for k, load in cylinders(mechanism.fullest) if isinstance(load, Compressor)}
+    varied = {path.split(".")[1] for item in mechanism.varying for path in item.paths if path.startswith("loads.")}
+    return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
+
+
+def gas_cycle(
+    mechanism: Mechanism, designs: Array, of: Callable[[GasCycle], Any], *, gradients: bool = False
+) -> tuple[Array, Array | None]:
+    """Return a number (n,) that follows from the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
+    designs = turning(designs)
+    raw, loads = fullest_inputs(mechanism)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+    values = np.asarray(of(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)
+    if not gradients:
+        return values, None
+    slopes = of(_gas(mechanism, steps[:, :, 0])).imag / STEP
+    return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
+
+
+def _gas(mechanism: Mechanism, blocks: Any) -> GasCycle:
+    """Return the sums for derived blocks (n, rows)."""
+    swept = clearance = work = intake = pumped = 0.0 * blocks[:, 0]
+    stroke = blocks[:, _OUTER] - blocks[:, _INNER]
+    for k, load in cylinders(mechanism):
+        q = DESIGN + LOAD_ROWS * k + AREA
+        area, h, low, high, compression, expansion = (blocks[:, q + i] for i in range(6))
+        if load.compression_exponent == 0.0:
+            gained, spent, share = low * stroke, high * stroke, 1.0 + 0.0 * stroke
+        else:
+            gained, spent, share = _strokes(stroke, h, low, high, compression, expansion)
+        swept, clearance, work = swept + area * stroke, clearance + area * h, work + area * (gained - spent)
+        if isinstance(load, Compressor):
+            pumped, intake = pumped + area * stroke, intake + area * stroke * share
+    return GasCycle(swept, clearance, work, intake / pumped if compressors(mechanism) else intake)
+
+
+def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
+    """Return work of expansion and of compression per piston area, J/m^2, and the share of the stroke that takes in."""
+    expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
+    with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas has always expanded
+        whole, ratio = np.log((h + stroke) / h), np.log(high / low)
+    opens, delivers = expanded.real < stroke.real, compressed.real > 0.0
+    down = np.where(opens, ratio / expansion, whole)
+    up = np.where(delivers, ratio / compression, whole)
+    gained = high * h * np.where(h.real > 0.0, down * _mean_factor((expansion - 1.0) * down), 0.0)
+    gained = gained + np.where(opens, low * (stroke - expanded), 0.0)
+    spent = low * (h + stroke) * up * _mean_factor(-(compression - 1.0) * up)
+    spent = spent + np.where(delivers, high * compressed, 0.0)
+    share = 1.0 - expanded / stroke
+    stuck = compressed / stroke
+    return gained, spent, np.where(delivers | (share.real < stuck.real), share, stuck)
+
+
+def _mean_factor(x: Any) -> Any:
+    """Return (1 - exp(-x)) / x, exact to rounding also around zero."""
+    near = np.abs(x.real) < _SERIES
+    safe = np.where(near, 1.0, x)
+    return np.where(near, 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0)), -np.expm1(-safe) / safe)

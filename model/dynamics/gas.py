@@ -1,0 +1,72 @@
+"""Pressure of the gas in a cylinder over a turn: expansion, valve events and compression in closed form.
+
+With z the distance of the piston from its top, S the stroke, h the height of the clearance (its volume over the piston
+area), p_l and p_h the low and the high pressure, the gas follows p V^n = const while the valves are shut:
+
+- away from the top: p_h (h / (h + z))^n_e, until it has fallen to p_l at z_e = h ((p_h / p_l)^(1/n_e) - 1); then p_l;
+- towards the top: p_l ((h + S) / (h + z))^n_c, until it has risen to p_h at z_c = (h + S) (p_l / p_h)^(1/n_c) - h;
+  then p_h.
+
+The pressure is continuous and turns sharply at z_e and z_c, the valve events. A liquid, whose exponents are given as
+zero, has z_e = 0 and z_c = S: the pressure jumps at the dead centres.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..kernel.arithmetic import analytic, inverse, power
+from ..machine.design import AREA, DESIGN, LOAD_ROWS
+
+_NEAR = 1e-12
+"""Share of the stroke: nearer to a valve event than this is beyond it."""
+
+
+@analytic
+def expanded_at(h: Any, ratio: Any, exponent: Any) -> Any:
+    """Return z_e, m, for a ratio p_h / p_l: where the gas has expanded to the low pressure."""
+    return h * (power(ratio, inverse(exponent)) - 1.0)
+
+
+@analytic
+def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
+    """Return z_c, m, for a ratio p_h / p_l: where the gas has been compressed to the high pressure."""
+    return (h + stroke) * inverse(power(ratio, inverse(exponent))) - h
+
+
+@analytic
+def events_of(d: Any, block: Any, j: int, k: int) -> Any:
+    """Return z_e and z_c of the cylinder that is load k of a derived block."""
+    q = DESIGN + LOAD_ROWS * k + AREA
+    stroke, h, ratio = d.outer - d.inner, block[q + 1, j], block[q + 3, j] * inverse(block[q + 2, j])
+    if block[q + 4, j].real == 0.0:
+        return 0.0 * h, stroke + 0.0 * h
+    return expanded_at(h, ratio, block[q + 5, j]), compressed_at(stroke, h, ratio, block[q + 4, j])
+
+
+@analytic
+def piece_at(d: Any, block: Any, j: int, k: int, x: float) -> int:
+    """Return 1 beyond z_e, plus 2 beyond z_c, for a slider distance x from the crank pivot."""
+    q = DESIGN + LOAD_ROWS * k
+    expanded, compressed = events_of(d, block, j, k)
+    z, near = block[q, j] * (x - block[q + 1, j]), _NEAR * (d.outer - d.inner)
+    return (1 if z >= expanded - near else 0) + (2 if z > compressed + near else 0)
+
+
+@analytic
+def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
+    """Return the force of gas and back pressure on the piston, N outward, on a piece of `piece_at`."""
+    q = DESIGN + LOAD_ROWS * k
+    # Chosen, as in `segments.with_formulas`, so that machines without a cylinder keep their last digits.
+    position = m.x if d.branch.real > 0.0 else -m.x
+    sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])
+    area, h, low, high = block[q + 2, j], block[q + 3, j], block[q + 4, j], block[q + 5, j]
+    back = block[q + 8, j]
+    if outward == (sign.real > 0.0):  # away from the top
+        if piece == 1 or piece == 3:
+            return sign * area * (low - back)
+        return sign * area * (high * power(h * inverse(h + z), block[q + 7, j]) - back)
+    if piece < 2:
+        return sign * area * (high - back)
+    full = h + (d.outer - d.inner)
+    return sign * area * (low * power(full * inverse(h + z), block[q + 6, j]) - back)

@@ -1,0 +1,148 @@
+"""A cylinder whose piston is the slider: gas on one side, a back pressure on the other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from ...checks import require_numbers
+from ...errors import InputError
+from .load import Enters, Entry, Load, Passage, Table, require_word
+
+Head = Literal["outer dead centre", "inner dead centre"]
+ATMOSPHERE = 101_325.0
+"""Pa, the standard atmosphere (10th CGPM, 1954)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder(Load):
+    """A cylinder with a cycle of two strokes: compression towards its head, expansion away from it. SI, absolute.
+
+    bore, piston_rod: diameters, m; the piston's area is that of the bore less that of the rod. head: the dead centre at
+    which the volume is least: gas behind the outer one pushes inward. clearance: the least volume over the swept one;
+    clearance_volume: m^3, added to it. low: pressure at the start of compression, and least of expansion. high:
+    pressure at the start of expansion, and greatest of compression. compression_exponent, expansion_exponent: n of
+    p V^n = const; both zero for a liquid, whose pressure jumps at the dead centres. back_pressure: on the other side of
+    the piston.
+    """
+
+    bore: float
+    low: float
+    high: float
+    clearance: float = 0.0
+    clearance_volume: float = 0.0
+    compression_exponent: float
+    expansion_exponent: float
+    back_pressure: float = ATMOSPHERE
+    piston_rod: float = 0.0
+    head: Head = "outer dead centre"
+
+    enters: ClassVar = Enters.CYLINDER
+    slots: ClassVar = {
+        "bore": (2, "m"),
+        "piston_rod": (3, "m"),
+        "clearance": (4, ""),
+        "clearance_volume": (5, "m^3"),
+        "low": (6, "Pa"),
+        "high": (7, "Pa"),
+        "compression_exponent": (8, ""),
+        "expansion_exponent": (9, ""),
+        "back_pressure": (10, "Pa"),
+    }
+    tables: ClassVar[tuple[Table, ...]] = ()
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "bore", what="the {}", above=0.0, unit="m")
+        require_numbers(self, "piston_rod", what="the diameter of the piston rod", least=0.0, unit="m")
+        require_numbers(self, "clearance", "clearance_volume", what="the {}", least=0.0)
+        require_numbers(self, "low", "high", what="the {} pressure, absolute,", above=0.0, unit="Pa")
+        require_numbers(self, "back_pressure", what="the back pressure, absolute,", least=0.0, unit="Pa")
+        require_numbers(self, "compression_exponent", "expansion_exponent", what="the {}", least=0.0)
+        require_word("head", self.head, Head)
+        if self.piston_rod >= self.bore:
+            raise InputError(
+                f"the piston rod must be thinner than the bore; got {1e3 * self.piston_rod:g} mm in a bore of "
+                f"{1e3 * self.bore:g} mm; swap the two, or leave the rod out"
+            )
+        if (self.compression_exponent == 0.0) != (self.expansion_exponent == 0.0):
+            raise InputError(
+                "both exponents are zero, for a liquid, or neither; got "
+                f"{self.compression_exponent:g} and {self.expansion_exponent:g}"
+            )
+
+    @property
+    def datum(self) -> Head:
+        """The dead centre that the piston's distance from its top is counted from."""
+        return self.head
+
+    @property
+    def area(self) -> float:
+        """Area of the piston, m^2."""
+        return 0.25 * math.pi * (self.bore**2 - self.piston_rod**2)
+
+    def numbers(self) -> tuple[float, ...]:
+        """Return factors of one, then the numbers of `slots`."""
+        return (1.0, 1.0, *(getattr(self, name) for name in self.slots))
+
+    @property
+    def by_stroke(self) -> bool:
+        """True: gas expands in one stroke and is compressed in the other."""
+        return True
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return the work of gas and back pressure."""
+        inner = passage.distance.min(axis=1, keepdims=True)
+        outer = passage.distance.max(axis=1, keepdims=True)
+        at, stroke = 0.5 * (passage.distance[:, 1:] + passage.distance[:, :-1]), outer - inner
+        z, sign = (outer - at, -1.0) if self.head == "outer dead centre" else (at - inner, 1.0)
+        expanding = passage.outward == (sign > 0.0)
+        pressure = self.pressure(np.asarray(z), stroke, expanding=expanding)
+        return passage.work(sign * self.area * (pressure - self.back_pressure))
+
+    def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
+        """Return the pressure, Pa, with the piston z from its top, m; broadcasts."""
+        if self.compression_exponent == 0.0:
+            return (self.low if expanding else self.high) + 0.0 * z
+        h = self.clearance * stroke + self.clearance_volume / self.area
+        with np.errstate(divide="ignore", invalid="ignore"):  # no clearance, at the top itself
+            if expanding:
+                return np.fmax(self.low, self.high * (h / (h + z)) ** self.expansion_exponent)
+            return np.fmin(self.high, self.low * ((h + stroke) / (h + z)) ** self.compression_exponent)
+
+    @property
+    def size_text(self) -> str:
+        """Bore, clearance and head in a few words."""
+        parts = [f"bore {1e3 * self.bore:.6g} mm"]
+        parts += [f"piston rod {1e3 * self.piston_rod:.6g} mm"] if self.piston_rod else []
+        parts += [f"clearance {100.0 * self.clearance:.6g} %"] if self.clearance or not self.clearance_volume else []
+        parts += [f"clearance {1e6 * self.clearance_volume:.6g} cm^3"] if self.clearance_volume else []
+        return f"{', '.join(parts)}, head at the {self.head}, {1e-5 * self.back_pressure:.6g} bar behind the piston"
+
+
+BORE = Entry("bore", "PositiveLength", "diameter of the cylinder", "70 mm")
+CLEARANCES = (
+    Entry("clearance", "Fraction", "least volume over the swept volume", 0.05, default=0.0),
+    Entry("clearance_volume", "Volume", "least volume, added to that of the ratio", "8 cm^3", default=0.0),
+)
+BACK_PRESSURE = Entry(
+    "back_pressure",
+    "LeastPressure",
+    "absolute pressure on the other side of the piston; the standard atmosphere where it is left out",
+    "1 bar",
+    default=ATMOSPHERE,
+)
+PISTON_ROD = Entry("piston_rod", "Radius", "diameter of a piston rod through this side", "20 mm", default=0.0)
+HEAD = Entry(
+    "head",
+    ("outer dead centre", "inner dead centre"),
+    "the dead centre at which the volume is least: behind the outer one gas pushes the slider inward",
+    "outer dead centre",
+    default="outer dead centre",
+)
+EXPONENTS = (
+    Entry("compression_exponent", "PositiveRatio", "n of p V^n = const in compression", 1.3, default=1.3),
+    Entry("expansion_exponent", "PositiveRatio", "n of p V^n = const in expansion", 1.3, default=1.3),
+)
