@@ -22,5 +22,6 @@ class GasQuantity(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); NaN without a cylinder that it is of; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
-            return Values(np.full(len(dimensions), np.nan), np.zeros(np.shape(dimensions)) if gradients else None)
+            none = np.full(np.shape(dimensions), np.nan)
+            return Values(none[:, 0], none if gradients else None)
         return Values(*gas_cycle(mechanism, dimensions, self.of, gradients=gradients))

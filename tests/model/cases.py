@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -18,6 +20,8 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
+from slidercrank.objectives.needs import COMPRESSOR, CYLINDER
+from slidercrank.objectives.quantity import Quantity
 
 Array = NDArray[np.float64]
 
@@ -96,7 +100,22 @@ TABLES = Mechanism(
 )
 """Tables over position (two datums) and angle on the crossed branch; position error without a part of the cycle."""
 
+AIR = Compressor(
+    bore=0.05,
+    low=1e5,
+    high=6e5,
+    compression_exponent=1.3,
+    expansion_exponent=1.2,
+    clearance_volume=2e-6,
+)
+CYLINDER_OF = {CYLINDER, COMPRESSOR}
+
 MACHINES = {"smooth": SMOOTH, "strokes": STROKES, "tables": TABLES}
+
+
+def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
+    """Return a machine that has what a quantity is of: a compressor more where it asks for a cylinder."""
+    return replace(machine, loads=(*machine.loads, AIR)) if CYLINDER_OF & set(quantity.needs) else machine
 
 
 def random_designs(count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0) -> Array:

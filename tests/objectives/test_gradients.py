@@ -13,7 +13,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
-from tests.model.cases import MACHINES, SMOOTH, Array, random_designs, random_friction, random_machine
+from tests.model.cases import MACHINES, SMOOTH, Array, fitted, random_designs, random_friction, random_machine
 from tests.objectives.richardson import Function, derivatives, steps_to_the_nearest_edge
 
 DESIGNS = random_designs(1000, seed=1)
@@ -25,7 +25,7 @@ CLOSE = 1e-7
 
 # A closed form does not depend on the machine.
 CASES = [
-    pytest.param(quantity, machine, id=f"{quantity.name}-{name}")
+    pytest.param(quantity, fitted(quantity, machine), id=f"{quantity.name}-{name}")
     for quantity in QUANTITIES.values()
     for name, machine in MACHINES.items()
     if name == "smooth" or not isinstance(quantity, ClosedFormQuantity)
@@ -110,7 +110,7 @@ def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
     designs = random_designs(6, seed=6)
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(8):
-        machine = random_machine(random)
+        machine = fitted(quantity, random_machine(random))
         if quantity.name.startswith("position_error"):
             continue  # without tolerances zero; the machines above have them
         function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))

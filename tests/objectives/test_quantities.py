@@ -12,11 +12,11 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
-from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, random_designs
+from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, fitted, random_designs
 
 DESIGNS = random_designs(200, seed=12)
 CASES = [
-    pytest.param(quantity, machine, id=f"{quantity.name}-{name}")
+    pytest.param(quantity, fitted(quantity, machine), id=f"{quantity.name}-{name}")
     for quantity in QUANTITIES.values()
     for name, machine in MACHINES.items()
 ]
@@ -33,6 +33,9 @@ UNITS = {
     "m_s": ("m/s", 1.0),
     "m_s2": ("m/s^2", 1.0),
     "m_s3": ("m/s^3", 1.0),
+    "cm3": ("cm^3", 1e6),
+    "J": ("J", 1.0),
+    "MPa": ("MPa", 1e-6),
 }
 
 
@@ -110,10 +113,12 @@ def test_no_designs_have_no_values(quantity: Quantity) -> None:
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
-def test_only_means_may_be_negative(quantity: Quantity) -> None:
-    if quantity.name not in ("mean_torque", "mean_power"):
+def test_only_means_and_works_may_be_negative(quantity: Quantity) -> None:
+    works = ("mean_torque", "mean_power", "delivered_work", "indicated_work", "mean_effective_pressure")
+    assert quantity.signed == (quantity.name in works)
+    if not quantity.signed:
         for machine in MACHINES.values():
-            assert np.all(quantity.evaluate(machine, DESIGNS).values >= 0.0)
+            assert np.all(quantity.evaluate(fitted(quantity, machine), DESIGNS).values >= 0.0)
 
 
 def test_peak_rms_and_mean_torque_are_in_order() -> None:

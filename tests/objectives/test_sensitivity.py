@@ -43,6 +43,10 @@ def test_derivatives_are_those_of_differences_of_the_table_of_numbers(machine: M
             step[n] = 1e-7
             low, high = shown(machine, design - step), shown(machine, design + step)
             for name, row in table.iterrows():
+                if math.isnan(here[str(name)]):  # not defined
+                    assert math.isnan(row["value"])
+                    assert math.isnan(row[f"{dimension}_per_mm"])
+                    continue
                 assert row["value"] == pytest.approx(here[str(name)], rel=1e-11)
                 around = [high[str(name)], low[str(name)]]
                 if name in ("inner_dead_centre", "outer_dead_centre"):
