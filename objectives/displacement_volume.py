@@ -16,7 +16,7 @@ DISPLACEMENT_VOLUME = GasQuantity(
     advice="It sets how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore.",
     formula="sum of A S: piston area A, stroke S",
     section="7. Loads",
-    picture="stroke",
+    picture="cylinder",
     better="high",
     domain=Domain(lower=0.0, rule="the displacement volume is positive", remedy="5 cm^3 to 5000 cm^3 are usual"),
     needs=(CYLINDER,),

@@ -1,4 +1,4 @@
-"""Work and volumes of the gas in the cylinders of a machine over a turn, in closed form, with exact derivatives.
+"""Work and volumes of the gas in a machine's cylinders over a turn, in closed form.
 
 With L the logarithm of the ratio of volumes that the gas expands by, p V^n = const does the work
 
@@ -66,7 +66,7 @@ def may_deliver_nothing(mechanism: Mechanism) -> bool:
 def gas_cycle(
     mechanism: Mechanism, designs: Array, of: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
-    """Return a number (n,) that follows from the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
+    """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
     designs = turning(designs)
     raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)

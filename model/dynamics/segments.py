@@ -186,7 +186,7 @@ def within(a: float, b: float) -> float:
 
 @analytic
 def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
-    """Fix the piece of every table and cylinder at a crank angle and a slider distance x from the crank pivot."""
+    """Fix the piece of every table and cylinder at a crank angle and a slider distance x from the pivot."""
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if loads.kind[k] == _CYLINDER:

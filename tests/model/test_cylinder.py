@@ -141,7 +141,7 @@ def test_the_force_is_that_of_the_polytropes_at_every_angle(seed: int) -> None:
 
 @pytest.mark.parametrize("signal", [Signal.TORQUE, Signal.GUIDE_FORCE])
 def test_peaks_are_those_of_a_dense_sweep(signal: Signal) -> None:
-    """A kink at a valve event lies up to a spacing, 3e-5 rad, from a sample: 1e-4 of the peak at most here."""
+    """A kink lies up to a spacing, 3e-5 rad, from a sample: below 1e-3 of the peak here."""
     for seed in range(8):
         machine, design = random_case(seed)
         value = find_peaks(machine, signal, design).values[0, 0]

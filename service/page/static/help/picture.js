@@ -38,6 +38,7 @@ const PICTURES = {
   inertia: { marks: () => [bold(O, POSE.pin), bold(POSE.pin, POSE.slider), box(POSE.slider, "mark"), turning()] },
   "position error": { marks: () => [box([POSE.slider[0] - 9, LINE], "dashed"), box([POSE.slider[0] + 9, LINE], "dashed"), size([POSE.slider[0] - 9, 116], [POSE.slider[0] + 9, 116]), label(206, 134, "± error")] },
   "wanted motion": { marks: () => [...[30, 58, 82, 104, 130, 160].map((x, place) => dot([120 + x, 150 - [4, 12, 17, 16, 10, 3][place]])), stroked("M138 152C170 134 205 126 232 136S270 150 286 152"), label(140, 172, "points of the motion")] },
+  cylinder: { marks: () => [ghost(OUT), ghost(IN), svg("rect", { class: "mark dashed", x: IN.slider[0] + 18, y: LINE - 12, width: OUT.slider[0] - IN.slider[0], height: 24 }), label(172, 140, "swept volume")] },
   footprint: { marks: () => [svg("rect", { class: "mark dashed", x: 37, y: 74, width: 204, height: 76 }), label(150, 166, "footprint")] },
   "pivot force": { marks: () => [arrow(O, [40, 142]), label(18, 160, "pivot")] },
   "crank pin force": { marks: () => [arrow(POSE.pin, [62, 48]), label(44, 40, "crank pin")] },
