@@ -24,7 +24,7 @@ from .torque import smooth_load
 
 _ANGLE_TABLE, _CYLINDER, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER), int(Enters.FORMULA)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
-_EXPANDED, _COMPRESSED = 6, 7  # 5: `contact.CONTACT`
+_EXPANDED, _COMPRESSED, _TURNED = 6, 7, 8  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
 """|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
@@ -133,7 +133,8 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
             continue
         if loads.kind[k] == _ANGLE_TABLE:
             for i in range(first, last - 1):
-                n = add_cut(cuts, n, loads.at[i], _FIXED, loads.at[i], k)
+                at = loads.at[i] + block[DESIGN + LOAD_ROWS * k + 1, j]
+                n = add_cut(cuts, n, at, _FIXED if loads.datum[k] == 0 else _TURNED, at, k)
             continue
         scale, datum = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
         for second in (True, False):
@@ -155,6 +156,8 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
     code = cuts.code[i]
     if code == _FIXED:
         return 0.0
+    if code == _TURNED:
+        return float(block[DESIGN + LOAD_ROWS * cuts.load[i] + 1, j].imag)
     sign = d.branch.real
     if code == _OUTER:
         return float(sign * outer_crank_angle(d.r, d.l, d.e).imag)
@@ -194,8 +197,9 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
         if first == last:
             continue
         if loads.kind[k] == _ANGLE_TABLE:
-            shift[k] = -_TURN * math.floor((theta - loads.at[first]) / _TURN)
-            at = theta + shift[k]
+            at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
+            shift[k] = -_TURN * math.floor((at - loads.at[first]) / _TURN)
+            at = at + shift[k]
         else:
             at = block[DESIGN + LOAD_ROWS * k, j] * (x - block[DESIGN + LOAD_ROWS * k + 1, j])
         low, high, near = first, last, piece[k]
@@ -273,7 +277,8 @@ def load_on_slider(
         else:
             slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
             if loads.kind[k] == _ANGLE_TABLE:
-                force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
+                at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
+                force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
             else:
                 at = block[DESIGN + LOAD_ROWS * k, j] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, j])
                 force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))

@@ -10,16 +10,16 @@ import math
 from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, inverse, magnitude, root
-from ..kinematics.geometry import inner_dead_centre, outer_dead_centre
+from ..kinematics.geometry import inner_crank_angle, inner_dead_centre, outer_crank_angle, outer_dead_centre
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
 
-_CRANK, _ROD, _OFFSET = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)
+_CRANK, _ROD, _OFFSET, _BRANCH = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET), int(Raw.BRANCH)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
 _END = int(Raw.END)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
-_CYLINDER, _FORMULA = int(Enters.CYLINDER), int(Enters.FORMULA)
+_ANGLE_TABLE, _CYLINDER, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER), int(Enters.FORMULA)
 
 
 class Design(NamedTuple):
@@ -218,6 +218,11 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
                 sign, origin = 1.0, 1.0 * out[21, j]
             else:
                 sign, origin = -1.0, 1.0 * out[22, j]
+            if kind[k] == _ANGLE_TABLE and datum[k] > 0:
+                crank, rod, offset = raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j]
+                at = inner_crank_angle(crank, rod, offset) if datum[k] == 1 else outer_crank_angle(crank, rod, offset)
+                # The crossed branch is the mirror image about the y axis.
+                sign, origin = 1.0, at if raw[_BRANCH, j].real > 0.0 else math.pi - at
             out[q, j] = sign
             out[q + 1, j] = origin
             if kind[k] == _STROKE_FORCE:

@@ -37,7 +37,7 @@ Raw = IntEnum(
 LOAD_SLOTS = 11
 """Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and those of its own."""
 
-_DATUMS = {"crank pivot": 0, "inner dead centre": 1, "outer dead centre": 2}
+_DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "outer dead centre": 2}
 
 
 class Loads(NamedTuple):
@@ -130,8 +130,9 @@ def load_structure(mechanism: Mechanism) -> Loads:
     start = [0]
     for load in mechanism.loads:
         places, forces = load.knots()
-        at.extend(places)
-        force.extend(forces)
+        back = mechanism.direction < 0.0 and load.turns
+        at.extend([-place for place in reversed(places)] if back else places)
+        force.extend(reversed(forces) if back else forces)
         start.append(len(at))
     return Loads(
         np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),

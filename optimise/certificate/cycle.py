@@ -119,8 +119,14 @@ class Curve:
         at, force = loads.at[part], loads.force[part]
         factor = _by_stroke(outward, *loads.factor[k].tolist())
         if loads.kind[k] == Enters.ANGLE_TABLE:
-            turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
-            return cast(Enclosure, factor * np.interp(turned, at, force))
+            if loads.datum[k] == 0:
+                turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
+                return cast(Enclosure, factor * np.interp(turned, at, force))
+            counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0]
+            turns = counted - _TURN * np.floor((counted.centre - at[0]) / _TURN)
+            # A turn before and one after: a box may reach beyond the ends of the table.
+            at = np.concatenate([at[:-1] - _TURN, at[:-1], at + _TURN])
+            return factor * interpolated(turns, at, np.concatenate([force[:-1], force[:-1], force]))
         at_x = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
         return factor * interpolated(at_x, at, force)
 

@@ -140,9 +140,9 @@ def kind_of(symbol: str) -> Kind:
 def kind_for(symbol: str) -> Kind:
     """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError for what is no unit."""
     dimension = _unit(symbol)[1]
-    for kind in KINDS:
-        if _unit(kind.unit)[1] == dimension:
-            return kind
+    known = [kind for kind in KINDS if _unit(kind.unit)[1] == dimension]
+    if known:  # a torque and an energy have one dimension
+        return next((kind for kind in known if symbol in kind.typed), known[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
     si = " ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers)
     plain = symbol if _unit(symbol)[0] == 1 else si

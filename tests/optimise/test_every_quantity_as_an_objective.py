@@ -11,6 +11,7 @@ from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
+from tests.model.cases import fitted
 from tests.optimise.problems import MACHINE, polish_few, problem
 
 RUBBING = dataclasses.replace(MACHINE, friction=Friction(guide=0.1))
@@ -24,7 +25,7 @@ def random_values(quantity: Quantity, count: int = 2000) -> np.ndarray:
     designs = random.uniform((0.05, 0.1, 0.001), (0.1, 0.4, 0.08), (count, 3))
     r, l, e = designs.T
     met = np.arccos(np.minimum((r + e) / l, 1.0)) >= LEAN
-    return quantity.evaluate(RUBBING, designs[met]).values
+    return quantity.evaluate(fitted(quantity, RUBBING), designs[met]).values
 
 
 @pytest.mark.parametrize("wish", ["minimise", "maximise", "target"])
@@ -41,7 +42,7 @@ def test_no_random_design_is_better_than_the_best_of_the_search(
         crank=(0.05, 0.1),
         rod=(0.1, 0.4),
         offset=(0.001, 0.08),
-        mechanism=RUBBING,
+        mechanism=fitted(QUANTITIES[name], RUBBING),
         designs=1,
         samples=256,
     )

@@ -28,6 +28,7 @@ from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 
 RUNS = Path(__file__).parents[2] / "runs"
+AIR = {"bore": "70 mm", "suction": "1 bar", "discharge": "8 bar", "clearance": 0.05}
 SHIPPED = ["feeder", "sieve", "support", "compressor"]
 
 # The smallest job that says something.
@@ -275,12 +276,14 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
     within = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "force_transmission": 0.5}
+    within |= {"volumetric_efficiency": 0.5}
     value = (within | {"stroke": 0.05}).get(name, 4.0)
     job = small(
         constraints={name: {"min": value}},
         objectives={name: "minimise"},
         tolerances={"crank": "0.05 mm"},
         friction={"guide": 0.1},
+        load=[AIR],
     )
     problem = parse_job(job)
     assert problem.constraints == (Constraint(quantity=name, lower=value),)
@@ -325,7 +328,7 @@ def test_the_examples_of_the_schema_are_valid() -> None:
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
             given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
-            parse_job(small(**given, objectives={name: example}))
+            parse_job(small(**given, load=[AIR], objectives={name: example}))
 
 
 def test_the_schema_cannot_be_changed_from_outside() -> None:

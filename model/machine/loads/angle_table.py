@@ -11,7 +11,21 @@ import numpy as np
 
 from ...checks import keep_tuples
 from ...errors import InputError
-from .load import DURING, FORCES, During, Enters, Entry, Load, Passage, Table, require_table, require_word
+from .cylinder import PRESSURES, Head, piston_forces
+from .load import (
+    ANGLE_DATUM,
+    DURING,
+    FORCES,
+    AngleDatum,
+    During,
+    Enters,
+    Entry,
+    Load,
+    Passage,
+    Table,
+    require_table,
+    require_word,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,12 +33,14 @@ class AngleTable(Load):
     """A force tabulated over crank angle, interpolated linearly and periodically.
 
     angles: increasing, rad, spanning less than one turn (the first point follows the last one a turn later).
-    forces: N, positive outward. during: the force acts in these strokes.
+    forces: N, positive outward. during: the force acts in these strokes. datum: what the angles are counted from: zero,
+    counter-clockwise, or a dead centre, in the sense in which the crank turns.
     """
 
     angles: tuple[float, ...]
     forces: tuple[float, ...]
     during: During = "cycle"
+    datum: AngleDatum = "zero crank angle"
 
     enters: ClassVar = Enters.ANGLE_TABLE
 
@@ -32,6 +48,7 @@ class AngleTable(Load):
         keep_tuples(self, "angles", "forces")
         require_table("angles", self.angles, self.forces)
         require_word("during", self.during, During)
+        require_word("datum", self.datum, AngleDatum)
         span = self.angles[-1] - self.angles[0]
         if span >= 2.0 * math.pi:
             raise InputError(
@@ -47,6 +64,11 @@ class AngleTable(Load):
         """Return angles and forces, closed: the first knot comes again one turn later."""
         return (*self.angles, self.angles[0] + 2.0 * math.pi), (*self.forces, self.forces[0])
 
+    @property
+    def turns(self) -> bool:
+        """Whether the angles are counted from a dead centre."""
+        return self.datum != "zero crank angle"
+
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return one, unless the force is the same all over the cycle."""
         constant = set(self.forces) == {0.0} or (self.during == "cycle" and len(set(self.forces)) == 1)
@@ -56,16 +78,29 @@ class AngleTable(Load):
         """Return the work in the strokes in which the force acts."""
         if self.during == ("inward stroke" if passage.outward else "outward stroke"):
             return 0.0
-        return passage.work(np.interp(passage.angle, self.angles, self.forces, period=2.0 * math.pi))
+        angle = passage.angle
+        if self.turns:
+            step = angle[:, 1:2] - angle[:, :1]
+            starts = (self.datum == "inner dead centre") == passage.outward
+            angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
+        return passage.work(np.interp(angle, self.angles, self.forces, period=2.0 * math.pi))
 
     @property
     def text(self) -> str:
         """The size of the table."""
-        return f"table of {len(self.angles)} crank angles, {self.during}"
+        datum = f" from the {self.datum}" if self.turns else ""
+        return f"table of {len(self.angles)} crank angles{datum}, {self.during}"
 
 
-def _built(crank_angles: tuple[float, ...], forces: tuple[float, ...], during: During) -> AngleTable:
-    return AngleTable(angles=crank_angles, forces=forces, during=during)
+def _built(
+    crank_angles: tuple[float, ...], forces: tuple[float, ...], measured_from: AngleDatum, during: During
+) -> AngleTable:
+    return AngleTable(angles=crank_angles, forces=forces, datum=measured_from, during=during)
+
+
+def _of_pressures(pressure_angles: tuple[float, ...], head: Head, during: During, **pressures: Any) -> AngleTable:
+    forces = piston_forces(head=head, **pressures)
+    return AngleTable(angles=pressure_angles, forces=forces, datum=head, during=during)
 
 
 AngleTable.tables = (
@@ -84,9 +119,31 @@ AngleTable.tables = (
                 increasing=True,
             ),
             FORCES,
+            ANGLE_DATUM,
             DURING,
         ),
         {"crank_angles": ["0 deg", "180 deg"], "forces": ["0 N", "-100 N"]},
         _built,
+    ),
+    Table(
+        "pressure_angles",
+        "PressureAngleLoad",
+        "table of pressures over the crank angle",
+        "Pressure in a cylinder over the crank angle: linear between the points, periodic; pressures are absolute.",
+        (
+            Entry(
+                "pressure_angles",
+                "Angle",
+                "crank angles from the dead centre at the head, in the sense of rotation, increasing, spanning less "
+                "than 360 deg",
+                ["0 deg", "90 deg"],
+                several=True,
+                increasing=True,
+            ),
+            *PRESSURES,
+            DURING,
+        ),
+        {"pressure_angles": ["0 deg", "180 deg"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
+        _of_pressures,
     ),
 )

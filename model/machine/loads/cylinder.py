@@ -17,6 +17,16 @@ ATMOSPHERE = 101_325.0
 """Pa, the standard atmosphere (10th CGPM, 1954)."""
 
 
+def piston_area(bore: float, piston_rod: float) -> float:
+    """Return the area of a piston, m^2, with a rod through its side. Raises `InputError` for a rod as thick as it."""
+    if piston_rod >= bore:
+        raise InputError(
+            f"the piston rod must be thinner than the bore; got {1e3 * piston_rod:g} mm in a bore of "
+            f"{1e3 * bore:g} mm; swap the two, or leave the rod out"
+        )
+    return 0.25 * math.pi * (bore**2 - piston_rod**2)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cylinder(Load):
     """A cylinder with a cycle of two strokes: compression towards its head, expansion away from it. SI, absolute.
@@ -62,11 +72,7 @@ class Cylinder(Load):
         require_numbers(self, "back_pressure", what="the back pressure, absolute,", least=0.0, unit="Pa")
         require_numbers(self, "compression_exponent", "expansion_exponent", what="the {}", least=0.0)
         require_word("head", self.head, Head)
-        if self.piston_rod >= self.bore:
-            raise InputError(
-                f"the piston rod must be thinner than the bore; got {1e3 * self.piston_rod:g} mm in a bore of "
-                f"{1e3 * self.bore:g} mm; swap the two, or leave the rod out"
-            )
+        piston_area(self.bore, self.piston_rod)
         if (self.compression_exponent == 0.0) != (self.expansion_exponent == 0.0):
             raise InputError(
                 "both exponents are zero, for a liquid, or neither; got "
@@ -81,7 +87,7 @@ class Cylinder(Load):
     @property
     def area(self) -> float:
         """Area of the piston, m^2."""
-        return 0.25 * math.pi * (self.bore**2 - self.piston_rod**2)
+        return piston_area(self.bore, self.piston_rod)
 
     def numbers(self) -> tuple[float, ...]:
         """Return factors of one, then the numbers of `slots`."""
@@ -146,3 +152,25 @@ EXPONENTS = (
     Entry("compression_exponent", "PositiveRatio", "n of p V^n = const in compression", 1.3, default=1.3),
     Entry("expansion_exponent", "PositiveRatio", "n of p V^n = const in expansion", 1.3, default=1.3),
 )
+PRESSURES = (
+    BORE,
+    Entry(
+        "pressures",
+        "LeastPressure",
+        "absolute pressure at each point",
+        ["8 bar", "1 bar"],
+        several=True,
+    ),
+    HEAD,
+    PISTON_ROD,
+    BACK_PRESSURE,
+)
+"""Entries of a table of pressures, besides where they are."""
+
+
+def piston_forces(
+    bore: float, piston_rod: float, pressures: tuple[float, ...], back_pressure: float, head: Head
+) -> tuple[float, ...]:
+    """Return the forces, N outward, of pressures on a piston, less the back pressure on its other side."""
+    area = piston_area(bore, piston_rod)
+    return tuple((-area if head == "outer dead centre" else area) * (one - back_pressure) for one in pressures)

@@ -19,6 +19,7 @@ from ...checks import require_all_finite
 from ...errors import InputError
 
 Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
+AngleDatum = Literal["zero crank angle", "inner dead centre", "outer dead centre"]
 During = Literal["cycle", "outward stroke", "inward stroke"]
 Formula = Callable[[Any, Any, Any, Any, Any], Any]
 
@@ -114,6 +115,11 @@ class Load:
         return (), ()
 
     @property
+    def turns(self) -> bool:
+        """Whether the knots are crank angles that are counted in the sense of rotation."""
+        return False
+
+    @property
     def by_position(self) -> bool:
         """Whether the force is the same wherever the slider is at the same place."""
         return False
@@ -171,6 +177,13 @@ DATUM = Entry(
     "centre (inward)",
     "outer dead centre",
     default="crank pivot",
+)
+ANGLE_DATUM = Entry(
+    "measured_from",
+    get_args(AngleDatum),
+    "what the crank angles are counted from: zero, counter-clockwise, or a dead centre, in the sense of rotation",
+    "outer dead centre",
+    default="zero crank angle",
 )
 FORCES = Entry(
     "forces",

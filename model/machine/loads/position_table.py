@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...checks import keep_tuples
+from .cylinder import PRESSURES, Head, piston_forces
 from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Passage, Table, require_table, require_word
 
 
@@ -74,6 +75,11 @@ def _built(
     return PositionTable(positions=positions, forces=forces, datum=measured_from, during=during)
 
 
+def _of_pressures(pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any) -> PositionTable:
+    forces = piston_forces(head=head, **pressures)
+    return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during)
+
+
 PositionTable.tables = (
     Table(
         "positions",
@@ -95,5 +101,25 @@ PositionTable.tables = (
         ),
         {"positions": ["0 mm", "50 mm"], "forces": ["0 N", "-100 N"], "measured_from": "inner dead centre"},
         _built,
+    ),
+    Table(
+        "pressure_positions",
+        "PressurePositionLoad",
+        "table of pressures over the slider position",
+        "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant beyond.",
+        (
+            Entry(
+                "pressure_positions",
+                "Length",
+                "distances of the piston from its top, the dead centre at the head, increasing",
+                ["0 mm", "20 mm"],
+                several=True,
+                increasing=True,
+            ),
+            *PRESSURES,
+            DURING,
+        ),
+        {"pressure_positions": ["0 mm", "50 mm"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
+        _of_pressures,
     ),
 )

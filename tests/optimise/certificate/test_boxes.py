@@ -52,7 +52,11 @@ MACHINES: dict[str, Mechanism] = {
     "all loads": LOADED,
     "cylinders": replace(
         MACHINE,
-        loads=(AIR, replace(AIR, head="inner dead centre", piston_rod=0.03, clearance=0.0, clearance_volume=4e-5)),
+        loads=(
+            AngleTable(angles=(0.2, 2.0, 4.0), forces=(0.0, 200.0, -100.0), datum="inner dead centre"),
+            AIR,
+            replace(AIR, head="inner dead centre", piston_rod=0.03, clearance=0.0, clearance_volume=4e-5),
+        ),
     ),
     "crossed, clockwise": replace(LOADED, branch="crossed", speed=-20.0),
     "window": replace(
