@@ -139,6 +139,14 @@ def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
     return found
 
 
+def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the crank angles (k,) of one fully turning linkage at which a load has a kink or jumps, either way."""
+    loads = load_structure(mechanism)
+    block, out = _block(mechanism, linkage, loads), np.empty(room_for(loads))
+    block[_SPEED] = 0.0  # valves open in both senses of rotation
+    return out[: _breakpoints(block, loads, watch_of(mechanism, Signal.TORQUE), out, False)]
+
+
 def _block(mechanism: Mechanism, linkage: Linkage, loads: Loads) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..cycle.cycle import kinks_of_loads
 from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.loads.load import Enters
@@ -193,24 +194,21 @@ class _Over:
         """Return the crank angles at which loads or friction change: knots of tables, dead centres, the rod's turn."""
         own, swing = self.linkage, self.swing
         angles = [*dead_points(own), 0.5 * np.pi, 1.5 * np.pi]
-        loads = load_structure(self.mechanism)
-        for k, load in enumerate(self.mechanism.loads):
-            knots = loads.at[loads.start[k] : loads.start[k + 1]]
-            if load.enters == Enters.ANGLE_TABLE:
-                angles += knots.tolist()
-            else:
-                angles += self._angles_of(knots, getattr(load, "datum", "crank pivot"))
+        if bool(own.rotates_fully):
+            angles += kinks_of_loads(self.mechanism, own).tolist()
+        else:  # then none is counted from a dead centre
+            loads = load_structure(self.mechanism)
+            for k, load in enumerate(self.mechanism.loads):
+                knots = loads.at[loads.start[k] : loads.start[k + 1]]
+                angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_of(knots)
         return [inside for angle in angles for inside in swing.inside(float(angle))]
 
-    def _angles_of(self, knots: Array, datum: str) -> list[float]:
-        own, sign = self.linkage, self.linkage.sign
+    def _angles_of(self, knots: Array) -> list[float]:
+        """Return the crank angles at which the slider passes distances from the crank pivot."""
+        own = self.linkage
+        r, l, e = float(own.crank), float(own.rod), float(own.offset)
         found: list[float] = []
-        for knot in knots.tolist():
-            x = sign * knot
-            if datum != "crank pivot":
-                inner, outer = (float(place) for place in own.dead_centres)
-                x = inner + sign * knot if datum == "inner dead centre" else outer - sign * knot
-            r, l, e = float(own.crank), float(own.rod), float(own.offset)
+        for x in (own.sign * knots).tolist():
             d = float(np.hypot(x, e))
             ratio = (r * r + d * d - l * l) / (2.0 * r * d) if d else np.inf
             if abs(ratio) < 1.0:

@@ -110,8 +110,8 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
             "stay on one side of it, change the dimensions, or drive the crank"
         )
     for load in mechanism.loads:
-        datum = getattr(load, "datum", "crank pivot")
-        if datum != "crank pivot" and not bool(turns):
+        datum = getattr(load, "datum", "")
+        if datum.endswith("dead centre") and not bool(turns):
             raise InputError(
                 f"a load is measured from the {datum}, which this linkage does not reach in a full turn; "
                 "measure it from the crank pivot"

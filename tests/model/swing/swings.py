@@ -48,7 +48,7 @@ def random_swings(
             continue
         linkage = Linkage(r, l, e, machine.branch)
         if not bool(linkage.rotates_fully):
-            kept = [load for load in machine.loads if getattr(load, "datum", "crank pivot") == "crank pivot"]
+            kept = [load for load in machine.loads if not getattr(load, "datum", "").endswith("dead centre")]
             machine = replace(machine, loads=tuple(kept))
         machine = replace(machine, friction=rubs) if friction else machine
         found.append((machine, linkage, Swing(start=start, end=end, driver=drives, law=law, duration=duration)))
