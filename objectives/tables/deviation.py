@@ -20,10 +20,10 @@ from ..quantity import Array
 from .curve_extremes import defined_curves, golden
 
 _TURN = 2.0 * math.pi
-_SHIFTS = 720  # of the grid
-_NODES = 1440  # of the computed curve that the grid interpolates
+_SHIFTS = 1440  # of the grid
+_NODES = 2880  # of the computed curve that the grid interpolates
 _GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
-_CANDIDATES = 3
+_CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
 _FEWEST = 3  # crank angles: one more than there are shifts
 _CONSTANT = 1e-12  # of the greatest size
