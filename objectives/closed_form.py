@@ -22,6 +22,11 @@ class ClosedFormQuantity(Quantity):
     forms: tuple[ClosedForm, ...]
     rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 
+    @property
+    def of_dimensions(self) -> bool:
+        """True."""
+        return True
+
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         values, slopes = _evaluate(self.forms[0], mechanism, dimensions, gradients)

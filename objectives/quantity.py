@@ -79,13 +79,16 @@ class Pieces:
     values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
     labels: (n, k), what tells the pieces of neighbouring designs apart: the crank angle of a peak, rad, or a number.
     A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
-    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones.
+    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones. other: of a quantity
+    with kinks of both kinds, the same from the other side; each side holds the kinks of the other one at the piece that
+    is active.
     """
 
     values: Array
     gradients: Array
     labels: Array
     least: bool = False
+    other: Pieces | None = None
 
     def at(self, places: NDArray[np.int64]) -> Pieces:
         """Return the pieces at some places (n, m) of each design."""
@@ -181,6 +184,20 @@ class Quantity(ABC):
     def has_gradient(self) -> bool:
         """Whether it has derivatives by the dimensions."""
         return True
+
+    @property
+    def of_dimensions(self) -> bool:
+        """Whether it follows from crank, rod and offset alone, without a search over the cycle."""
+        return False
+
+    @property
+    def made_of(self) -> tuple[Quantity, ...]:
+        """The quantities that it is computed from, if it is made of others."""
+        return ()
+
+    def with_parts(self, parts: tuple[Quantity, ...]) -> Quantity:
+        """Return the same made of other parts, in the order of `made_of`."""
+        return self
 
     def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
         """Return rule, value and remedy for the first unmet need of a machine; None if there is none.

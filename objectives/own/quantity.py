@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.machinery import PathFinder
 from pathlib import Path
-from typing import Any, Literal, NoReturn, cast, get_args
+from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,10 +78,7 @@ class OwnQuantity(Quantity):
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not _NAME.fullmatch(self.name):
-            raise InputError(
-                f"the name of a quantity has small letters, digits and underscores, a letter first; got {self.name!r}"
-            )
+        require_name(self.name)
         if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
             raise InputError(f'a function is named "module:function"; got {self.function!r}; write it so')
         if self.gradient not in get_args(Gradient):
@@ -258,26 +255,32 @@ class OwnQuantity(Quantity):
         self._session.checked.append(mechanism)
 
 
+def require_name(name: str) -> None:
+    """Raise `InputError` for a name that no table could have as a column."""
+    if not _NAME.fullmatch(name):
+        raise InputError(
+            f"the name of a quantity has small letters, digits and underscores, a letter first; got {name!r}"
+        )
+
+
 def bounded(quantity: Quantity, longest: float) -> Quantity:
     """Return a quantity whose own functions take at most `longest` s a call, even inside another quantity."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
-    inner = getattr(quantity, "inner", None)
-    return quantity if inner is None else replace(cast(Any, quantity), inner=bounded(inner, longest))
+    return quantity.with_parts(tuple(bounded(part, longest) for part in quantity.made_of))
 
 
 def close_own(quantity: Quantity) -> None:
     """End the processes of own functions that a quantity, or one that it is made of, has started."""
-    inner = getattr(quantity, "inner", None)
     if isinstance(quantity, OwnQuantity):
         quantity.close()
-    elif inner is not None:
-        close_own(inner)
+    for part in quantity.made_of:
+        close_own(part)
 
 
 def runs_own(quantity: Quantity) -> bool:
     """Whether a quantity, or one that it is made of, is a function of the user's own."""
-    return isinstance(quantity, OwnQuantity) or (hasattr(quantity, "inner") and runs_own(quantity.inner))
+    return isinstance(quantity, OwnQuantity) or any(map(runs_own, quantity.made_of))
 
 
 def own_quantities() -> dict[str, Any]:

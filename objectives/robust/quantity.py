@@ -69,7 +69,7 @@ class RobustQuantity(Quantity):
         require_options(self.case, self.order, self.share, self.samples, self.shape)
         whose = "all within tolerances" if self.case == "worst case" else f"{100.0 * self.share:.6g} % of machines"
         own = {
-            "name": f"{self.inner.name}_{self.suffix}",
+            "name": f"{self.inner.name if self.inner.name.isidentifier() else self.inner.stem}_{self.suffix}",
             "key": f"{self.inner.stem}_{self.suffix}",
             "title": f"{self.inner.short_title}, {whose}",
             "short": "",
@@ -81,6 +81,15 @@ class RobustQuantity(Quantity):
         }
         for fact in fields(Quantity):  # the others are those of the quantity
             object.__setattr__(self, fact.name, own.get(fact.name, getattr(self.inner, fact.name)))
+
+    @property
+    def made_of(self) -> tuple[Quantity, ...]:
+        """The quantity itself."""
+        return (self.inner,)
+
+    def with_parts(self, parts: tuple[Quantity, ...]) -> RobustQuantity:
+        """Return the same of another quantity of the same name."""
+        return replace(self, inner=parts[0])
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

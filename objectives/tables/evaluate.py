@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
 from ..cycle_peak import screened
+from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
 from ..registry import quantity
 
@@ -109,8 +110,9 @@ def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]
 
 
 def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool) -> list[Values]:
-    found = screened(quantities, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
-    for of in quantities:
+    leaves = leaves_of(quantities)
+    found = screened(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
+    for of in leaves:
         if of.name not in found:
             continue
         item = found[of.name]
@@ -120,4 +122,5 @@ def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array,
             item.values[missed] = exact.values
             if item.gradients is not None:
                 item.gradients[missed] = exact.gradients
-    return [found.get(q.name) or q.evaluate(mechanism, designs, gradients=gradients) for q in quantities]
+    found |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in found}
+    return with_formulas(quantities, found, designs, gradients=gradients)

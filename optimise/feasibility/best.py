@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ...model.machine.mechanism import Mechanism
-from ...objectives.closed_form import ClosedFormQuantity
-from ...objectives.registry import QUANTITIES
 from ..engine.engine import Engine
 from ..front.stationarity import Array
 from ..methods.auto.auto import AUTO, searched_by
@@ -89,9 +87,10 @@ def on_dimensions(problem: Problem) -> Problem:
 
 def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints on quantities that follow from crank, rod and offset alone."""
-    return tuple(c for c in problem.constraints if isinstance(QUANTITIES.get(c.quantity), ClosedFormQuantity))
+    return tuple(c for c in problem.constraints if problem.quantity(c.quantity).of_dimensions)
 
 
 def _weightless(part: Problem) -> Problem:
     machine = Mechanism(speed=part.mechanism.nominal.speed, branch=part.mechanism.nominal.branch)
-    return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=(), costs=None)
+    own = tuple(of for of in part.own if of.of_dimensions)
+    return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=own, costs=None)

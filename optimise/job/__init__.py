@@ -108,7 +108,8 @@ def parse_job(
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
     load_job(path)  # tells what is wrong with the file, if anything is
-    part = Job.model_validate(read(Path(path))).sections
+    data = read(Path(path))
+    part = job_with(declared(data, allowed=True)).model_validate(data).sections
     if part is None:
         raise JobError(f"{path}: sizing sections needs the table [sections]; got none; add its material and its pins")
     return part.build()

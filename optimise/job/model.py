@@ -128,7 +128,8 @@ class Job(Part):
         {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
     quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = optional(
-        "functions of your own as quantities, by name",
+        "formulas and functions of your own as quantities, by name",
+        {"clearance": {"formula": "offset - crank"}},
         {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},
         default={},
     )
@@ -176,9 +177,9 @@ class Job(Part):
 
 def job_with(declared: Declared) -> type[Job]:
     """Return the job whose [objectives] and [constraints], of options too, may name quantities of its own."""
-    if not declared.tables:
+    if not declared.tables and not declared.formulas:
         return Job
-    constraints, objectives = tables(declared.tables)
+    constraints, objectives = tables(declared.tables, declared.formulas)
     choice: Any = choice_with(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_some)]
     return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -1,4 +1,4 @@
-"""The tables [quantity.NAME] of a job file: functions of your own as quantities; and those that packages install."""
+"""The tables [quantity.NAME] of a job file: functions and formulas of your own; and functions that packages install."""
 
 from __future__ import annotations
 
@@ -8,12 +8,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from ...model.errors import InputError, JobError
+from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import TIME, Kind, kind_in
-from ...objectives.own.quantity import FUNCTION, LIMIT, Gradient, OwnQuantity, installed, own_quantities
+from ...objectives.own.quantity import (
+    FUNCTION,
+    LIMIT,
+    Gradient,
+    OwnQuantity,
+    installed,
+    own_quantities,
+    require_name,
+)
 from ...objectives.registry import FACTS
+from . import formulas
+from .formulas import DIMENSIONS
+from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .units import kind_for, per_si, shown
 from .values import Part, Physical, optional, required
@@ -45,10 +57,11 @@ def one_line(text: str) -> str:
 
 
 MOST_OWN = 20
-"""Functions of a job."""
+"""Functions and named formulas of a job."""
+Title = Annotated[str, Field(max_length=60), AfterValidator(one_line)]
 
 
-class QuantityPart(Part):
+class FunctionPart(Part):
     """A Python function as a quantity; its name then stands in [objectives] and [constraints] like any other."""
 
     function: Annotated[str, Field(max_length=200), AfterValidator(_function)] = required(
@@ -57,9 +70,7 @@ class QuantityPart(Part):
     unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = optional(
         'in which it is shown; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
-    title: Annotated[str, Field(max_length=60), AfterValidator(one_line)] | None = optional(
-        "for people; the name if left out", "greatest jerk of the slider"
-    )
+    title: Title | None = optional("for people; the name if left out", "greatest jerk of the slider")
     gradient: Gradient = optional(
         "how derivatives are had: complex step for a function that runs on complex numbers",
         "complex step",
@@ -82,24 +93,71 @@ class QuantityPart(Part):
         )
 
 
-def named(parts: dict[str, QuantityPart]) -> dict[str, QuantityPart]:
+class FormulaPart(Part):
+    """A formula as a quantity; its name then stands in [objectives], [constraints] and other formulas."""
+
+    formula: Annotated[str, Field(max_length=20_000)] = required(
+        "of names of quantities, dimensions and varying numbers, numbers with units, + - * / ** and functions",
+        "offset - crank",
+    )
+    title: Title | None = optional("for people; the name if left out", "clearance beside the crank")
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] | None = optional(
+        "in which it is shown; the usual one of its kind if left out", "mm"
+    )
+
+    def build(self) -> formulas.Stated:
+        """Return the formula as it is stated, to be read once its names are known."""
+        return formulas.Stated(self.formula, self.title, self.unit)
+
+
+_KINDS = Kinds(
+    {"function": FunctionPart, "formula": FormulaPart},
+    'function = "mymodule:myfunction" or formula = "offset - crank"',
+    "leave out one of the two",
+)
+QuantityPart = Annotated[
+    Annotated[FunctionPart, Tag("(function)")] | Annotated[FormulaPart, Tag("(formula)")],
+    Discriminator(_KINDS.tag),
+    BeforeValidator(_KINDS.one),
+]
+"""A quantity of a job's own: a function, or a formula."""
+Parts = dict[str, FunctionPart | FormulaPart]
+
+
+def named(parts: Parts) -> Parts:
     """Refuse names that are taken, or that a table could not have as a column."""
     for name, part in parts.items():
-        if name in FACTS or name == SLOW_STROKE:
+        if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
             raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
-        part.build(name, ())
+        require_name(name)
+        if isinstance(part, FunctionPart):
+            part.build(name, ())
     return parts
+
+
+def functions_of(parts: Parts, folder: Path | None) -> Iterator[OwnQuantity]:
+    """Yield the functions of a job as the problem has them. folder: where their modules may lie."""
+    for name, part in parts.items():
+        if isinstance(part, FunctionPart):
+            yield part.build(name, folders_of(folder))
+
+
+def formulas_of(parts: Parts) -> dict[str, formulas.Stated]:
+    """Return the named formulas of a job."""
+    return {name: part.build() for name, part in parts.items() if isinstance(part, FormulaPart)}
 
 
 @dataclass(frozen=True)
 class Declared:
     """The quantities that a job has besides those that every job has.
 
-    tables: facts by name, for what [objectives] and [constraints] may say. installed: those from packages.
+    tables: facts by name, for what [objectives] and [constraints] may say. installed: those from packages. formulas:
+    names of formulas.
     """
 
     tables: Mapping[str, Stated]
     installed: tuple[OwnQuantity, ...]
+    formulas: tuple[str, ...] = ()
 
 
 def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
@@ -108,7 +166,8 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     Lenient otherwise: what is wrong in a declaration the validation of the job says.
     """
     parts = data.get("quantity", {})
-    if parts and not allowed:
+    names = _formulas(parts)
+    if parts and not allowed and len(names) < len(parts):
         raise JobError(
             f"quantity: functions of your own are not run here; got {shown(parts)}; leave the table out, or have them "
             "installed as a package with entry points in slidercrank.quantities"
@@ -116,6 +175,8 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     parts = parts if isinstance(parts, Mapping) else {}
     tables: dict[str, Stated] = {}
     for name, part in itertools.islice(parts.items(), MOST_OWN):  # more are refused
+        if name in names:
+            continue
         unit = part.get("unit", "") if isinstance(part, Mapping) else ""
         try:
             kind = kind_for(unit if isinstance(unit, str) else "")
@@ -125,12 +186,22 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = _stated(name.replace("_", " "), kind)
     asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _keys(table)]
-    unknown = [name for name in dict.fromkeys(asked) if name not in {*FACTS, *tables, SLOW_STROKE}]
+    unknown = [name for name in dict.fromkeys(asked) if name not in {*FACTS, *tables, *names, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:
         tables[quantity.name] = _stated(quantity.title, kind_for(quantity.unit.symbol))
-    return Declared(tables, found)
+    return Declared(tables, found, names)
+
+
+def _formulas(parts: object) -> tuple[str, ...]:
+    """Return the names of those parts that are formulas and nothing else."""
+    given = parts.items() if isinstance(parts, Mapping) else ()
+    return tuple(
+        name
+        for name, part in itertools.islice(given, MOST_OWN)
+        if isinstance(name, str) and isinstance(part, Mapping) and "formula" in part and "function" not in part
+    )
 
 
 def _stated(title: str, kind: Kind) -> Stated:

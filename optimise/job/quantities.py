@@ -1,27 +1,35 @@
 """Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension.
 
-Beside the quantities [constraints] has `slow_stroke`, a word.
+Beside the quantities [constraints] has `slow_stroke`, a word. Keys of both tables may be formulas too, and bounds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, TypeAlias, cast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias, cast
 
 from pydantic import (
     BeforeValidator,
+    ConfigDict,
     Discriminator,
+    Field,
     ModelWrapValidatorHandler,
+    SerializerFunctionWrapHandler,
     Tag,
     create_model,
+    model_serializer,
     model_validator,
 )
 
-from ...model.errors import InputError
+from ...model.errors import InputError, JobError
 from ...model.linkage.linkage import SlowStroke
-from ...objectives.kinds import Kind
+from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ..problem.requirements import SENSES, Constraint, Objective
+from ..problem.requirements import SENSES, Constraint, Objective, Word
+from .formulas import DIMENSIONS, Formulas, is_formula
+from .messages import key_of
 from .units import closest, shown
 from .values import Part, Physical, optional, required
 
@@ -38,7 +46,8 @@ class Bounds(Part):
             raise InputError("must say min, max or equals; got an empty table; add one of the three")
         if equals is not None and not (lower is None and upper is None):
             raise InputError("must have either equals, or min and max; got both; leave out one of the two")
-        if lower is not None and upper is not None and lower > upper:
+        both = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
+        if both and lower > upper:
             given = data if isinstance(data, Mapping) else {"min": lower, "max": upper}
             raise InputError(
                 f"min must not exceed max; got min {shown(given['min'])} and max "
@@ -51,6 +60,45 @@ class Target(Part):
     """A value to come near to. The field follows from the unit of the quantity."""
 
 
+@dataclass(frozen=True)
+class _Bound(Physical):
+    """Marks a bound: a physical value, or a formula, which stays a text until its names are known."""
+
+    names: frozenset[str] = frozenset()
+
+    def read(self, value: object) -> Any:
+        if isinstance(value, str) and is_formula(value, self.names):
+            return value
+        return super().read(value)
+
+
+class _Raw(Physical):
+    """Marks a bound of a formula, which is read once the kind of the formula is known."""
+
+    def read(self, value: object) -> Any:
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise InputError(f'must be a value with a unit, such as "1 mm", or a number in SI; got {shown(value)}')
+        return value
+
+
+_RAW = Annotated[Any, _Raw(RATIO)]
+
+
+class FormulaBounds(Bounds):
+    """Bounds of a formula, values of its kind or formulas."""
+
+    min: _RAW | None = optional("least", "1 mm")
+    max: _RAW | None = optional("greatest", "400 mm")
+    equals: _RAW | None = optional("exact value", "0 mm", "3.2 * offset")
+
+
+class FormulaTarget(Target):
+    """A value of a formula to come near to."""
+
+    target: _RAW = required("to come near to", "2 mm")
+
+
+WORDS: tuple[Word, ...] = ("min", "max", "equals")
 SLOW_STROKE = "slow_stroke"
 """The requirement that is a word."""
 _WANTED = '"minimise", "maximise" or { target = value }'
@@ -73,6 +121,47 @@ def _form(value: object) -> str:
     return "(word)" if isinstance(value, str) else "(target)"
 
 
+_KEY = "(formulas)"
+"""Key of formulas within a table, in brackets, so that messages leave it out."""
+_PATTERN = rf"[^A-Za-z0-9_]|^({'|'.join(DIMENSIONS)})$"
+_IS_FORMULA = re.compile(_PATTERN)
+
+
+def _pattern_of(schema: dict[str, Any]) -> None:
+    """Put the formulas of a table, which have keys of their own, as a pattern of keys into its JSON Schema."""
+    inner = schema["properties"].pop(_KEY)
+    schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
+
+
+class _Table(Part):
+    """A table whose keys are quantities or formulas. named: formulas that have a name in the job."""
+
+    model_config = ConfigDict(json_schema_extra=_pattern_of)
+    named: ClassVar[frozenset[str]] = frozenset()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _apart(cls, data: Any) -> Any:
+        """Put formulas into a table of their own."""
+        if not isinstance(data, Mapping):
+            return data
+        keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
+        rest = {key: value for key, value in data.items() if key not in keys}
+        return rest | {_KEY: {key: data[key] for key in keys}} if keys else data
+
+    @model_serializer(mode="wrap")
+    def _together(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Return the table as a job has it, its formulas among the other keys."""
+        data: dict[str, Any] = handler(self)
+        own: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
+        return data | own
+
+    @classmethod
+    def _is_formula(cls, key: str) -> bool:
+        own = key in cls.model_fields or key == _KEY
+        return key in cls.named or (not own and _IS_FORMULA.search(key) is not None)
+
+
 class Stated(NamedTuple):
     """Facts of a quantity that the tables of a job have: title, kind and a usual value."""
 
@@ -81,45 +170,55 @@ class Stated(NamedTuple):
     example: str | float
 
 
-def tables(own: Mapping[str, Stated]) -> tuple[type[Part], type[Part]]:
+def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
     """Return the tables [constraints] and [objectives]: one optional key for each quantity.
 
-    own: quantities that a job has besides those that every job has.
+    own: quantities that a job has besides those that every job has. named: its formulas that have a name.
     """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}
     made: dict[Kind, tuple[Any, Any]] = {}
+    names = frozenset((*own, *named))
     known = {name: Stated(of.title, of.kind, of.usual) for name, of in FACTS.items()}
     for name, (title, kind, example) in (known | dict(own)).items():
         if kind not in made:
-            made[kind] = _forms(kind)
+            made[kind] = _forms(kind, names)
         bounds, wish = made[kind]
         limits[name] = (bounds | None, optional(title, {"min": example}))
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
     slow = optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward")
     limits[SLOW_STROKE] = (SlowStroke | None, slow)
-    constraints = create_model("Constraints", __base__=Part, **cast(Any, limits))
-    objectives = create_model("Objectives", __base__=Part, **cast(Any, wishes))
+    wish: Any = _wish(FormulaTarget)
+    limits["formulas"] = (dict[str, FormulaBounds], Field(default={}, alias=_KEY))
+    wishes["formulas"] = (dict[str, wish], Field(default={}, alias=_KEY))
+    constraints = create_model("Constraints", __base__=_Table, **cast(Any, limits))
+    objectives = create_model("Objectives", __base__=_Table, **cast(Any, wishes))
+    for table in (constraints, objectives):
+        table.named = frozenset(named)
     return constraints, objectives
 
 
-def _forms(kind: Kind) -> tuple[Any, Any]:
-    """Return the types of the bounds and of the objective of a quantity of one kind."""
-    value = Annotated[float, Physical(kind)]
+def _forms(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
+    """Return the types of the bounds and of the objective of a quantity of one kind. names: of formulas in bounds."""
+    value, bound = Annotated[float, Physical(kind)], Annotated[Any, _Bound(kind, names=names)]
     name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
     help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
-    limits: Any = {word: (value | None, optional(text, *example)) for word, text in help_of.items()}
+    limits: Any = {word: (bound | None, optional(text, *example)) for word, text in help_of.items()}
     bounds = create_model(f"{name}Bounds", __base__=Bounds, **limits)
     wanted: Any = {"target": (value, required("to come near to", *example))}
     target = create_model(f"{name}Target", __base__=Target, **wanted)
+    return bounds, _wish(target)
+
+
+def _wish(target: type[Target]) -> Any:
+    """Return the type of an objective whose target is of a type."""
     words = Literal["minimise", "maximise", "minimize", "maximize"]
-    wish = Annotated[
+    return Annotated[
         Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],
         Discriminator(_form),
         BeforeValidator(_sense),
     ]
-    return bounds, wish
 
 
 if TYPE_CHECKING:  # a type checker cannot follow fields that are made from the list of quantities
@@ -129,14 +228,50 @@ else:
     ConstraintsPart, ObjectivesPart = tables({})
 
 
-def constraints_of(part: ConstraintsPart) -> Iterator[Constraint]:
-    """Return the constraints of a job as the problem has them."""
+def constraints_of(part: ConstraintsPart, formulas: Formulas | None = None) -> Iterator[Constraint]:
+    """Return the constraints of a job as the problem has them. formulas: of the job; without, its tables have none.
+
+    Raises JobError for a wrong formula, and for bounds of it that leave nothing.
+    """
+    for name, bounds in _entries(part):
+        if name == SLOW_STROKE:
+            continue
+        given = {word: value for word in WORDS if (value := getattr(bounds, word)) is not None}
+        if all(isinstance(value, float) for value in given.values()) and name in FACTS:
+            yield Constraint(quantity=name, **_ends(given))
+        elif formulas is not None:
+            yield from _bounded(f"constraints.{key_of([name])}", name, given, formulas)
+
+
+def _bounded(key: str, name: str, given: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
+    """Yield the constraints of a formula, or of a quantity bounded by formulas: those on one quantity together."""
+    of = formulas.quantity(name, key)
+    found: dict[str, dict[Word, float]] = {}
+    for word, value in given.items():
+        bounded, bound = formulas.bound(of, value, f"{key}.{word}")
+        found.setdefault(bounded.name, {})[word] = bound
+    for quantity, ends in found.items():
+        if "min" in ends and "max" in ends and ends["min"] > ends["max"]:
+            raise JobError(
+                f"{key}: min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}, which "
+                "no design can meet; swap the two or leave out one"
+            )
+        yield Constraint(quantity=quantity, **_ends(ends))
+
+
+def _ends(given: Mapping[Word, Any]) -> dict[str, float | None]:
+    equals = given.get("equals")
+    return {"lower": given.get("min", equals), "upper": given.get("max", equals)}
+
+
+def _entries(part: Part) -> Iterator[tuple[str, Any]]:
+    """Yield name and value of what a table has: quantities, then formulas."""
     for name in type(part).model_fields:
-        bounds = getattr(part, name) if name != SLOW_STROKE else None
-        if bounds is not None and bounds.equals is not None:
-            yield Constraint(quantity=name, lower=bounds.equals, upper=bounds.equals)
-        elif bounds is not None:
-            yield Constraint(quantity=name, lower=bounds.min, upper=bounds.max)
+        value = getattr(part, name)
+        if name == "formulas":
+            yield from value.items()
+        elif value is not None:
+            yield name, value
 
 
 def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
@@ -144,11 +279,15 @@ def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
     return cast(SlowStroke | None, getattr(part, SLOW_STROKE))
 
 
-def objectives_of(part: ObjectivesPart) -> Iterator[Objective]:
-    """Return the objectives of a job as the problem has them."""
-    for name in type(part).model_fields:
-        wish = getattr(part, name)
+def objectives_of(part: ObjectivesPart, formulas: Formulas) -> Iterator[Objective]:
+    """Return the objectives of a job as the problem has them. Raises JobError for a wrong formula."""
+    for name, wish in _entries(part):
+        key = f"objectives.{key_of([name])}"
+        of = formulas.quantity(name, key)
         if isinstance(wish, Target):
-            yield Objective(quantity=name, sense="target", target=cast(Any, wish).target)
-        elif wish is not None:
-            yield Objective(quantity=name, sense=wish)
+            target = cast(Any, wish).target
+            if isinstance(wish, FormulaTarget):
+                of, target = formulas.bound(of, target, f"{key}.target")
+            yield Objective(quantity=of.name, sense="target", target=target)
+        else:
+            yield Objective(quantity=of.name, sense=wish)

@@ -9,12 +9,13 @@ from ...objectives.quantity import Quantity
 from ..methods.registry import require_fit
 from ..problem.problem import Problem
 from .contradictions import require_consistent
+from .formulas import Formulas
 from .model import Job
-from .own import folders_of
+from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
 from .target_motion import require_target
-from .varying import ends_of, variants_of, varying_machine
+from .varying import ends_of, reach_of, variants_of, varying_machine
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
@@ -24,25 +25,32 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     """
     variables = job.variables
     require_target(job.target_motion, job.objectives, job.constraints)
-    choices, variants = variants_of(job)
+    machine = varying_machine(job)
+    own = (
+        *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
+        *functions_of(job.quantity, folder),
+        *installed,
+    )
+    formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity))
+    choices, variants = variants_of(job, formulas)
+    objectives = tuple(objectives_of(job.objectives, formulas))
+    constraints = tuple(constraints_of(job.constraints, formulas))
+    limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
+    asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
         name=job.name,
-        mechanism=varying_machine(job),
+        mechanism=machine,
         crank=ends_of(variables.crank),
         rod=ends_of(variables.rod),
         offset=ends_of(variables.offset),
         choices=choices,
         variants=variants,
-        objectives=tuple(objectives_of(job.objectives)),
-        constraints=tuple(constraints_of(job.constraints)),
+        objectives=objectives,
+        constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
         costs=None if job.costs is None else job.costs.build(),
         settings=job.optimiser.build(),
-        own=(
-            *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
-            *(part.build(name, folders_of(folder)) for name, part in job.quantity.items()),
-            *installed,
-        ),
+        own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),
     )
     require_consistent(problem)
     require_fit(problem)

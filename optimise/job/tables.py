@@ -13,7 +13,6 @@ from ...model.errors import JobError
 from ...objectives.own.apply import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
-from ...objectives.robust.quantity import RobustQuantity
 from ..problem.problem import Problem
 from . import parse_job
 
@@ -53,11 +52,9 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
 
 
 def _with(item: Quantity, given: Mapping[str, Function]) -> Quantity:
-    if isinstance(item, RobustQuantity):
-        return replace(item, inner=_with(item.inner, given))
     if isinstance(item, OwnQuantity) and item.name in given:
         return replace(item, function=given[item.name])
-    return item
+    return item.with_parts(tuple(_with(part, given) for part in item.made_of))
 
 
 def _plain(value: object) -> object:

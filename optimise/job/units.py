@@ -25,6 +25,8 @@ from ...model.errors import InputError
 from ...objectives.kinds import KINDS, TIME, Face, Kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
+Dimension = frozenset[tuple[str, int]]
+"""Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
 
 _OTHERS = (
     TIME,
@@ -139,14 +141,33 @@ def kind_of(symbol: str) -> Kind:
 
 def kind_for(symbol: str) -> Kind:
     """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError for what is no unit."""
-    dimension = _unit(symbol)[1]
-    known = [kind for kind in KINDS if _unit(kind.unit)[1] == dimension]
-    if known:  # a torque and an energy have one dimension
+    kind = kind_with(dimension_of(symbol), symbol)
+    if kind in KINDS:
+        return kind
+    plain = symbol if _unit(symbol)[0] == 1 else kind.unit
+    return replace(kind_in(symbol, per_si(symbol)), name=f"a value in {plain}", unit=plain)
+
+
+def dimension_of(symbol: str) -> Dimension:
+    """Return the dimension of a unit, "" for none. Raises InputError for what is no unit."""
+    return _unit(symbol)[1]
+
+
+def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
+    """Return the kind of value of a dimension, one of `KINDS` or a new one in SI base units.
+
+    symbol: a unit, which tells kinds of one dimension apart, such as a torque and an energy.
+    """
+    known = [kind for kind in KINDS if dimension_of(kind.unit) == dimension]
+    if known:
         return next((kind for kind in known if symbol in kind.typed), known[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
-    si = " ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers)
-    plain = symbol if _unit(symbol)[0] == 1 else si
-    return replace(kind_in(symbol, per_si(symbol)), name=f"a value in {plain}", unit=plain)
+    return kind_in(" ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers))
+
+
+def number_in_si(digits: str, symbol: str) -> float:
+    """Return a number with a unit in SI. Raises InputError for what is no unit."""
+    return float(Fraction(digits) * _unit(symbol)[0])
 
 
 def per_si(symbol: str) -> float:
@@ -245,7 +266,7 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 
 
 @functools.lru_cache(maxsize=256)
-def _unit(text: str) -> tuple[Fraction, frozenset[tuple[str, int]]]:
+def _unit(text: str) -> tuple[Fraction, Dimension]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
     Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a

@@ -22,6 +22,7 @@ from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
+from .formulas import DIMENSIONS, Formulas
 from .messages import explain
 from .model import Job
 from .quantities import constraints_of, slow_stroke_of
@@ -34,7 +35,6 @@ MOST = 200
 """Combinations of choices that are enumerated."""
 _MOST_READ = 2000
 """Numbers that vary, counted in every combination: each takes up to 1 ms, with fifty loads."""
-DIMENSIONS = ("crank", "rod", "offset")
 _STRAY = 1e-12  # rounding of a factor
 
 
@@ -59,9 +59,12 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
         raise JobError(f"{key}: {error}") from None
 
 
-def variants_of(job: Job) -> tuple[tuple[str, ...], tuple[Variant, ...]]:
-    """Return the names of a job's choices and every combination of them; none if nothing is to be chosen."""
-    axes = list(_axes(job))
+def variants_of(job: Job, formulas: Formulas) -> tuple[tuple[str, ...], tuple[Variant, ...]]:
+    """Return the names of a job's choices and every combination of them; none if nothing is to be chosen.
+
+    formulas: of the job, which its options may constrain too.
+    """
+    axes = list(_axes(job, formulas))
     if not axes:
         return (), ()
     count = math.prod(len(options) for _, options in axes)
@@ -89,11 +92,21 @@ def ends_of(given: tuple[float, float] | Choices) -> Range:
     return Range(lower=given[0], upper=given[1])
 
 
+def reach_of(job: Job) -> dict[str, Range]:
+    """Return where each dimension may lie, whatever is chosen."""
+    found = {}
+    for name in DIMENSIONS:
+        options = [option.paths[name] for part in job.choice for option in part.option if name in option.paths]
+        ranges = [ends_of(getattr(job.variables, name)), *(ends_of(_length(name, value)) for value in options)]
+        found[name] = Range(lower=min(of.lower for of in ranges), upper=max(of.upper for of in ranges))
+    return found
+
+
 def _is_choice(given: object) -> bool:
     return isinstance(given, Mapping) and set(given) == {"choices"}
 
 
-def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
+def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
     """Yield name and options of every choice."""
     for name in DIMENSIONS:
         given = getattr(job.variables, name)
@@ -112,7 +125,7 @@ def _axes(job: Job) -> Iterator[tuple[str, list[_Option]]]:
         yield (
             part.name,
             [
-                _Option(o.name, o.paths, tuple(constraints_of(o.constraints)), slow_stroke_of(o.constraints))
+                _Option(o.name, o.paths, tuple(constraints_of(o.constraints, formulas)), slow_stroke_of(o.constraints))
                 for o in part.option
             ],
         )

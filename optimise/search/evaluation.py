@@ -215,11 +215,12 @@ def _in_box(found: Pieces, jacobian: Array) -> Pieces:
     # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
     values = np.where(bounded | np.isnan(found.values), found.values, np.copysign(np.inf, found.values))
     slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], found.gradients, 0.0), jacobian)
-    return Pieces(values, slopes, found.labels, found.least)
+    other = None if found.other is None else _in_box(found.other, jacobian)
+    return Pieces(values, slopes, found.labels, found.least, other)
 
 
 def _costly(quantity: Quantity) -> bool:
-    return not type(quantity).__name__.startswith("ClosedForm")
+    return not quantity.of_dimensions
 
 
 def sides(constraint: Constraint) -> list[Side]:
@@ -267,8 +268,11 @@ def _held(pieces: Pieces, side: float) -> Pieces:
     """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
     To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
-    to hold it up. Peaks come highest first, closed forms in any order.
+    to hold it up. A quantity with kinks of both kinds has pieces for either. Peaks come highest first, closed forms in
+    any order.
     """
+    if pieces.other is not None and pieces.least == (side > 0.0):
+        return pieces.other
     if pieces.least == (side < 0.0) or pieces.values.shape[1] == 1:
         return pieces
     first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)

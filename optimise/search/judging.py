@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from ...model.machine.mechanism import Mechanism
 from ...objectives.cycle_peak import CyclePeak, screen_peaks
-from ...objectives.quantity import Array, Pieces
+from ...objectives.formula.quantity import leaves_of, with_formulas
+from ...objectives.quantity import Array, Pieces, Values
 from ...objectives.robust.quantity import RobustQuantity
 from ..problem.problem import Problem
 
@@ -14,16 +18,16 @@ from ..problem.problem import Problem
 def quickly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     """Return quantities (n,) of designs, peaks by screening, robust ones estimated."""
     quantities = [problem.quantity(name) for name in names]
-    peaks = [quantity for quantity in quantities if isinstance(quantity, CyclePeak)]
+    leaves = leaves_of(quantities)
+    peaks = [quantity for quantity in leaves if isinstance(quantity, CyclePeak)]
     screened = dict(zip((peak.name for peak in peaks), screen_peaks(peaks, problem.mechanism, dimensions), strict=True))
-    return [
-        _robustly(quantity, problem.mechanism, dimensions)
+    found = {
+        quantity.name: Values(_robustly(quantity, problem.mechanism, dimensions), None)
         if isinstance(quantity, RobustQuantity)
-        else (
-            screened[quantity.name] if quantity.name in screened else quantity.evaluate(problem.mechanism, dimensions)
-        ).values
-        for quantity in quantities
-    ]
+        else screened.get(quantity.name) or quantity.evaluate(problem.mechanism, dimensions)
+        for quantity in leaves
+    }
+    return [item.values for item in with_formulas(quantities, found, dimensions)]
 
 
 def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
@@ -46,7 +50,7 @@ def joined(parts: list[list[Pieces]]) -> list[Pieces]:
     return [_joined(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
 
-def _joined(parts: tuple[Pieces, ...]) -> Pieces:
+def _joined(parts: Sequence[Pieces]) -> Pieces:
     most, least = max(part.values.shape[1] for part in parts), parts[0].least
 
     def rows(columns: list[Array], absent: float = 0.0) -> Array:
@@ -54,9 +58,19 @@ def _joined(parts: tuple[Pieces, ...]) -> Pieces:
         filled = [np.pad(each, more, constant_values=absent) for each, more in zip(columns, room, strict=True)]
         return np.concatenate(filled)
 
+    others = [_other_side(part) for part in parts] if any(part.other for part in parts) else []
     return Pieces(
         rows([part.values for part in parts], np.inf if least else -np.inf),
         rows([part.gradients for part in parts]),
         rows([part.labels for part in parts]),
         least,
+        _joined(others) if others else None,
     )
+
+
+def _other_side(part: Pieces) -> Pieces:
+    """Return a quantity from its other side, where some designs have no kink on it: its active piece alone."""
+    if part.other is not None:
+        return part.other
+    active = (np.argmin if part.least else np.argmax)(part.values, axis=1)
+    return replace(part.at(active[:, None]), least=not part.least)

@@ -137,7 +137,7 @@ def test_a_missing_module_is_named(tmp_path: Path) -> None:
         ),
         ({"function": "a:b", "gradient": "exact"}, 'quantity.mine.gradient: must be "complex step", "finite'),
         ({"function": "a:b", "limit": "5 mm"}, "quantity.mine.limit: must be a time; .* which is a length"),
-        ({"unit": "m"}, "quantity.mine.function: is missing"),
+        ({"unit": "m"}, "quantity.mine: must be one of function = .* or formula = .*; got unit"),
         ({"function": "a:b", "colour": 1}, "quantity.mine.colour: unknown key"),
     ],
 )

@@ -1,0 +1,113 @@
+"""Formulas as trees: numbers in SI, names, and functions of these, which whoever folds a tree gives a meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number with its unit. si: its value in SI. digits, unit: as typed; "" for a plain number."""
+
+    si: float
+    digits: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Name:
+    """A quantity, a dimension or a varying number."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function of other nodes. function: a sign of `SIGNS`, "neg" for a minus before one node, or a name."""
+
+    function: str
+    arguments: tuple[Node, ...]
+
+
+Node = Number | Name | Call
+
+SIGNS = {"+": 1, "-": 1, "*": 2, "/": 2, "neg": 3, "**": 4}
+"""Signs of operations and how strongly each binds; equally strong ones bind from the left, powers from the right."""
+ANGLES = ("sin", "cos", "tan")
+INVERSES = ("asin", "acos", "atan")
+ARGUMENTS = {"sqrt": (1, 1), "abs": (1, 1), "min": (2, 20), "max": (2, 20), **dict.fromkeys(ANGLES + INVERSES, (1, 1))}
+"""Functions with the least and the greatest number of arguments."""
+_ATOM = 9
+
+
+class Algebra(Protocol[T]):
+    """A meaning of formulas: values, units, ranges, text."""
+
+    def number(self, number: Number) -> T:
+        """Return what a number means."""
+        ...
+
+    def name(self, name: str) -> T:
+        """Return what a name means."""
+        ...
+
+    def call(self, function: str, arguments: list[T]) -> T:
+        """Return what a function of these means."""
+        ...
+
+
+def fold(node: Node, algebra: Algebra[T]) -> T:
+    """Return what a formula means in an algebra."""
+    if isinstance(node, Number):
+        return algebra.number(node)
+    if isinstance(node, Name):
+        return algebra.name(node.name)
+    return algebra.call(node.function, [fold(item, algebra) for item in node.arguments])
+
+
+def names_in(node: Node) -> tuple[str, ...]:
+    """Return the names in a formula, each once, in their order."""
+
+    def found(node: Node) -> Iterator[str]:
+        if isinstance(node, Name):
+            yield node.name
+        for item in node.arguments if isinstance(node, Call) else ():
+            yield from found(item)
+
+    return tuple(dict.fromkeys(found(node)))
+
+
+class _Text:
+    """Text with as few brackets as will do, and how strongly its outermost sign binds."""
+
+    def number(self, number: Number) -> tuple[str, int]:
+        plain = not number.unit and not number.digits.startswith("-")
+        return f"{number.digits} {number.unit}".rstrip(), _ATOM if plain else SIGNS["neg"]
+
+    def name(self, name: str) -> tuple[str, int]:
+        return name, _ATOM
+
+    def call(self, function: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
+        if function not in SIGNS:
+            return f"{function}({', '.join(text for text, _ in arguments)})", _ATOM
+        own = SIGNS[function]
+        if function == "neg":
+            return f"-{_bound(arguments[0], own)}", own
+        left, right = arguments
+        if function == "**":
+            return f"{_bound(left, own + 1)}**{_bound(right, own)}", own
+        return f"{_bound(left, own)} {function} {_bound(right, own + 1)}", own
+
+
+def _bound(part: tuple[str, int], least: int) -> str:
+    text, strength = part
+    return text if strength >= least else f"({text})"
+
+
+def text_of(node: Node) -> str:
+    """Return the text of a formula: the same for formulas that differ in spaces and idle brackets alone."""
+    return fold(node, _Text())[0]

@@ -1,0 +1,210 @@
+"""Reading of formulas: text to a tree, by a parser of its own; nothing in the text is ever run."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import NoReturn, Protocol
+
+from ...model.errors import InputError
+from .expression import ARGUMENTS, Call, Name, Node, Number
+
+LONGEST = 500
+"""Characters of a formula."""
+_MOST = 100
+"""Signs and functions of a formula, hence also the depth of its tree."""
+DEEPEST = 40
+"""Brackets, functions and signs within each other."""
+_TOKEN = re.compile(
+    r"""\s*(?:
+    (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)
+    |(?P<name>[A-Za-zµμ°_]\w*(?:\.\w+)*)
+    |(?P<sign>\*\*|[-+*/^(),·⋅])
+    )""",
+    re.VERBOSE | re.ASCII,
+)
+_UNIT = r"([A-Za-zµμ°]+)(?:(?=\d(?![\w.]))|(?![\w.]))(?!\s*\()"
+_NEXT_UNIT = re.compile(rf"\s*{_UNIT}", re.ASCII)
+_OTHER_UNIT = re.compile(rf"\s*[*/·⋅]\s*{_UNIT}", re.ASCII)
+_POWER = re.compile(r"(?:(?:\^|\*\*)([+-]?\d)|(\d))(?![\w.])", re.ASCII)
+_SAME: dict[int, str] = {
+    ord(sign): other for sign, other in zip("^·⋅−×÷²³", ("**", "*", "*", "-", "*", "/", "**2", "**3"), strict=True)
+}
+_EXAMPLE = '"offset - 2 * crank" or "min(crank, 30 mm)"'
+
+
+class Units(Protocol):
+    """The units that numbers of a formula may have."""
+
+    def has(self, name: str) -> bool:
+        """Return whether a name that stands after a number is one of a unit."""
+        ...
+
+    def si(self, digits: str, unit: str) -> float:
+        """Return a number in SI. Raises `InputError`, which begins with the unit, for what is no unit."""
+        ...
+
+
+def parse(text: str, units: Units) -> Node:
+    """Return the tree of a formula. Raises `InputError`, with rule, value and remedy, for anything else.
+
+    Numbers may be followed by a unit: "3 mm", "2 N m", "7800 kg/m^3"; a name that does not follow a number is a
+    quantity or another number of the problem. Signs: + - * / ** (or ^) and brackets; functions: `ARGUMENTS`.
+    """
+    if len(text) > LONGEST:
+        raise InputError(f"a formula has at most {LONGEST} characters; got {len(text)}; give parts of it names")
+    reader = _Reader(text.translate(_SAME), units)
+    node = reader.sum()
+    if reader.next.text:
+        reader.refuse(f"a sign of + - * / ** is missing before {reader.next.text}")
+    return node
+
+
+@dataclass(frozen=True)
+class _Token:
+    kind: str
+    text: str
+    end: int
+
+
+class _Reader:
+    """A text, read from its left to its right: one method for each strength with which signs bind."""
+
+    def __init__(self, text: str, units: Units) -> None:
+        self.text, self.units = text, units
+        self.depth = self.calls = 0
+        self.next = _Token("", "", 0)
+        self.step(0)
+
+    def step(self, place: int | None = None) -> None:
+        """Go on to the token after a place, after the present one if left out."""
+        place = self.next.end if place is None else place
+        match = _TOKEN.match(self.text, place)
+        if match is not None:
+            self.next = _Token(str(match.lastgroup), match[str(match.lastgroup)], match.end())
+        elif self.text[place:].strip():
+            self.refuse(f"{self.text[place:].strip()[0]!r} has no meaning in it")
+        else:
+            self.next = _Token("end", "", len(self.text))
+
+    def take(self, *signs: str) -> str | None:
+        """Return the sign that comes next if it is one of some, and go on; None otherwise."""
+        sign = self.next.text
+        if self.next.kind != "sign" or sign not in signs:
+            return None
+        self.step()
+        return sign
+
+    def refuse(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
+        shown = self.text if len(self.text) <= 60 else f"{self.text[:60]}..."
+        shown = shown if shown.isprintable() else ascii(shown)
+        raise InputError(f"{rule}; got the formula {shown!r}; {remedy}")
+
+    def deeper(self) -> None:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            self.refuse(
+                f"brackets, functions and signs lie within each other at most {DEEPEST} deep", "give parts of it names"
+            )
+
+    def call(self, function: str, *arguments: Node) -> Call:
+        self.calls += 1
+        if self.calls > _MOST:
+            self.refuse(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
+        return Call(function, arguments)
+
+    # ---- one method for each strength ----------------------------------------------------------------------------
+
+    def sum(self) -> Node:
+        self.deeper()
+        node = self.product()
+        while sign := self.take("+", "-"):
+            node = self.call(sign, node, self.product())
+        self.depth -= 1
+        return node
+
+    def product(self) -> Node:
+        node = self.signed()
+        while sign := self.take("*", "/"):
+            node = self.call(sign, node, self.signed())
+        return node
+
+    def signed(self) -> Node:
+        minus = False
+        while sign := self.take("+", "-"):
+            minus ^= sign == "-"
+        node = self.power()
+        if not minus:
+            return node
+        if isinstance(node, Number) and not node.digits.startswith("-"):
+            return Number(-node.si, f"-{node.digits}", node.unit)
+        return self.call("neg", node)
+
+    def power(self) -> Node:
+        node = self.atom()
+        if not self.take("**", "^"):
+            return node
+        self.deeper()
+        node = self.call("**", node, self.signed())
+        self.depth -= 1
+        return node
+
+    def atom(self) -> Node:
+        token = self.next
+        if token.kind == "number":
+            return self.number()
+        if token.kind == "name":
+            self.step()
+            return self.function(token.text) if self.next.text == "(" else Name(token.text)
+        if self.take("("):
+            node = self.sum()
+            self.close()
+            return node
+        if token.kind == "end":
+            self.refuse("a number, a name or a bracket is missing at its end")
+        self.refuse(f"a number, a name or a bracket is missing before {token.text}")
+
+    def close(self) -> None:
+        if not self.take(")"):
+            self.refuse("every bracket that is opened is closed")
+
+    def function(self, name: str) -> Node:
+        if name not in ARGUMENTS:
+            self.refuse(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is none of these")
+        self.step()
+        arguments = [self.sum()]
+        while self.take(","):
+            arguments.append(self.sum())
+        self.close()
+        least, most = ARGUMENTS[name]
+        if not least <= len(arguments) <= most:
+            count = "one argument" if most == 1 else f"{least} to {most} arguments, with commas between"
+            self.refuse(f"{name} takes {count}", f"it has {len(arguments)}")
+        return self.call(name, *arguments)
+
+    # ---- numbers ---------------------------------------------------------------------------------------------------
+
+    def number(self) -> Node:
+        digits, place = self.next.text, self.next.end
+        unit, place = self.unit(place)
+        try:
+            si = self.units.si(digits, unit)
+        except InputError as error:
+            self.refuse(str(error))
+        self.step(place)
+        return Number(si, digits, unit)
+
+    def unit(self, place: int) -> tuple[str, int]:
+        """Return the unit at a place, "" if there is none, and the place after it."""
+        text = ""
+        match = _NEXT_UNIT.match(self.text, place)
+        while match:
+            sign = self.text[match.start() : match.start(1)].strip()
+            text += f"{sign or ' '}{match[1]}" if text else match[1]
+            place = match.end()
+            if power := _POWER.match(self.text, place):
+                text, place = f"{text}^{power[1] or power[2]}", power.end()
+            match, other = _NEXT_UNIT.match(self.text, place), _OTHER_UNIT.match(self.text, place)
+            if match is None and other and self.units.has(other[1]):
+                match = other
+        return text, place

@@ -1,0 +1,129 @@
+"""A formula as a quantity: composed of the values, gradients and pieces of what it names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.numbers import require_width
+from ..needs import Without
+from ..quantity import Array, Pieces, Quantity, Values
+from .expression import Node, fold
+from .kinks import Both, Kinks, both_of, pieces_of, smooth
+from .slopes import Slopes
+
+_GOLDEN = 0.6180339887498949  # labels of parts are added in proportions that hardly ever meet
+_LONGEST_KEY = 60
+_WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormulaQuantity(Quantity):
+    """A formula as a quantity. name: its text, or the name that a job gives it.
+
+    expression: the formula. parts: the quantities that it names. columns: the dimensions and varying numbers that it
+    names, each with its place in a design.
+    """
+
+    expression: Node
+    parts: tuple[Quantity, ...] = ()
+    columns: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def has_gradient(self) -> bool:
+        """Whether all its parts have derivatives."""
+        return all(part.has_gradient for part in self.parts)
+
+    @property
+    def of_dimensions(self) -> bool:
+        """Whether it follows from crank, rod and offset alone."""
+        return all(part.of_dimensions for part in self.parts) and all(column < 3 for _, column in self.columns)
+
+    @property
+    def made_of(self) -> tuple[Quantity, ...]:
+        """The quantities that it names."""
+        return self.parts
+
+    def with_parts(self, parts: tuple[Quantity, ...]) -> FormulaQuantity:
+        """Return the formula of other parts of the same names."""
+        return replace(self, parts=parts)
+
+    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+        """Return why a machine does not define it: what one of its parts lacks; None if nothing is lacking."""
+        if without == "zero":  # of a part that is zero something else may be left
+            return None
+        reasons = ((part.name, part.lacks(mechanism, without)) for part in self.parts)
+        return next((f"{name}: {reason}" for name, reason in reasons if reason), None)
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the formula for designs (n, 3 + k); see `Quantity`."""
+        require_width(mechanism, dimensions)
+        found = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
+        return self.combined(found, dimensions, gradients=gradients)
+
+    def combined(self, found: Mapping[str, Values], dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the formula for designs (n, 3 + k). found: its parts, by their names, with gradients if asked for."""
+        n, d = dimensions.shape
+        leaves = dict(found)
+        for name, column in self.columns:
+            slopes = np.tile(np.arange(d) == column, (n, 1)).astype(np.float64) if gradients else None
+            leaves[name] = Values(dimensions[:, column].astype(np.float64), slopes)
+        with np.errstate(all="ignore"):
+            return fold(self.expression, Slopes(leaves, n, d, gradients))
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the formula as the greatest of smooth pieces; see `Quantity`."""
+        require_width(mechanism, dimensions)
+        n, d = dimensions.shape
+        leaves: dict[str, Both] = {}
+        for place, part in enumerate(self.parts):
+            leaves[part.name] = both_of(part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place)
+        for name, column in self.columns:
+            one = smooth(dimensions[:, column].astype(np.float64), np.tile(np.arange(d) == column, (n, 1)) * 1.0)
+            leaves[name] = Both(one, one)
+        with np.errstate(all="ignore"):
+            return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
+
+
+def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities that others are computed from: themselves, or the parts of formulas, each once."""
+
+    def found(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
+        for item in quantities:
+            if isinstance(item, FormulaQuantity):
+                yield from found(item.parts)
+            else:
+                yield item.name, item
+
+    return tuple(dict(found(quantities)).values())
+
+
+def with_formulas(
+    quantities: Sequence[Quantity], found: Mapping[str, Values], dimensions: Array, *, gradients: bool = False
+) -> list[Values]:
+    """Return the values of quantities, those of formulas combined. found: the values of `leaves_of` by name."""
+    known = dict(found)
+
+    def value(item: Quantity) -> Values:
+        if isinstance(item, FormulaQuantity) and item.name not in known:
+            own = {part.name: value(part) for part in item.parts}
+            known[item.name] = item.combined(own, dimensions, gradients=gradients)
+        return known[item.name]
+
+    return [value(item) for item in quantities]
+
+
+def key_of(text: str) -> str:
+    """Return how the column of a formula begins: "offset_minus_crank"."""
+    spaced = re.sub(r"\*\*|(?<=[\w)]) [-+*/] (?=.)", lambda sign: f" {_WORDS[sign[0].strip()]} ", text)
+    key = re.sub("[^a-z0-9]+", "_", spaced.lower().replace("-", " minus ")).strip("_")
+    plain = not re.search(r"\(|[A-Za-z_]\w*\.", text) and len(key) <= _LONGEST_KEY
+    if not plain:  # different formulas may read alike
+        from hashlib import blake2b
+
+        key = f"{key[:_LONGEST_KEY].rstrip('_')}_{blake2b(text.encode(), digest_size=3).hexdigest()}"
+    return key if key[:1].isalpha() else f"formula_{key}"

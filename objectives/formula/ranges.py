@@ -1,0 +1,196 @@
+"""Bounds of formulas within the ranges of a problem: signs that are certain, and divisors that may be zero."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+from .expression import Call, Name, Node, Number, text_of
+from .linear import SIZE, Linear, linear_of
+
+_ROUNDING = 1e-14
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Values from lower to upper, SI. apart: whether zero is certainly none of them."""
+
+    lower: float
+    upper: float
+    apart: bool = False
+
+    @property
+    def spans_zero(self) -> bool:
+        """Whether a value may be zero."""
+        return self.lower <= 0.0 <= self.upper and not self.apart
+
+
+ANY = Interval(-math.inf, math.inf)
+_TRIG = Interval(-1.0, 1.0)
+_IMAGES: dict[str, tuple[Callable[[float], float], float, float]] = {
+    "sqrt": (math.sqrt, 0.0, math.inf),
+    "asin": (math.asin, -1.0, 1.0),
+    "acos": (math.acos, -1.0, 1.0),
+    "atan": (math.atan, -math.inf, math.inf),
+}
+"""Functions that rise or fall all along, and where they are defined."""
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Ranges of the names of formulas.
+
+    intervals: of every name, SI. linears: names that are linear in dimensions and varying numbers. advice: for a name
+    that may be zero, how it is kept off zero.
+    """
+
+    intervals: Mapping[str, Interval]
+    linears: Mapping[str, Linear | None]
+    advice: Mapping[str, str]
+
+    def of(self, node: Node) -> Interval:
+        """Return bounds of a formula.
+
+        Raises `InputError` for a divisor that may be zero, and for a function that is defined nowhere in the ranges.
+        """
+        if isinstance(node, Number):
+            return Interval(node.si, node.si)
+        if isinstance(node, Name):
+            return self.intervals[node.name]
+        given = [self.of(item) for item in node.arguments]
+        if node.function == "/" and given[1].spans_zero:
+            self._refuse_divisor(node.arguments[1], given[1])
+        if node.function == "**" and given[0].spans_zero and given[1].lower < 0.0:
+            self._refuse_divisor(node.arguments[0], given[0])
+        found = _call(node, given)
+        linear = linear_of(node, self.linears)
+        return found if linear is None else _both(found, self._linear(linear))
+
+    def _refuse_divisor(self, node: Node, found: Interval) -> None:
+        if isinstance(node, Name):
+            remedy = self.advice.get(node.name, "divide by something else")
+        else:
+            remedy = "change the ranges, or bring the formula into a form without that division"
+        always = found.lower == found.upper == 0.0
+        raise InputError(
+            f"a formula divides by nothing that may be zero; got {text_of(node)} as a divisor, which "
+            f"{'is zero for every design' if always else 'may be zero within the ranges'}; {remedy}"
+        )
+
+    def _linear(self, linear: Linear) -> Interval:
+        """Return the bounds of a linear formula where the linkage turns fully: rod > crank + |offset|."""
+        factors = {name: float(factor) for name, factor in linear.factors}
+        signed, size = factors.pop("offset", 0.0), factors.pop(SIZE, 0.0)
+        least = greatest = float(linear.constant)
+        three = {name: factors.pop(name, 0.0) for name in ("crank", "rod")}
+        for name, factor in factors.items():
+            ends = [factor * end for end in (self.intervals[name].lower, self.intervals[name].upper)]
+            least, greatest = least + min(ends), greatest + max(ends)
+        offset = self.intervals["offset"]
+        values: list[tuple[float, bool]] = []
+        for sign in (1.0, -1.0):
+            low, high = (offset.lower, offset.upper) if sign > 0.0 else (-offset.upper, -offset.lower)
+            if high >= 0.0:
+                sizes = (max(low, 0.0), high)
+                values += self._corners(three["crank"], three["rod"], sign * signed + size, sizes)
+        if not values:
+            return ANY
+        low, high = min(value for value, _ in values), max(value for value, _ in values)
+        room = _ROUNDING * max(abs(float(linear.constant)), *(abs(value) for value, _ in values))
+        zeros = [edge for value, edge in values if abs(value + float(linear.constant)) <= room]
+        alone = (not factors and low + float(linear.constant) >= -room) or high + float(linear.constant) <= room
+        return Interval(least + low, greatest + high, bool(alone and all(zeros)))
+
+    def _corners(self, r: float, l: float, a: float, sizes: tuple[float, float]) -> list[tuple[float, bool]]:
+        """Return values at the corners of what turns fully, each with whether it lies on the edge of that."""
+        crank, rod = self.intervals["crank"], self.intervals["rod"]
+        ends = [(crank.lower, crank.upper), (rod.lower, rod.upper), sizes]
+        found = []
+        for x, y, z in itertools.product(*ends):
+            if y > x + z:
+                found.append((r * x + l * y + a * z, False))
+        # Where the plane rod = crank + |offset| cuts the edges of the box.
+        cuts = [(y - z, y, z) for y, z in itertools.product(ends[1], ends[2])]
+        cuts += [(x, x + z, z) for x, z in itertools.product(ends[0], ends[2])]
+        cuts += [(x, y, y - x) for x, y in itertools.product(ends[0], ends[1])]
+        within = [p for p in cuts if all(low <= n <= high for n, (low, high) in zip(p, ends, strict=True))]
+        return found + [(r * x + l * y + a * z, True) for x, y, z in within]
+
+
+def _both(one: Interval, other: Interval) -> Interval:
+    lower, upper = max(one.lower, other.lower), min(one.upper, other.upper)
+    return Interval(min(lower, upper), max(lower, upper), one.apart or other.apart)
+
+
+def _call(node: Call, given: list[Interval]) -> Interval:
+    function, one, other = node.function, given[0], given[-1]
+    if function == "neg":
+        return Interval(-one.upper, -one.lower, one.apart)
+    if function == "+":
+        return _sum(one, other)
+    if function == "-":
+        return _sum(one, Interval(-other.upper, -other.lower, other.apart))
+    if function == "*":
+        return _hull(one, other, lambda a, b: 0.0 if 0.0 in (a, b) else a * b, one.apart and other.apart)
+    if function == "/":
+        return _hull(one, other, _quotient, one.apart)
+    if function == "**":
+        return _power(one, other)
+    if function == "abs":
+        ends = sorted((abs(one.lower), abs(one.upper)))
+        return Interval(0.0 if one.lower <= 0.0 <= one.upper else ends[0], ends[1], one.apart)
+    if function in ("min", "max"):
+        pick = min if function == "min" else max
+        return Interval(
+            pick(item.lower for item in given), pick(item.upper for item in given), all(item.apart for item in given)
+        )
+    if function in _IMAGES:
+        image, least, greatest = _IMAGES[function]
+        if one.upper < least or one.lower > greatest:
+            raise InputError(
+                f"{function} is defined from {least:g} to {greatest:g}; got {text_of(node.arguments[0])}, which is "
+                f"nowhere so within the ranges; correct the formula"
+            )
+        ends = sorted(image(min(max(end, least), greatest)) for end in (one.lower, one.upper))
+        return Interval(ends[0], ends[1], one.apart and function == "sqrt")
+    return ANY if function == "tan" else _TRIG
+
+
+def _sum(one: Interval, other: Interval) -> Interval:
+    lower, upper = one.lower + other.lower, one.upper + other.upper
+    same = (one.lower >= 0.0 and other.lower >= 0.0) or (one.upper <= 0.0 and other.upper <= 0.0)
+    return Interval(lower, upper, same and (one.apart or other.apart))
+
+
+def _quotient(a: float, b: float) -> float:
+    if a == 0.0 or math.isinf(b):
+        return 0.0
+    return math.copysign(math.inf, a) * math.copysign(1.0, b) if b == 0.0 else a / b
+
+
+def _hull(one: Interval, other: Interval, of: Callable[[float, float], float], apart: bool) -> Interval:
+    # A divisor that is never zero may come near to it from one side: there its end has that side's sign.
+    ends = [end if end or other.upper > 0.0 else -0.0 for end in (other.lower, other.upper)]
+    if other.lower < 0.0 < other.upper and of is _quotient:
+        return Interval(-math.inf, math.inf, apart)
+    found = [of(a, b) for a in (one.lower, one.upper) for b in ends]
+    return Interval(min(found), max(found), apart)
+
+
+def _power(base: Interval, exponent: Interval) -> Interval:
+    if exponent.lower != exponent.upper or base.lower < 0.0:
+        even = exponent.lower == exponent.upper and exponent.lower % 2 == 0
+        return Interval(0.0 if base.lower >= 0.0 or even else -math.inf, math.inf, base.apart)
+    power = exponent.lower
+
+    def raised(x: float) -> float:
+        try:
+            return float(x**power)
+        except (OverflowError, ZeroDivisionError):
+            return math.inf
+
+    ends = sorted((raised(base.lower), raised(base.upper)))
+    return Interval(ends[0], ends[1], base.apart)

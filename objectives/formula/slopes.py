@@ -1,0 +1,91 @@
+"""Values of formulas with their derivatives: the chain rule, number by number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..quantity import Array, Values
+from .expression import Number
+
+Slope = Callable[[Array, Array], Array]
+UNARY: dict[str, tuple[Callable[[Array], Array], Slope]] = {
+    "neg": (np.negative, lambda x, y: np.full_like(x, -1.0)),
+    "sqrt": (np.sqrt, lambda x, y: 0.5 / y),
+    "abs": (np.abs, lambda x, y: np.where(x < 0.0, -1.0, 1.0)),
+    "sin": (np.sin, lambda x, y: np.cos(x)),
+    "cos": (np.cos, lambda x, y: -np.sin(x)),
+    "tan": (np.tan, lambda x, y: 1.0 + y * y),
+    "asin": (np.arcsin, lambda x, y: 1.0 / np.sqrt((1.0 - x) * (1.0 + x))),
+    "acos": (np.arccos, lambda x, y: -1.0 / np.sqrt((1.0 - x) * (1.0 + x))),
+    "atan": (np.arctan, lambda x, y: 1.0 / (1.0 + x * x)),
+}
+"""Functions of one argument x, and their derivatives by x and the value y."""
+Partials = tuple[Array, Array]
+BINARY: dict[str, tuple[Callable[[Array, Array], Array], Callable[[Array, Array, Array], Partials]]] = {
+    "+": (np.add, lambda a, b, y: (np.ones_like(a), np.ones_like(b))),
+    "-": (np.subtract, lambda a, b, y: (np.ones_like(a), np.full_like(b, -1.0))),
+    "*": (np.multiply, lambda a, b, y: (b, a)),
+    "/": (np.divide, lambda a, b, y: (1.0 / b, -y / b)),
+    "**": (np.power, lambda a, b, y: (np.where(b == 0.0, 0.0, b * np.power(a, b - 1.0)), y * np.log(a))),
+}
+"""Operations on two arguments a and b, and their derivatives by both and the value y."""
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """An algebra of values (n,) and gradients (n, d); without gradients where the leaves have none.
+
+    leaves: what the names mean. n, d: of numbers, whose gradients are zero.
+    """
+
+    leaves: Mapping[str, Values]
+    n: int
+    d: int
+    gradients: bool
+
+    def number(self, number: Number) -> Values:
+        """Return a number, the same for all designs."""
+        return Values(np.full(self.n, number.si), np.zeros((self.n, self.d)) if self.gradients else None)
+
+    def name(self, name: str) -> Values:
+        """Return what a name means."""
+        return self.leaves[name]
+
+    def call(self, function: str, arguments: list[Values]) -> Values:
+        """Return a function of its arguments; at a kink with the slope of the first that is active."""
+        if function in ("min", "max"):
+            return _extreme(function, arguments)
+        given = [item.values for item in arguments]
+        values = UNARY[function][0](given[0]) if function in UNARY else BINARY[function][0](given[0], given[1])
+        if not self.gradients:
+            return Values(values, None)
+        return Values(values, sum_of(partials(function, given, values), [item.gradients for item in arguments]))
+
+
+def partials(function: str, given: list[Array], values: Array) -> tuple[Array, ...]:
+    """Return the derivatives of a smooth function by its arguments, each of their shape."""
+    if function in UNARY:
+        return (UNARY[function][1](given[0], values),)
+    return BINARY[function][1](given[0], given[1], values)
+
+
+def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
+    """Return the sum of gradients (..., d) times slopes (...); where a gradient is zero the slope may be anything."""
+    total: Array | None = None
+    for slope, gradient in zip(slopes, gradients, strict=True):
+        assert gradient is not None
+        part = np.where(gradient == 0.0, 0.0, slope[..., None] * gradient)
+        total = part if total is None else total + part
+    assert total is not None
+    return total
+
+
+def _extreme(function: str, arguments: list[Values]) -> Values:
+    stacked = np.stack([item.values for item in arguments])
+    first = (np.argmin if function == "min" else np.argmax)(stacked, axis=0)  # of one that is no number: that one
+    rows = np.arange(stacked.shape[1])
+    slopes = [item.gradients for item in arguments if item.gradients is not None]
+    return Values(stacked[first, rows], np.stack(slopes)[first, rows] if slopes else None)

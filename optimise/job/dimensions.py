@@ -1,0 +1,155 @@
+"""Dimensions of formulas: what may be added, compared or given to a function, by the units of the names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ...model.errors import InputError
+from ...objectives.formula.expression import ANGLES, INVERSES, SIGNS, Node, Number, fold
+from ...objectives.kinds import ANGLE, Kind
+from .units import Dimension, dimension_of, kind_with
+
+_LENGTH, _ANGLE = "[length]", "[angle]"
+_LARGEST = 9  # a power that a unit has a notation for
+_SAID = {"+": "adds", "-": "subtracts", "min": "compares", "max": "compares"}
+Powers = Mapping[str, Fraction]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Dimension of a part of a formula, its text, and its value if it is a plain number."""
+
+    powers: Powers
+    text: str
+    value: Fraction | None = None
+
+    @property
+    def plain(self) -> bool:
+        return not any(self.powers.values())
+
+
+def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
+    """Return the kind of a formula's values. kinds: of the names in it. Raises InputError where dimensions clash."""
+    part = fold(node, _Dimensions({name: _powers(dimension_of(kind.unit)) for name, kind in kinds.items()}))
+    if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
+        raise InputError(
+            f"the value of a formula has a unit of whole powers, at most {_LARGEST}; got {part.text} in "
+            f"{_unit(part.powers)}; raise it to a power that leaves such a unit"
+        )
+    return _kind(part.powers)
+
+
+class _Dimensions:
+    """An algebra of dimensions. known: those of names."""
+
+    def __init__(self, known: Mapping[str, Powers]) -> None:
+        self.known = known
+
+    def number(self, number: Number) -> _Part:
+        text = f"{number.digits} {number.unit}".rstrip()
+        return _Part(_powers(dimension_of(number.unit)), text, None if number.unit else Fraction(number.digits))
+
+    def name(self, name: str) -> _Part:
+        return _Part(self.known[name], name)
+
+    def call(self, function: str, arguments: list[_Part]) -> _Part:
+        one, other = arguments[0], arguments[-1]
+        text = _text(function, arguments)
+        if function in _SAID:
+            for item in arguments[1:]:
+                if not _alike(one.powers, item.powers):
+                    raise InputError(
+                        f"{text} {_SAID[function]} {_unit(one.powers)} and {_unit(item.powers)}; only values of one "
+                        "kind go together; correct the names, or give numbers their units"
+                    )
+            return _Part(one.powers, text, _value(function, arguments))
+        if function in "*/":
+            sign = 1 if function == "*" else -1
+            powers = {base: Fraction(0) for base in (*one.powers, *other.powers)}
+            powers |= one.powers
+            powers = {base: power + sign * other.powers.get(base, 0) for base, power in powers.items()}
+            return _Part({base: power for base, power in powers.items() if power}, text, _value(function, arguments))
+        if function == "**":
+            return _Part(_raised(one, other, text), text)
+        if function == "sqrt":
+            return _Part({base: power / 2 for base, power in one.powers.items()}, text)
+        if function in ANGLES:
+            if not _alike(one.powers, _powers(dimension_of(ANGLE.unit))):
+                raise InputError(
+                    f"{function} takes an angle; got {text} of {_unit(one.powers)}; give a number its unit, 30 deg, or "
+                    "multiply a ratio by 1 rad"
+                )
+            return _Part({}, text)
+        if function in INVERSES:
+            if not one.plain:
+                raise InputError(
+                    f"{function} takes a ratio; got {text} of {_unit(one.powers)}; divide by a value of the same kind"
+                )
+            return _Part(_powers(dimension_of(ANGLE.unit)), text)
+        return _Part(one.powers, text, _value(function, arguments))  # neg, abs
+
+
+def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
+    if not exponent.plain:
+        raise InputError(
+            f"an exponent is a ratio; got {text} with one in {_unit(exponent.powers)}; divide it by a value of its kind"
+        )
+    if base.plain:
+        return {}
+    if exponent.value is None:
+        raise InputError(
+            f"a value with a unit is raised to a plain number; got {text} of {_unit(base.powers)}; write the "
+            "exponent as a number, or divide the base by a value of its kind"
+        )
+    return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
+
+
+def _value(function: str, arguments: list[_Part]) -> Fraction | None:
+    """Return the value of an exponent such as 1 / 3; None for what is no number, or too odd for an exponent."""
+    values = [item.value for item in arguments]
+    one, other = values[0], values[-1]
+    if one is None or other is None or max(map(abs, (one, other))) > 1000:
+        return None
+    if function == "neg":
+        return -one
+    if function == "/":
+        return one / other if other else None
+    return {"+": one + other, "-": one - other, "*": one * other}.get(function)
+
+
+def _text(function: str, arguments: list[_Part]) -> str:
+    texts = [item.text if len(item.text) < 40 else f"{item.text[:30]}..." for item in arguments]
+    if function == "neg":
+        return f"-{texts[0]}"
+    if function in SIGNS:
+        return f" {function} ".join(texts)
+    return f"{function}({', '.join(texts)})"
+
+
+def _powers(dimension: Dimension) -> Powers:
+    return {base: Fraction(power) for base, power in dimension}
+
+
+def _alike(one: Powers, other: Powers) -> bool:
+    """Return whether values may be added: an angle times a length is a length, as an arc is."""
+    return _kept(one) == _kept(other)
+
+
+def _kept(powers: Powers) -> Powers:
+    arc = bool(powers.get(_LENGTH))
+    return {base: power for base, power in powers.items() if power and not (arc and base == _ANGLE)}
+
+
+def _kind(powers: Powers) -> Kind:
+    return kind_with(frozenset((base, int(power)) for base, power in _kept(powers).items()))
+
+
+def _unit(powers: Powers) -> str:
+    """Return the unit in which values of a dimension are shown."""
+    kept = _kept(powers)
+    if all(power.denominator == 1 and abs(power) <= _LARGEST for power in kept.values()):
+        return _kind(kept).metric.symbol or "no unit"
+    names = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[angle]": "rad"}
+    return " ".join(f"{names[base]}^{power}" for base, power in sorted(kept.items()))

@@ -1,0 +1,245 @@
+"""Formulas of a job: read, checked against what their names mean, and made quantities of the problem."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from ...model.errors import InputError, JobError
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.numbers import unit_of
+from ...objectives.formula.expression import ARGUMENTS, Name, Node, names_in, text_of
+from ...objectives.formula.linear import Linear, linear_of, unknown
+from ...objectives.formula.parser import parse
+from ...objectives.formula.quantity import FormulaQuantity, key_of
+from ...objectives.formula.ranges import Interval, Ranges
+from ...objectives.kinds import LENGTH, Kind, kind_in
+from ...objectives.quantity import Quantity
+from ...objectives.reach import CLEAR
+from ...objectives.reach import Ranges as Box
+from ...objectives.registry import FACTS, QUANTITIES
+from ..problem.requirements import Range
+from .dimensions import kind_of_formula
+from .units import closest, dimension_of, kind_for, kind_of, number_in_si, per_si, shown, to_si
+
+DIMENSIONS = ("crank", "rod", "offset")
+_WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
+_NEAREST = 3
+_LONGEST_TITLE = 60
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A named formula as its table states it. unit: in which it is shown, that of its kind if None."""
+
+    formula: str
+    title: str | None
+    unit: str | None
+
+
+@dataclass(frozen=True)
+class _Units:
+    """Units of numbers. names: what follows a number after a sign is no unit if it is one of these."""
+
+    names: frozenset[str]
+
+    def has(self, name: str) -> bool:
+        if name in self.names:
+            return False
+        try:
+            dimension_of(name)
+        except InputError:
+            return False
+        return True
+
+    def si(self, digits: str, unit: str) -> float:
+        first = unit.split(" ")[0]
+        if first in self.names:
+            raise InputError(f"a sign of + - * / ** is missing between {digits} and {first}")
+        return number_in_si(digits, unit)
+
+
+def is_formula(text: str, names: Iterable[str] = ()) -> bool:
+    """Return whether a bound is meant as a formula, not as a value: it has a name in it, or one nearly.
+
+    names: those besides the quantities that every job may name.
+    """
+    known = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
+    return any(word in known or "." in word or (len(word) > 3 and closest(word, known)) for word in _WORD.findall(text))
+
+
+class Formulas:
+    """The formulas of a job, and what their names mean.
+
+    made: quantities of the formulas that were asked for, in their order.
+    """
+
+    def __init__(
+        self,
+        own: Iterable[Quantity],
+        machine: Mechanism,
+        ranges: Mapping[str, Range],
+        named: Mapping[str, Stated],
+    ) -> None:
+        """Take a job's own quantities, its machine, the ranges of the dimensions and its named formulas.
+
+        Raises JobError for a named formula that is wrong.
+        """
+        self.made: dict[str, FormulaQuantity] = {}
+        self._machine, self._stated = machine, named
+        self._open: list[str] = []
+        self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in own}
+        self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
+        self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
+        self._kinds |= {item.name: kind_of(unit_of(item.paths[0])) for item in machine.varying}
+        self._intervals = {name: Interval(of.lower, of.upper) for name, of in ranges.items()}
+        self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
+        self._linears: dict[str, Linear | None] = {name: unknown(name) for name in self._places}
+        self._units = _Units(frozenset((*self._quantities, *self._places, *named)))
+        for name in named:
+            self._named(name)
+
+    def quantity(self, text: str, key: str) -> Quantity:
+        """Return the quantity that a name or formula means. key: of the job, for messages. Raises JobError."""
+        try:
+            return self._of(text)
+        except InputError as error:
+            raise JobError(f"{key}: {error}") from None
+
+    def bound(self, of: Quantity, value: object, key: str) -> tuple[Quantity, float]:
+        """Return the quantity and the value that it is bounded by; a formula as a value leaves their difference and 0.
+
+        Raises JobError.
+        """
+        try:
+            if isinstance(value, str) and is_formula(value, self._units.names):
+                return self._of(f"({of.name}) - ({value})"), 0.0
+            return of, to_si(value, of.kind)
+        except InputError as error:
+            raise JobError(f"{key}: {error}") from None
+
+    # ---- how a formula becomes a quantity -------------------------------------------------------------------------
+
+    def _of(self, text: str) -> Quantity:
+        node = parse(text, self._units)
+        if isinstance(node, Name) and node.name not in self._places:
+            return self._meant(node.name)
+        name = text_of(node)
+        if name not in self.made:
+            self.made[name] = self._quantity(node, name, title=name, key=key_of(name))
+        return self.made[name]
+
+    def _named(self, name: str) -> FormulaQuantity:
+        """Return the quantity of a named formula; those that it names come first. Raises JobError."""
+        if name in self.made:
+            return self.made[name]
+        if name in self._open:
+            through = " by ".join((*self._open[self._open.index(name) :], name))
+            raise InputError(f"formulas do not define themselves; got {through}; write out one of them")
+        self._open.append(name)
+        stated = self._stated[name]
+        try:
+            node = parse(stated.formula, self._units)
+            self.made[name] = self._quantity(node, name, title=stated.title or name.replace("_", " "), key=name)
+            if stated.unit is not None:
+                self.made[name] = self._shown_in(self.made[name], node, stated)
+        except JobError:
+            raise
+        except InputError as error:
+            raise JobError(f"quantity.{name}.formula: {error}") from None
+        self._open.pop()
+        self._quantities[name] = self.made[name]
+        return self.made[name]
+
+    def _shown_in(self, made: FormulaQuantity, node: Node, stated: Stated) -> FormulaQuantity:
+        unit = stated.unit or ""
+        if dimension_of(unit) != dimension_of(made.kind.unit):
+            name = made.name
+            raise JobError(
+                f"quantity.{name}.unit: a formula is shown in a unit of its kind; got {shown(unit)} for "
+                f'{made.kind.name}; write it like "{made.kind.metric.symbol}", or leave it out'
+            )
+        kind = kind_in(unit, per_si(unit), kind_for(unit))
+        return self._quantity(node, made.name, title=made.title, key=made.key, kind=kind)
+
+    def _quantity(self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None) -> FormulaQuantity:
+        names = names_in(node)
+        parts = tuple(self._meant(item) for item in names if item not in self._places)
+        for part in parts:
+            reason = part.undefined_because([self._machine])
+            if reason:
+                raise InputError(f"{part.name} is not defined here: {reason}")
+        kinds = {item: self._kinds[item] for item in names if item in self._places}
+        kind = kind or kind_of_formula(node, kinds | {part.name: part.kind for part in parts})
+        for part in parts:
+            if part.name not in self._intervals:
+                self._intervals[part.name] = self._interval(part)
+                self._linears.setdefault(part.name, None)
+        reach = Ranges(self._intervals, self._linears, self._advice(names)).of(node)
+        self._intervals[name] = reach
+        self._linears[name] = linear_of(node, self._linears)
+        text = text_of(node)
+        return FormulaQuantity(
+            name=name,
+            title=title,
+            kind=kind,
+            key=key,
+            sentence=f"A formula of this job: {text}.",
+            formula=text,
+            source="this job",
+            section="8. Formulas",
+            signed=reach.lower < 0.0,
+            about_tolerances=any(part.about_tolerances for part in parts),
+            expression=node,
+            parts=parts,
+            columns=tuple((item, self._places[item]) for item in names if item in self._places),
+        )
+
+    def _meant(self, name: str) -> Quantity:
+        if name in self._stated:
+            return self._named(name)
+        if name in self._quantities:
+            return self._quantities[name]
+        if name in FACTS:
+            raise InputError(f"{name} needs the table [{FACTS[name].table}]; got none; add it, or leave {name} out")
+        known = [*self._quantities, *self._places, *self._stated]
+        near = difflib.get_close_matches(name[:60], known, n=_NEAREST)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {', '.join(known)}"
+        if "." in name and not near:
+            hint = "let the number vary in [variables], or write its value"
+        elif name in ARGUMENTS:
+            hint = f"write it with its arguments in brackets: {name}(...)"
+        elif self._units.has(name):
+            hint = f"a unit stands right after its number: 1 {name}"
+        raise InputError(f"no quantity, dimension or varying number is called {shown(name)}; {hint}")
+
+    def _interval(self, of: Quantity) -> Interval:
+        """Return bounds of a quantity within the ranges; one that is never negative is taken for never zero."""
+        if of.zero_because([self._machine]):
+            return Interval(0.0, 0.0)
+        low = -float("inf") if of.signed else 0.0 if of.domain is None else max(of.domain.lower, 0.0)
+        found = Interval(low, float("inf"), not of.signed)
+        crank, rod, offset = (self._intervals[name] for name in DIMENSIONS)
+        sizes = sorted((abs(offset.lower), abs(offset.upper)))
+        least = 0.0 if offset.spans_zero else sizes[0]
+        if of.reach is None or rod.upper <= (crank.lower + least) * CLEAR:
+            return found
+        lower, upper = of.reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
+        return Interval(lower, upper, found.apart)
+
+    def _advice(self, names: Iterable[str]) -> dict[str, str]:
+        """Return how each name is kept off zero."""
+        return {name: self._keeping(name) for name in names}
+
+    def _keeping(self, name: str) -> str:
+        if name in self._places:
+            of = self._intervals[name]
+            return f"keep variables.{name} off zero: it is from {_ends(of, self._kinds[name])}"
+        return "divide by a quantity that is never zero, or ask for something of the product instead"
+
+
+def _ends(of: Interval, kind: Kind) -> str:
+    face = kind.metric
+    return f"{of.lower * face.factor:.6g} to {of.upper * face.factor:.6g} {face.symbol}".rstrip()
