@@ -4,12 +4,15 @@ Every part of a formula is seen from both sides. From above it is the greatest o
 at the piece that is active; from below the least of smooth pieces, its convex kinks held. A function that rises with
 its argument keeps the sides, one that falls swaps them: the difference of two peaks is from above the greatest of the
 first peak's pieces less the second's highest one. Where nothing is held, as in a sum of peaks, both are exact.
+
+How many pieces there are follows from the formula alone, whatever the designs: solvers match the rows of two designs.
+So the side that a function sees follows from signs that are known for all designs, where any are.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +59,6 @@ class Side:
         worth = np.where(right, -self.values if above else self.values, np.inf)
         worth[:, 0] = -np.inf
         order = np.argsort(worth, axis=1, kind="stable")[:, :_KEPT]
-        order = order[:, : max(1, int(right.sum(axis=1).max(initial=1)))]
         return Side(
             np.take_along_axis(self.values, order, axis=1),
             np.take_along_axis(self.gradients, order[:, :, None], axis=1),
@@ -67,32 +69,39 @@ class Side:
 
 @dataclass(frozen=True)
 class Both:
-    """A part of a formula from above and from below; both have the same active piece."""
+    """A part of a formula from above and from below; both have the same active piece.
+
+    sign: 1 where no design of the problem makes it negative, -1 where none makes it positive, 0 where nothing is known.
+    """
 
     above: Side
     below: Side
+    sign: int = 0
 
-    def on(self, rising: NDArray[np.bool_], *, above: bool) -> Side:
-        """Return the side that a function sees from above or below. rising: (n,), whether it rises with this part."""
-        if rising.all():
-            return self.above if above else self.below
-        if not rising.any():
-            return self.below if above else self.above
-        width = max(self.above.values.shape[1], self.below.values.shape[1])
-        one, other = self.above.padded(width), self.below.padded(width)
-        return _either(rising == above, one, other)
+    def on(self, slope: Array, known: int, *, above: bool) -> Side:
+        """Return the side that a function sees from above or below.
+
+        slope: (n,), of the function by this part. known: its sign if that is known; designs that differ from it, which
+        are out of their ranges, have their active piece alone.
+        """
+        same, swapped = (self.above, self.below) if above else (self.below, self.above)
+        if known:
+            seen = same if known > 0 else swapped
+            return _either(known * slope >= 0.0, seen, seen.first.padded(seen.values.shape[1]))
+        width = max(same.values.shape[1], swapped.values.shape[1])
+        return same if width == 1 else _either(slope >= 0.0, same.padded(width), swapped.padded(width))
 
 
-def both_of(pieces: Pieces, factor: float) -> Both:
+def both_of(pieces: Pieces, factor: float, sign: int) -> Both:
     """Return a quantity's pieces from both sides. factor: of labels, so that sums tell the pieces of parts apart."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
     known = pieces.at(places)
     own = Side(known.values, known.gradients, factor * known.labels, np.isfinite(known.values))
     if pieces.other is None:
-        return Both(own.first, own) if least else Both(own, own.first)
-    more = both_of(pieces.other, factor)
-    return Both(more.above, own) if least else Both(own, more.below)
+        return Both(own.first, own, sign) if least else Both(own, own.first, sign)
+    more = both_of(pieces.other, factor, sign)
+    return Both(more.above, own, sign) if least else Both(own, more.below, sign)
 
 
 @dataclass(frozen=True)
@@ -106,7 +115,7 @@ class Kinks:
     def number(self, number: Number) -> Both:
         """Return a number, the same for all designs."""
         one = smooth(np.full(self.n, number.si), np.zeros((self.n, self.d)))
-        return Both(one, one)
+        return Both(one, one, 1 if number.si >= 0.0 else -1)
 
     def name(self, name: str) -> Both:
         """Return what a name means."""
@@ -115,17 +124,17 @@ class Kinks:
     def call(self, function: str, arguments: list[Both]) -> Both:
         """Return a function of its arguments."""
         if function == "abs":
-            return _extreme("max", [arguments[0], self.call("neg", arguments)])
+            return replace(_extreme("max", [arguments[0], self.call("neg", arguments)]), sign=1)
         if function in ("min", "max"):
             return _extreme(function, arguments)
         given = [item.above.values[:, 0] for item in arguments]
         slopes = partials(function, given, _values(function, given))
-        rising = [slope >= 0.0 for slope in slopes]
+        signs, sign = _signs(function, arguments)
         sides = []
         for above in (True, False):
-            own = [item.on(up, above=above) for item, up in zip(arguments, rising, strict=True)]
+            own = [item.on(slope, up, above=above) for item, slope, up in zip(arguments, slopes, signs, strict=True)]
             sides.append(_combined(function, own).ordered(above=above))
-        return Both(*sides)
+        return Both(sides[0], sides[1], sign)
 
 
 def smooth(values: Array, gradients: Array) -> Side:
@@ -144,6 +153,32 @@ def pieces_of(both: Both) -> Pieces:
     if below.values.shape[1] == 1:
         return above
     return Pieces(above.values, above.gradients, above.labels, other=below)
+
+
+_RISING = {
+    "+": (1, 1),
+    "-": (1, -1),
+    "neg": (-1,),
+    "sqrt": (1,),
+    "asin": (1,),
+    "acos": (-1,),
+    "atan": (1,),
+    "tan": (1,),
+}
+"""Signs of the slopes of functions that rise or fall everywhere."""
+
+
+def _signs(function: str, arguments: list[Both]) -> tuple[tuple[int, ...], int]:
+    """Return the known signs of a function's slopes by its arguments, and of its value."""
+    one, other = arguments[0].sign, arguments[-1].sign
+    if function == "*":
+        return (other, one), one * other
+    if function == "/":
+        return (other, -one), one * other
+    if function == "**":
+        return ((other if one > 0 else 0), 0), max(one, 0)
+    values = {"neg": -one, "+": one if one == other else 0, "sqrt": 1, "acos": 1, "asin": one, "atan": one}
+    return _RISING.get(function, (0,)), values.get(function, 0)
 
 
 def _values(function: str, given: list[Array]) -> Array:
@@ -194,7 +229,11 @@ def _extreme(function: str, arguments: list[Both]) -> Both:
     narrow = held[0].padded(width)
     for place, item in enumerate(held[1:], start=1):
         narrow = _either(first == place, item.padded(width), narrow)
-    return Both(together, narrow) if greatest else Both(narrow, together)
+    signs = {item.sign for item in arguments}
+    sign = (
+        1 if greatest and 1 in signs else -1 if not greatest and -1 in signs else signs.pop() if len(signs) == 1 else 0
+    )
+    return Both(together, narrow, sign) if greatest else Both(narrow, together, sign)
 
 
 def _either(rows: NDArray[np.bool_], one: Side, other: Side) -> Side:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .expression import Call, Name, Node, Number, fold
+from .expression import Node, Number, fold
 
 SIZE = "|offset|"
 """The offset without its sign, as a name of linear formulas."""
@@ -75,17 +75,3 @@ def linear_of(node: Node, known: Mapping[str, Linear | None]) -> Linear | None:
 def unknown(name: str) -> Linear:
     """Return a dimension or a varying number itself."""
     return Linear(((name, Fraction(1)),), Fraction(0))
-
-
-def equation_of(node: Node, value: float, known: Mapping[str, Linear | None]) -> Linear | None:
-    """Return what is zero where a formula has a value, if that is linear; a quotient of two linear ones will do too."""
-    if isinstance(node, Call) and node.function == "/":
-        above, below = (linear_of(item, known) for item in node.arguments)
-        return None if above is None or below is None else above.plus(below, -Fraction(value))
-    found = linear_of(node, known)
-    return None if found is None else found.plus(Linear((), Fraction(value)), Fraction(-1))
-
-
-def is_name(node: Node) -> bool:
-    """Return whether a formula is one name and nothing else."""
-    return isinstance(node, Name)

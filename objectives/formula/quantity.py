@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ..needs import Without
 from ..quantity import Array, Pieces, Quantity, Values
-from .expression import Node, fold
+from .expression import Call, Node, fold
 from .kinks import Both, Kinks, both_of, pieces_of, smooth
+from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
 _GOLDEN = 0.6180339887498949  # labels of parts are added in proportions that hardly ever meet
@@ -26,12 +28,14 @@ class FormulaQuantity(Quantity):
     """A formula as a quantity. name: its text, or the name that a job gives it.
 
     expression: the formula. parts: the quantities that it names. columns: the dimensions and varying numbers that it
-    names, each with its place in a design.
+    names, each with its place in a design. signs: of those that are never negative (1) or never positive (-1) within
+    the ranges of the problem.
     """
 
     expression: Node
     parts: tuple[Quantity, ...] = ()
     columns: tuple[tuple[str, int], ...] = ()
+    signs: tuple[tuple[str, int], ...] = ()
 
     @property
     def has_gradient(self) -> bool:
@@ -81,12 +85,36 @@ class FormulaQuantity(Quantity):
         n, d = dimensions.shape
         leaves: dict[str, Both] = {}
         for place, part in enumerate(self.parts):
-            leaves[part.name] = both_of(part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place)
+            leaves[part.name] = both_of(
+                part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
+            )
         for name, column in self.columns:
             one = smooth(dimensions[:, column].astype(np.float64), np.tile(np.arange(d) == column, (n, 1)) * 1.0)
-            leaves[name] = Both(one, one)
+            leaves[name] = Both(one, one, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
+
+
+def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
+    """Return what is zero where a formula has a value, if that is linear in dimensions and varying numbers.
+
+    A quotient of two linear formulas will do too.
+    """
+    known, node = _known(of), of.expression
+    if isinstance(node, Call) and node.function == "/":
+        above, below = (linear_of(item, known) for item in node.arguments)
+        return None if above is None or below is None else above.plus(below, -Fraction(value))
+    found = linear_of(node, known)
+    return None if found is None else found.plus(Linear((), Fraction(value)), Fraction(-1))
+
+
+def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
+    """Return what is linear of what a formula names."""
+    found: dict[str, Linear | None] = {name: unknown(name) for name, _ in of.columns}
+    for part in of.parts:
+        if isinstance(part, FormulaQuantity):
+            found[part.name] = linear_of(part.expression, _known(part))
+    return found
 
 
 def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:

@@ -170,9 +170,10 @@ class ParetoFront:
 
     def _column(self, name: str) -> int:
         names = [objective.quantity for objective in self.objectives]
-        if name not in names:
+        plain = ["".join(item.split()) for item in names]  # a formula is the same with other spaces
+        if "".join(str(name).split()) not in plain:
             raise InputError(f"pick by one of the objectives {', '.join(names)}; got {name!r}")
-        return names.index(name)
+        return plain.index("".join(str(name).split()))
 
     def pick(self, best: str, **bounds: tuple[float | None, float | None]) -> int:
         """Return the row that is best in an objective among those within bounds.

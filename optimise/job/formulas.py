@@ -40,12 +40,13 @@ class Stated:
 
 
 @dataclass(frozen=True)
-class _Units:
+class Units:
     """Units of numbers. names: what follows a number after a sign is no unit if it is one of these."""
 
     names: frozenset[str]
 
     def has(self, name: str) -> bool:
+        """Return whether a name is one of a unit."""
         if name in self.names:
             return False
         try:
@@ -55,6 +56,7 @@ class _Units:
         return True
 
     def si(self, digits: str, unit: str) -> float:
+        """Return a number in SI. Raises InputError for what is no unit."""
         first = unit.split(" ")[0]
         if first in self.names:
             raise InputError(f"a sign of + - * / ** is missing between {digits} and {first}")
@@ -97,7 +99,7 @@ class Formulas:
         self._intervals = {name: Interval(of.lower, of.upper) for name, of in ranges.items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
         self._linears: dict[str, Linear | None] = {name: unknown(name) for name in self._places}
-        self._units = _Units(frozenset((*self._quantities, *self._places, *named)))
+        self._units = Units(frozenset((*self._quantities, *self._places, *named)))
         for name in named:
             self._named(name)
 
@@ -195,7 +197,12 @@ class Formulas:
             expression=node,
             parts=parts,
             columns=tuple((item, self._places[item]) for item in names if item in self._places),
+            signs=tuple((item, sign) for item in names if item in self._places and (sign := self._sign(item))),
         )
+
+    def _sign(self, name: str) -> int:
+        of = self._intervals[name]
+        return 1 if of.lower >= 0.0 else -1 if of.upper <= 0.0 else 0
 
     def _meant(self, name: str) -> Quantity:
         if name in self._stated:

@@ -188,9 +188,9 @@ def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[P
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
     slow = optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward")
     limits[SLOW_STROKE] = (SlowStroke | None, slow)
-    wish: Any = _wish(FormulaTarget)
     limits["formulas"] = (dict[str, FormulaBounds], Field(default={}, alias=_KEY))
-    wishes["formulas"] = (dict[str, wish], Field(default={}, alias=_KEY))
+    several: Any = dict
+    wishes["formulas"] = (several[str, _wish(FormulaTarget)], Field(default={}, alias=_KEY))
     constraints = create_model("Constraints", __base__=_Table, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=_Table, **cast(Any, wishes))
     for table in (constraints, objectives):

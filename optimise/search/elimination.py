@@ -19,14 +19,18 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
+from ...objectives.formula.linear import Linear
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
+from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
 
 Array = NDArray[np.float64]
 UNKNOWNS = ("crank", "rod", "offset")
+_LINEAR = "linear: "
+"""How the origin of a rule of linear equalities begins."""
 ZERO = 1e-300
 """An offset of this size counts as zero."""
 
@@ -46,6 +50,15 @@ class Rule:
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
         return _FORMULAS[self.origin, self.target][1](*self.wanted, *known)
+
+
+@dataclass(frozen=True)
+class LinearRule(Rule):
+    """One of the rules that linear equalities give together. wanted: numbers of `linear_rules.solution`."""
+
+    def formula(self, *known: Any) -> Any:
+        """Return the target for the sources."""
+        return target_of(*self.wanted, *known)
 
 
 @dataclass(frozen=True)
@@ -146,20 +159,26 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
 def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
     bounds = {"crank": problem.crank, "rod": problem.rod, "offset": offset}
     wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
-    rules = _rules(wanted) if eliminate else []
+    equations: dict[str, Linear] = {}
+    if eliminate:
+        equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
+    rules = _rules({name: value for name, value in wanted.items() if name not in equations}) if eliminate else []
     fixed = tuple(name for name in UNKNOWNS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
-    best: tuple[tuple[int, int], tuple[str, ...], tuple[Rule, ...]] | None = None
+    solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
+    numbers = {item.name for item in problem.mechanism.varying}
+    best: tuple[tuple[int, int, bool], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
-            for steps in _ways(set(free) | set(fixed), rules):
-                score = (len(wanted) - len(_fulfilled(steps)), size)
-                if best is None or score < best[0]:
-                    best = (score, free, steps)
+            for block in solved:
+                for steps in _ways({*free, *fixed, *numbers}, [*rules, *_linear(block)]):
+                    used = _fulfilled(steps, block)
+                    score = (len(wanted) - len(used), size, not used.issuperset(block.origins))
+                    if best is None or score < best[0]:
+                        best = (score, free, steps, used)
     assert best is not None  # all unknowns free always works
-    _, free, steps = best
-    used = _fulfilled(steps)
+    _, free, steps, used = best
     more = {item.name: Range(lower=item.lower, upper=item.upper) for item in problem.mechanism.varying}
     free = (*free, *(name for name, ends in more.items() if not ends.fixed))
     bounds |= more
@@ -183,7 +202,7 @@ def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> I
     Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
     them alone, which completes the pair.
     """
-    if len(known) == len(UNKNOWNS):
+    if known.issuperset(UNKNOWNS):
         yield steps
     spent = {step.origin for step in steps}
     for rule in rules:
@@ -191,14 +210,23 @@ def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> I
             yield from _ways(known | {rule.target}, rules, (*steps, rule))
 
 
-def _fulfilled(steps: tuple[Rule, ...]) -> set[str]:
+def _linear(block: Block) -> Iterator[LinearRule]:
+    """Yield the rules that linear equalities give once they are solved, one for each target."""
+    for target, row in zip(block.targets, block.rows, strict=True):
+        yield LinearRule(f"{_LINEAR}{target}", target, *solution(row, target))
+
+
+def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
     """Return the requirements that hold exactly after these steps.
 
-    One rule of a combination alone fulfils one relation between two requirements, hence neither of them.
+    One rule of a combination alone fulfils one relation between two requirements, hence neither of them. Linear
+    equalities hold once all their rules are used.
     """
-    single = {step.origin for step in steps if "+" not in step.origin}
+    single = {step.origin for step in steps if "+" not in step.origin and not isinstance(step, LinearRule)}
+    if sum(isinstance(step, LinearRule) for step in steps) == len(block.targets):
+        single |= set(block.origins)
     for step in steps:
-        parts = set(step.origin.split("+"))
+        parts = set() if isinstance(step, LinearRule) else set(step.origin.split("+"))
         if len(parts) > 1 and parts & single:
             single |= parts
     return single

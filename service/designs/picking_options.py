@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -111,7 +112,7 @@ def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
 
 
 def _parts(text: str, example: str) -> list[str]:
-    parts = [part.strip() for part in text.split(",")]
+    parts = [part.strip() for part in re.split(r",(?![^()]*\))", text)]  # not those between the brackets of min and max
     if not all(parts):
         raise InputError(f"objectives are separated by single commas; got {text!r}; write it like {example}")
     return parts
@@ -121,7 +122,7 @@ def _column(name: str, objectives: Sequence[Wanted]) -> int:
     """Return the position of an objective called by its name, or by its column."""
     name = name.strip()
     for column, wanted in enumerate(objectives):
-        if name in (wanted.quantity, wanted.column):
+        if name == wanted.column or "".join(name.split()) == "".join(wanted.quantity.split()):
             return column
     names = ", ".join(wanted.quantity for wanted in objectives)
     raise InputError(f"a design is chosen by the objectives of its run: {names}; got {name!r}; name one of them")

@@ -12,11 +12,12 @@ from typing import Any
 from ...model.errors import InputError
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
+from .row_formulas import RowFormula, find_formula, is_plain
 
 _TOLERANCE = 1e-8
 """Relative: designs meet their constraints to this, so that one that sits on a bound counts as meeting it."""
 
-_FORM = re.compile(r"\s*([A-Za-z_]\w*)\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
+_FORM = re.compile(r"\s*([^<>=!≥≤]*[^<>=!≥≤\s])\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "<=": operator.le,
@@ -31,15 +32,19 @@ _EXAMPLE = '--where "transmission_angle >= 40 deg"'
 
 @dataclass(frozen=True)
 class Condition:
-    """A column, a comparison and a value in the column's unit, or a word for columns of words."""
+    """A column or a formula, a comparison and a value in its unit, or a word for columns of words.
+
+    column: of the table, or a column that the table does not have, whose values the formula gives, SI.
+    """
 
     column: Column
     comparison: str
     value: float | str
+    formula: RowFormula | None = None
 
     def holds(self, row: Row) -> bool:
         """Return whether a design meets it; one without a value does not. Equal means equal to 1e-8 relative."""
-        cell = row[self.column.key]
+        cell = row[self.column.key] if self.formula is None else self.formula.of(row)
         if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
             return _OPERATORS[self.comparison](cell, self.value)
         if math.isnan(cell):
@@ -49,7 +54,7 @@ class Condition:
 
 
 def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition:
-    """Return the condition of a text: quantity or column, comparison, value with unit.
+    """Return the condition of a text: quantity, column or formula of these, comparison, value with unit.
 
     keys: of the table. example: one of its rows, to tell columns of words from columns of numbers.
     Raises `InputError` for anything else.
@@ -57,17 +62,30 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     match = _FORM.fullmatch(text)
     if match is None:
         raise InputError(
-            "a condition is a quantity, one of >= <= > < = !=, and a value with its unit; "
+            "a condition is a quantity or a formula, one of >= <= > < = !=, and a value with its unit; "
             f"got {text!r}; write it like {_EXAMPLE}"
         )
     name, comparison, value = match.groups()
-    column = find_column(name, keys)
     comparison = _SAME.get(comparison, comparison)
+    column, formula = _meant(name, keys)
+    if formula is not None:
+        return Condition(column, comparison, _number(text, column, value), formula)
     if isinstance(example[column.key], str):
         if comparison not in ("==", "!="):
             raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
         return Condition(column, comparison, value.strip("\"'"))
     return Condition(column, comparison, _number(text, column, value))
+
+
+def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
+    """Return the column of a name, or of a formula one that the table does not have, with the formula."""
+    if is_plain(name):
+        return find_column(name, keys), None
+    found = find_formula(name, keys)
+    if isinstance(found, Column):
+        return found, None
+    plain = None if found.kind.unit else 1.0
+    return Column(found.text, found.text, found.kind.unit, 1.0, plain), found
 
 
 def plain_number(text: str) -> float | None:
@@ -80,13 +98,13 @@ def plain_number(text: str) -> float | None:
 
 def _number(text: str, column: Column, value: str) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
-    from ...optimise.job.units import kind_of, to_si
+    from ...optimise.job.units import kind_for, to_si
 
     number = plain_number(value)
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain
     try:
-        return to_si(value, kind_of(column.unit)) * column.factor
+        return to_si(value, kind_for(column.unit)) * column.factor
     except InputError as error:
         raise InputError(f"the value in {text.strip()!r} {error}") from None
 
@@ -112,14 +130,17 @@ def order_key(cell: Cell) -> tuple[bool, float, str]:
 def chosen_rows(result: Result, where: Collection[str], *, sort: str | None = None, reverse: bool = False) -> list[int]:
     """Return the positions of the designs that meet all conditions.
 
-    sort: a quantity or column: best first for an objective, else smallest first; None for the order of the front.
-    reverse: turn the order round. Raises `InputError` for a wrong condition and for an unknown column.
+    sort: a quantity, column or formula of these: best first for an objective, else smallest first; None for the order
+    of the front. reverse: turn the order round. Raises `InputError` for a wrong condition and for an unknown column.
     """
     chosen = select(result.designs, where)
     if sort is not None and result.designs:
-        key = find_column(sort, list(result.designs[0])).key
+        column, formula = _meant(sort, list(result.designs[0]))
+        key = column.key
         wanted = next((item for item in result.objectives if item.column == key), None)
-        if wanted is not None:
+        if formula is not None:
+            chosen.sort(key=lambda row: order_key(formula.of(result.designs[row])))
+        elif wanted is not None:
             chosen.sort(key=lambda row: wanted.rank(result.designs[row]))
         else:
             chosen.sort(key=lambda row: order_key(result.designs[row][key]))

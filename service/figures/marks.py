@@ -80,7 +80,9 @@ def marks(front: ParetoFront) -> list[Mark]:
     """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
-        labels.setdefault(row, []).append((f"best_{name}", f"best {front.problem.quantity(name).short_title}"))
+        of = front.problem.quantity(name)
+        file = name if name.isidentifier() else of.stem
+        labels.setdefault(row, []).append((f"best_{file}", f"best {of.short_title}"))
     if len(front.objectives) > 1:
         labels.setdefault(front.knee(), []).append(("knee", "knee"))
     found = []

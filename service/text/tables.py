@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..designs.columns import DIMENSIONS, Column, find_column, metric_key
@@ -122,9 +123,13 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     objectives = {wanted.column for wanted in result.objectives}
+    wishes = {wanted.column: wanted for wanted in result.objectives}
     columns, constant = [], []
     for key in keys:
         column = find_column(key, result.designs[0])
+        wish = wishes.get(key)
+        if wish is not None and (wish.unit != column.unit or not wish.quantity.isidentifier()):
+            column = replace(column, title=wish.title, unit=wish.unit)  # a formula says more than its column's key
         values = [row[key] for row in result.designs]
         numbers = [value for value in values if isinstance(value, float)]
         if len(numbers) > 1 and is_constant(numbers) and key not in objectives:

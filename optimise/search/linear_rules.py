@@ -1,0 +1,137 @@
+"""Linear equalities between dimensions, solved for as many of them as there are equalities, in exact fractions."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ...objectives.formula.linear import SIZE, Linear, unknown
+from ...objectives.formula.quantity import FormulaQuantity, equation_of
+from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET
+from ...objectives.quantity import Quantity
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
+
+
+@dataclass(frozen=True)
+class Block:
+    """Equalities solved for some unknowns, the targets. origins: all of them, those that follow from others too.
+
+    rows: of each target, what is zero; its own factor is not zero, and those of the other targets are.
+    """
+
+    origins: tuple[str, ...]
+    targets: tuple[str, ...] = ()
+    rows: tuple[Linear, ...] = ()
+
+
+NOTHING = Block(())
+
+
+def linear_equations(wanted: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
+    """Return what is zero, in crank, rod, |offset| and varying numbers, for those equalities that are linear, by name.
+
+    wanted: quantities with their values. sign: of the offset. None where no formula is among them: proportions by
+    themselves have rules of their own.
+    """
+    found: dict[str, Linear] = {}
+    for of, value in wanted.items():
+        equation = equation_of(of, value) if isinstance(of, FormulaQuantity) else None
+        if equation is not None:
+            found[of.name] = _on_side(equation, sign)
+    if not found:
+        return {}
+    for of, value in wanted.items():
+        more = _proportion(of, value)
+        if more is not None:
+            found[of.name] = more
+    return found
+
+
+def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
+    """Yield every way to solve equalities for loose unknowns; one without targets where there is none.
+
+    Equalities that contradict those before them are left out of all: whoever checks the problem says so.
+    """
+    origins, rows, reduced = list[str](), list[Linear](), list[Linear]()
+    for name, row in equations.items():
+        left = row
+        for own in reduced:
+            left = _without(left, own, next(n for n in own.names if n in loose))
+        if any(n in loose for n in left.names):
+            reduced = [_without(own, left, next(n for n in left.names if n in loose)) for own in reduced] + [left]
+            rows.append(row)
+        elif left.factors or left.constant:
+            continue  # of what is not loose, or a contradiction
+        origins.append(name)
+    if not rows:
+        yield NOTHING
+        return
+    for targets in itertools.combinations(loose, len(rows)):
+        solved = _solved(rows, targets)
+        if solved is not None:
+            yield Block(tuple(origins), targets, solved)
+
+
+def solution(row: Linear, target: str) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """Return the sources of a target, and the numbers that `target_of` takes: factors, constant and divisor."""
+    factors = dict(row.factors)
+    divisor = factors.pop(target)
+    numbers = [*(-factor for factor in factors.values()), -row.constant, divisor]
+    return tuple(factors), tuple(float(number) for number in numbers)
+
+
+def target_of(*numbers: Any) -> Any:
+    """Return a target from the numbers of `solution` and then its sources."""
+    count = (len(numbers) - 2) // 2
+    *factors, constant, divisor = numbers[: count + 2]
+    total: Any = 0.0
+    for place, (factor, source) in enumerate(zip(factors, numbers[count + 2 :], strict=True)):
+        total = factor * source if not place else total + factor * source
+    return (total + constant if constant or not factors else total) / divisor
+
+
+def _on_side(row: Linear, sign: float) -> Linear:
+    """Return an equality in |offset|, which the sign of the offset allows."""
+    size = Linear((("offset", Fraction(1)),), Fraction(0))
+    found = Linear((), row.constant)
+    for name, factor in row.factors:
+        if name == "offset":
+            found = found.plus(size, Fraction(int(sign)) * factor)
+        else:
+            found = found.plus(size if name == SIZE else unknown(name), factor)
+    return found
+
+
+def _proportion(of: Quantity, value: float) -> Linear | None:
+    """Return a rule of proportion as a linear equality; None for what is none."""
+    rod, crank, offset = unknown("rod"), unknown("crank"), unknown("offset")
+    if of.name == ROD_TO_OFFSET.name:
+        return rod.plus(offset, -Fraction(value))
+    if of.name == ROD_TO_CRANK.name:
+        return rod.plus(crank, -Fraction(value))
+    if of.name == TRANSMISSION_ANGLE.name:
+        return crank.plus(offset).plus(rod, -Fraction(math.cos(value)))
+    return None
+
+
+def _without(row: Linear, other: Linear, name: str) -> Linear:
+    """Return an equality less as much of another one as rids it of a name."""
+    own = dict(row.factors).get(name)
+    return row if own is None else row.plus(other, -own / dict(other.factors)[name])
+
+
+def _solved(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
+    """Return the equalities with one target in each; None where they do not determine these."""
+    left, found = list(rows), list[Linear]()
+    for target in targets:
+        place = next((n for n, row in enumerate(left) if target in row.names), None)
+        if place is None:
+            return None
+        own = left.pop(place)
+        left = [_without(row, own, target) for row in left]
+        found = [_without(row, own, target) for row in found] + [own]
+    return tuple(found)

@@ -1,0 +1,85 @@
+"""Formulas over the columns of stored designs, for conditions and for their order."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ...model.errors import InputError
+from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
+from ...objectives.formula.parser import parse
+from ...objectives.formula.quantity import key_of
+from ...objectives.formula.slopes import Slopes
+from ...objectives.kinds import Kind
+from ...objectives.quantity import Values
+from ..runs.result import Row
+from .columns import Column, find_column, split_unit
+
+if TYPE_CHECKING:
+    from ...objectives.quantity import Array
+
+_PLAIN = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+@dataclass(frozen=True)
+class RowFormula:
+    """A formula over columns. node: the formula; columns: what its names mean. kind: of its value."""
+
+    text: str
+    node: Node
+    columns: tuple[tuple[str, Column], ...]
+    kind: Kind
+
+    def of(self, row: Row) -> float:
+        """Return its value at a design, SI; NaN where that is not defined."""
+        import numpy as np
+
+        leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
+        with np.errstate(all="ignore"):
+            return float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
+
+
+def is_plain(name: str) -> bool:
+    """Return whether a text is one name, hence no formula unless it names a varying number."""
+    return _PLAIN.fullmatch(name.strip()) is not None
+
+
+def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
+    """Return what a formula means for a table: the column that it has there already, or what to compute.
+
+    Raises `InputError`, with rule, value and remedy, for a wrong formula and for names that are no columns.
+    """
+    from ...optimise.job.dimensions import kind_of_formula
+    from ...optimise.job.formulas import Units
+    from ...optimise.job.units import kind_for
+
+    node = parse(text, Units(frozenset(split_unit(key)[0] for key in keys)))
+    written = text_of(node)
+    for key in keys:
+        if split_unit(key)[0] == key_of(written) or key == key_of(written):
+            found = find_column(key, keys)
+            return replace(found, plain=None if found.unit else 1.0)  # it was called by a name without its unit
+    columns = {name: _column(name, keys) for name in names_in(node)}
+    if isinstance(node, Name):
+        return columns[node.name]
+    kinds = {name: kind_for(column.unit) for name, column in columns.items()}
+    return RowFormula(written, node, tuple(columns.items()), kind_of_formula(node, kinds))
+
+
+def _column(name: str, keys: Collection[str]) -> Column:
+    """Return the column of a name in a formula; a varying number is known by its path, too."""
+    if "." in name:
+        name = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")
+    return find_column(name, keys)
+
+
+def _si(row: Row, column: Column) -> Array:
+    import numpy as np
+
+    cell = row[column.key]
+    if isinstance(cell, str):
+        raise InputError(f"a formula has names of numbers; got {column.key}, which holds words; leave it out")
+    return np.array([math.nan if cell is None else float(cell) / column.factor])
