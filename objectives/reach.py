@@ -40,6 +40,18 @@ class Ranges:
         return min(self.r1, self.l1 - self.a0)
 
 
+@dataclass(frozen=True)
+class Within:
+    """Bounds that are known already, SI."""
+
+    lower: float
+    upper: float
+
+    def __call__(self, _: Ranges) -> tuple[float, float]:
+        """Return them."""
+        return self.lower, self.upper
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reach:
     """Bounds of a quantity within ranges, SI, and in words the change of ranges for more or less of it."""

@@ -13,7 +13,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ..needs import Without
 from ..quantity import Array, Pieces, Quantity, Values
-from .expression import Call, Node, fold
+from .expression import Call, Name, Node, fold
 from .kinks import Both, Kinks, both_of, pieces_of, smooth
 from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
@@ -41,6 +41,19 @@ class FormulaQuantity(Quantity):
     def has_gradient(self) -> bool:
         """Whether all its parts have derivatives."""
         return all(part.has_gradient for part in self.parts)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether it has the offset in it by another way than its size, abs(offset)."""
+
+        def bare(node: Node) -> bool:
+            if isinstance(node, Call):
+                inner = node.arguments[0]
+                sized = node.function == "abs" and isinstance(inner, Name) and inner.name == "offset"
+                return not sized and any(map(bare, node.arguments))
+            return isinstance(node, Name) and node.name == "offset"
+
+        return bare(self.expression)
 
     @property
     def of_dimensions(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...model.errors import JobError
+from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
 from ...objectives.reach import CLEAR, Ranges
@@ -15,11 +16,12 @@ from ...objectives.time_ratio import TIME_RATIO, ratio_of
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
+from .messages import key_of
 
 if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
 
-_SLACK = 1.0 + 1e-9
+_SLACK = 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other requirements on the dimensions"
@@ -64,7 +66,8 @@ def require_reachable(problem: Problem) -> None:
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     if ROD_TO_OFFSET.name in constraints:
         box = _with_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
-    for of in (ROD_TO_CRANK, STROKE, TIME_RATIO, TRANSMISSION_ANGLE):
+    formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.of_dimensions)
+    for of in (ROD_TO_CRANK, STROKE, TIME_RATIO, TRANSMISSION_ANGLE, *formulas):
         if of.name in constraints:
             _require_within(of, constraints[of.name], box, problem)
     wrong = beyond_both(problem, box.share)
@@ -101,14 +104,14 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise JobError unless the constraint and what is possible meet."""
-    name = of.name
+    key = key_of(["constraints", of.name])
     least, greatest = box.possible(of)
     assert of.reach is not None
-    got = f"got {_bounds(constraint)}"
-    if constraint.lower is not None and constraint.lower > greatest * _SLACK:
-        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
-    if constraint.upper is not None and constraint.upper * _SLACK < least:
-        raise JobError(f"constraints.{name}: {_possible(problem, constraint)}; {got}; {of.reach.less}, or ask for more")
+    got = f"got {_bounds(constraint, of)}"
+    if constraint.lower is not None and constraint.lower > greatest + _SLACK * abs(greatest):
+        raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
+    if constraint.upper is not None and constraint.upper + _SLACK * abs(constraint.upper) < least:
+        raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.less}, or ask for more")
 
 
 def _possible(problem: Problem, constraint: Constraint) -> str:
@@ -157,12 +160,11 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     ratio, angle = asked.get(TIME_RATIO.name), asked.get(TRANSMISSION_ANGLE.name)
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
-    if (
-        not 0.0 < angle.lower < 0.5 * math.pi
-        or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * _SLACK
+    if not 0.0 < angle.lower < 0.5 * math.pi or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * (
+        1.0 + _SLACK
     ):
         return None
-    held = f"with a least transmission angle of {_shown(angle.quantity, angle.lower)}"
+    held = f"with a least transmission angle of {_shown(TRANSMISSION_ANGLE, angle.lower)}"
     (ratios, kept), (angles, _) = (_nearest(problem, item, (ratio, angle)) for item in (ratio, angle))
     if ratios is None or angles is None:
         return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
@@ -197,13 +199,14 @@ def _sizes(offset: Range) -> Range:
     return Range(lower=0.0 if across else ends[0], upper=ends[1])
 
 
-def _shown(name: str, value: float) -> str:
-    unit = QUANTITIES[name].unit
+def _shown(of: Quantity, value: float) -> str:
+    unit = of.unit
     return f"{value * unit.factor:.5g} {unit.symbol}".rstrip()
 
 
-def _bounds(constraint: Constraint) -> str:
-    return " and ".join(f"{word} {_shown(constraint.quantity, bound)}" for word, bound in constraint.sides)
+def _bounds(constraint: Constraint, of: Quantity | None = None) -> str:
+    of = of or QUANTITIES[constraint.quantity]
+    return " and ".join(f"{word} {_shown(of, bound)}" for word, bound in constraint.sides)
 
 
 def _extremes(box: Box) -> str:

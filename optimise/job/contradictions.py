@@ -17,6 +17,7 @@ from ..problem.requirements import Range
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
 from .box import Box, require_reachable
+from .messages import key_of
 
 
 def require_consistent(problem: Problem) -> None:
@@ -34,10 +35,10 @@ def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
     """Yield key, quantity, word and value of every bound and target."""
     for constraint in problem.constraints:
         for word, value in constraint.sides:
-            yield f"constraints.{constraint.quantity}", constraint.quantity, word, value
+            yield key_of(["constraints", constraint.quantity]), constraint.quantity, word, value
     for objective in problem.objectives:
         if objective.target is not None:
-            yield f"objectives.{objective.quantity}", objective.quantity, "target", objective.target
+            yield key_of(["objectives", objective.quantity]), objective.quantity, "target", objective.target
 
 
 def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:

@@ -17,7 +17,7 @@ from ...objectives.formula.quantity import FormulaQuantity, key_of
 from ...objectives.formula.ranges import Interval, Ranges
 from ...objectives.kinds import LENGTH, Kind, kind_in
 from ...objectives.quantity import Quantity
-from ...objectives.reach import CLEAR
+from ...objectives.reach import CLEAR, Reach, Within
 from ...objectives.reach import Ranges as Box
 from ...objectives.registry import FACTS, QUANTITIES
 from ..problem.requirements import Range
@@ -179,8 +179,9 @@ class Formulas:
             if part.name not in self._intervals:
                 self._intervals[part.name] = self._interval(part)
                 self._linears.setdefault(part.name, None)
-        reach = Ranges(self._intervals, self._linears, self._advice(names)).of(node)
-        self._intervals[name] = reach
+        within = Ranges(self._intervals, self._linears, self._advice(names)).of(node)
+        wider = f"widen the ranges of {' and '.join(DIMENSIONS)}"
+        self._intervals[name] = within
         self._linears[name] = linear_of(node, self._linears)
         text = text_of(node)
         return FormulaQuantity(
@@ -192,7 +193,8 @@ class Formulas:
             formula=text,
             source="this job",
             section="8. Formulas",
-            signed=reach.lower < 0.0,
+            signed=within.lower < 0.0,
+            reach=Reach(bounds=Within(within.lower, within.upper), more=wider, less=wider),
             about_tolerances=any(part.about_tolerances for part in parts),
             expression=node,
             parts=parts,

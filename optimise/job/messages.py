@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -177,13 +178,19 @@ def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
         below = []
         for node in nodes:
             inner = node.get("items") if isinstance(part, int) else None
-            inner = inner or node.get("properties", {}).get(part)
+            inner = inner or node.get("properties", {}).get(part) or _by_pattern(node, part)
             if inner is None and isinstance(node.get("additionalProperties"), dict):
                 inner = node["additionalProperties"]
             if inner:
                 below += _alternatives(schema, inner)
         nodes = below
     return nodes
+
+
+def _by_pattern(node: Schema, part: object) -> Schema | None:
+    """Return what a table says of keys of a pattern, such as formulas."""
+    patterns = node.get("patternProperties", {}).items() if isinstance(part, str) else ()
+    return next((inner for pattern, inner in patterns if re.search(pattern, str(part))), None)
 
 
 def _alternatives(schema: Schema, node: Schema) -> list[Schema]:

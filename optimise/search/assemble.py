@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.kinematics.in_line import without_rounding
+from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.proportions import STROKE
 from ..front.constant import is_constant
 from ..front.front import Columns, ParetoFront, Status
@@ -19,6 +20,7 @@ from ..problem.problem import Problem, choice_field
 from .candidates import Finished
 from .evaluation import Evaluator, constraints_of, sides
 from .fingerprint import versions
+from .pieces import ACTIVE
 from .search import Run
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
@@ -55,7 +57,8 @@ def assemble(
     finishing = run.stage(FINISHING)
     columns = columns_of(problem, variants, dimensions, finishing)
     columns["residual"] = residual
-    columns["status"] = np.where(residual <= STATIONARY, "stationary", "best found")
+    proven = (residual <= STATIONARY) & ~_torn(problem, variants, dimensions)
+    columns["status"] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
     message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluated} evaluated"
     if status == "cancelled":
@@ -74,6 +77,27 @@ def assemble(
         ),
         variants=tuple(variants.tolist()) if problem.variants else (),
     )
+
+
+def _torn(problem: Problem, variants: NDArray[np.int64], dimensions: Array) -> NDArray[np.bool_]:
+    """Return which designs (n,) lie on a kink that their slopes do not tell all of.
+
+    Of a formula with kinks of both kinds, such as a difference of peaks, slopes tell those of one kind with the active
+    piece of the other: where two of these tie, nothing is proven.
+    """
+    found = np.zeros(len(dimensions), np.bool_)
+    asked = {item.quantity: item.sense == "maximise" for item in problem.objectives}
+    formulas = [of for of in problem.own if isinstance(of, FormulaQuantity) and of.name in asked]
+    for variant in np.unique(variants).tolist() if formulas else []:
+        rows = np.flatnonzero(variants == variant)
+        for of in formulas:
+            pieces = of.pieces(problem.part(variant).mechanism, dimensions[rows])
+            if pieces.other is not None:
+                held = pieces if asked[of.name] else pieces.other
+                apart = np.abs(held.values - held.values[:, :1])
+                ties = (apart <= ACTIVE * np.abs(held.values[:, :1])).sum(axis=1) > 1
+                found[rows] |= ties
+    return found
 
 
 def _best(problem: Problem, finished: Finished, stand: Stand) -> NDArray[np.int64]:

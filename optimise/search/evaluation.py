@@ -250,7 +250,7 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
     if objective.target is None:
         # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
         there = np.isfinite(top.values)
-        absent = pieces.least & (top.values == np.inf) & there.any(axis=1, keepdims=True)
+        absent = top.least & (top.values == np.inf) & there.any(axis=1, keepdims=True)
         return [Pieces(np.where(there | absent, -top.values, np.inf), -top.gradients, top.labels)]
     return [_beyond(low, 1.0, objective.target), _beyond(top, -1.0, objective.target)]
 

@@ -12,6 +12,9 @@ from collections.abc import Hashable
 
 import numpy as np
 
+from ...objectives.formula.quantity import FormulaQuantity
+from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from .elimination import Sheet
@@ -59,7 +62,7 @@ def _ordered(one: Sheet, other: Sheet) -> tuple[Sheet, Sheet] | None:
 def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
     machine = part.mechanism.fullest
-    if part.own or machine.gravity[1] or machine.acceleration or machine.friction.acts:
+    if any(map(_may_differ, part.own)) or machine.gravity[1] or machine.acceleration or machine.friction.acts:
         return True
     if not all(load.by_position for load in machine.loads):
         return True  # what differs at some crank angles only would be seen in some designs only
@@ -78,6 +81,16 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
         )
         for name in sorted(names)
     )
+
+
+def _may_differ(of: Quantity) -> bool:
+    """Whether a quantity may tell offsets e and -e apart that random designs do not: all of a job's own but formulas.
+
+    Of these, those that have the offset's sign in them.
+    """
+    if isinstance(of, FormulaQuantity):
+        return of.one_sided or any(map(_may_differ, of.parts))
+    return QUANTITIES.get(of.name) != of
 
 
 def _random(part: Problem, sheet: Sheet) -> Array:
