@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
+from ...model.errors import InputError, JobError
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ..methods.registry import require_fit
 from ..problem.problem import Problem
+from ..problem.requirements import Constraint, merged
 from .contradictions import require_consistent
 from .formulas import Formulas
+from .messages import key_of
 from .model import Job
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
@@ -34,7 +38,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity))
     choices, variants = variants_of(job, formulas)
     objectives = tuple(objectives_of(job.objectives, formulas))
-    constraints = tuple(constraints_of(job.constraints, formulas))
+    constraints = _joined(constraints_of(job.constraints, formulas), formulas)
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
@@ -55,3 +59,27 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     require_consistent(problem)
     require_fit(problem)
     return robustly(problem, job.robust)
+
+
+def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
+    """Return constraints, those on one formula as one: a formula may be written in several ways.
+
+    Raises JobError where they leave nothing.
+    """
+    found: dict[str, Constraint] = {}
+    for constraint in constraints:
+        name = constraint.quantity
+        try:
+            (found[name],) = merged((found.get(name, constraint), constraint))
+        except InputError:
+            face = formulas.made[name].unit
+            asked = " and ".join(
+                f"{word} {bound * face.factor:.6g} {face.symbol}".rstrip()
+                for item in (found[name], constraint)
+                for word, bound in item.sides
+            )
+            raise JobError(
+                f"{key_of(['constraints', name])}: requirements on one formula must leave something; got {asked}; "
+                "leave out one of them"
+            ) from None
+    return tuple(found.values())

@@ -122,6 +122,7 @@ _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*))?\s*", re.ASCII | re.
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
 _LONGEST = 60
+_GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
 _SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 
@@ -166,8 +167,11 @@ def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
 
 
 def number_in_si(digits: str, symbol: str) -> float:
-    """Return a number with a unit in SI. Raises InputError for what is no unit."""
-    return float(Fraction(digits) * _unit(symbol)[0])
+    """Return a number with a unit in SI. Raises InputError for what is no unit, and for a size beyond any machine."""
+    exact = Fraction(digits) * _unit(symbol)[0]
+    if abs(exact) > _GREATEST:
+        raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI is at most {_GREATEST:g}")
+    return float(exact)
 
 
 def per_si(symbol: str) -> float:
