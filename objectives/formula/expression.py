@@ -81,17 +81,20 @@ def names_in(node: Node) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found(node)))
 
 
-class _Text:
-    """Text with as few brackets as will do, and how strongly its outermost sign binds."""
+class Text:
+    """An algebra of texts with as few brackets as will do, each with how strongly its outermost sign binds."""
 
     def number(self, number: Number) -> tuple[str, int]:
+        """Return the text of a number."""
         plain = not number.unit and not number.digits.startswith("-")
         return f"{number.digits} {number.unit}".rstrip(), _ATOM if plain else SIGNS["neg"]
 
     def name(self, name: str) -> tuple[str, int]:
+        """Return a name."""
         return name, _ATOM
 
     def call(self, function: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
+        """Return the text of a function."""
         if function not in SIGNS:
             return f"{function}({', '.join(text for text, _ in arguments)})", _ATOM
         own = SIGNS[function]
@@ -110,4 +113,4 @@ def _bound(part: tuple[str, int], least: int) -> str:
 
 def text_of(node: Node) -> str:
     """Return the text of a formula: the same for formulas that differ in spaces and idle brackets alone."""
-    return fold(node, _Text())[0]
+    return fold(node, Text())[0]

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ...model.errors import InputError
-from ...objectives.formula.expression import ANGLES, INVERSES, SIGNS, Node, Number, fold
+from ...objectives.formula.expression import ANGLES, INVERSES, Node, Number, Text, fold
 from ...objectives.kinds import ANGLE, Kind
 from .units import Dimension, dimension_of, kind_with
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
 _LARGEST = 9  # a power that a unit has a notation for
+_LONGEST = 60  # of a part in a message
 _SAID = {"+": "adds", "-": "subtracts", "min": "compares", "max": "compares"}
 Powers = Mapping[str, Fraction]
 
@@ -22,8 +23,14 @@ class _Part:
     """Dimension of a part of a formula, its text, and its value if it is a plain number."""
 
     powers: Powers
-    text: str
+    written: tuple[str, int]
     value: Fraction | None = None
+
+    @property
+    def text(self) -> str:
+        """Its text, the end of a long one left out."""
+        text = self.written[0]
+        return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
     @property
     def plain(self) -> bool:
@@ -45,18 +52,19 @@ class _Dimensions:
     """An algebra of dimensions. known: those of names."""
 
     def __init__(self, known: Mapping[str, Powers]) -> None:
-        self.known = known
+        self.known, self.text = known, Text()
 
     def number(self, number: Number) -> _Part:
-        text = f"{number.digits} {number.unit}".rstrip()
-        return _Part(_powers(dimension_of(number.unit)), text, None if number.unit else Fraction(number.digits))
+        value = None if number.unit else Fraction(number.digits)
+        return _Part(_powers(dimension_of(number.unit)), self.text.number(number), value)
 
     def name(self, name: str) -> _Part:
-        return _Part(self.known[name], name)
+        return _Part(self.known[name], self.text.name(name))
 
     def call(self, function: str, arguments: list[_Part]) -> _Part:
         one, other = arguments[0], arguments[-1]
-        text = _text(function, arguments)
+        written = self.text.call(function, [item.written for item in arguments])
+        text = _Part({}, written).text
         if function in _SAID:
             for item in arguments[1:]:
                 if not _alike(one.powers, item.powers):
@@ -64,31 +72,31 @@ class _Dimensions:
                         f"{text} {_SAID[function]} {_unit(one.powers)} and {_unit(item.powers)}; only values of one "
                         "kind go together; correct the names, or give numbers their units"
                     )
-            return _Part(one.powers, text, _value(function, arguments))
+            return _Part(one.powers, written, _value(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
             powers = {base: Fraction(0) for base in (*one.powers, *other.powers)}
             powers |= one.powers
             powers = {base: power + sign * other.powers.get(base, 0) for base, power in powers.items()}
-            return _Part({base: power for base, power in powers.items() if power}, text, _value(function, arguments))
+            return _Part({base: power for base, power in powers.items() if power}, written, _value(function, arguments))
         if function == "**":
-            return _Part(_raised(one, other, text), text)
+            return _Part(_raised(one, other, text), written)
         if function == "sqrt":
-            return _Part({base: power / 2 for base, power in one.powers.items()}, text)
+            return _Part({base: power / 2 for base, power in one.powers.items()}, written)
         if function in ANGLES:
             if not _alike(one.powers, _powers(dimension_of(ANGLE.unit))):
                 raise InputError(
                     f"{function} takes an angle; got {text} of {_unit(one.powers)}; give a number its unit, 30 deg, or "
                     "multiply a ratio by 1 rad"
                 )
-            return _Part({}, text)
+            return _Part({}, written)
         if function in INVERSES:
             if not one.plain:
                 raise InputError(
                     f"{function} takes a ratio; got {text} of {_unit(one.powers)}; divide by a value of the same kind"
                 )
-            return _Part(_powers(dimension_of(ANGLE.unit)), text)
-        return _Part(one.powers, text, _value(function, arguments))  # neg, abs
+            return _Part(_powers(dimension_of(ANGLE.unit)), written)
+        return _Part(one.powers, written, _value(function, arguments))  # neg, abs
 
 
 def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
@@ -117,15 +125,6 @@ def _value(function: str, arguments: list[_Part]) -> Fraction | None:
     if function == "/":
         return one / other if other else None
     return {"+": one + other, "-": one - other, "*": one * other}.get(function)
-
-
-def _text(function: str, arguments: list[_Part]) -> str:
-    texts = [item.text if len(item.text) < 40 else f"{item.text[:30]}..." for item in arguments]
-    if function == "neg":
-        return f"-{texts[0]}"
-    if function in SIGNS:
-        return f" {function} ".join(texts)
-    return f"{function}({', '.join(texts)})"
 
 
 def _powers(dimension: Dimension) -> Powers:

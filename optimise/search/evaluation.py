@@ -152,7 +152,8 @@ class Evaluator:
             turns = (crank > 0.0) & (rod > crank + np.abs(offset))
         violation[~turns] = np.inf
         for name in self.computed:
-            value = np.abs(dimensions[:, UNKNOWNS.index(name)])
+            # A linear rule may give an offset of the other sign, which is of the other sheet.
+            value = dimensions[:, UNKNOWNS.index(name)] * (self.sheet.sign if name == "offset" else 1.0)
             for side in _range_sides(self.sheet.bounds[name]):
                 violation = np.fmax(violation, _excess(value, *side))
         rows = np.flatnonzero(turns)

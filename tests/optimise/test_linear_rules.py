@@ -70,7 +70,7 @@ def test_linear_rules_leave_one_unknown_fewer_each_and_hold_to_rounding(rules: d
         found = found[(found[:, 1] > found[:, 0] + np.abs(found[:, 2])) & (found[:, 0] > 0.0)]
         for item in equalities if len(found) else ():
             values = problem.quantity(item.quantity).evaluate(problem.mechanism, found).values
-            np.testing.assert_allclose(values, item.lower, rtol=1e-12, atol=1e-15)
+            np.testing.assert_allclose(values, np.float64(item.lower or 0.0), rtol=1e-12, atol=1e-15)
 
 
 def test_a_varying_number_may_stand_in_a_linear_rule() -> None:
