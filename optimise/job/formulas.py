@@ -192,7 +192,7 @@ class Formulas:
             sentence=f"A formula of this job: {text}.",
             formula=text,
             source="this job",
-            section="8. Formulas",
+            section="11. Peaks, averages and derivatives",
             signed=within.lower < 0.0,
             reach=Reach(bounds=Within(within.lower, within.upper), more=wider, less=wider),
             about_tolerances=any(part.about_tolerances for part in parts),

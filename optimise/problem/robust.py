@@ -101,10 +101,11 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
     held = {c.quantity for c in problem.every_constraint if c.equality}
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
+    same = {"".join(name.split()): name for name in (*able, *held, *aimed)}  # a formula is the same with other spaces
     chosen = (
         [name for name in able if not problem.quantity(name).about_tolerances]
         if plan.quantities is None
-        else list(plan.quantities)
+        else [same.get("".join(name.split()), name) for name in plan.quantities]
     )
     for name in chosen:
         if name not in able and name in held:

@@ -144,7 +144,9 @@ function robust(form) {
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
   const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));
-  const names = [...parts, ...varying.map((key) => `variables.${key}`)];
+  /** @param {string} table */
+  const formulas = (table) => Object.keys(form.at([table]) ?? {}).filter((key) => key !== "slow_stroke" && !form.quantities.has(key)).map((key) => `${table}."${key}"`);
+  const names = [...parts, ...varying.map((key) => `variables.${key}`), ...formulas("constraints"), ...formulas("objectives")];
   if (!names.length) return null;
   return section("Other parts of the job", h("p", {}, `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`));
 }

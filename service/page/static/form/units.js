@@ -59,6 +59,7 @@ export function split(value, kind) {
 export function join(number, unit) {
   const typed = number.trim().replaceAll("−", "-");
   if (typed === "") return undefined;
+  if (/[a-z_]{3}|\(/i.test(typed)) return typed; // a formula, whose numbers have units of their own
   return unit ? `${typed} ${unit}` : typed;
 }
 

@@ -59,6 +59,7 @@ test("what is no value with a unit stays whole, for the service to say what is w
 test("a number that is left empty is no value; a minus of any kind is one", () => {
   assert.equal(join("  ", "mm"), undefined);
   assert.equal(join("−5", "mm"), "-5 mm");
+  assert.equal(join("3.2 * offset", "mm"), "3.2 * offset");
   assert.equal(join("−5e−3", ""), "-5e-3");
 });
 
