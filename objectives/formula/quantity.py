@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,6 +12,7 @@ import numpy as np
 
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
+from ...model.machine.varying import Varying, number_at
 from ..needs import Without
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, fold
@@ -19,6 +21,7 @@ from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
 _GOLDEN = 0.6180339887498949  # labels of parts are added in proportions that hardly ever meet
+_DIMENSIONS = ("crank", "rod", "offset")
 _LONGEST_KEY = 60
 _WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
 
@@ -27,14 +30,15 @@ _WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
 class FormulaQuantity(Quantity):
     """A formula as a quantity. name: its text, or the name that a job gives it.
 
-    expression: the formula. parts: the quantities that it names. columns: the dimensions and varying numbers that it
-    names, each with its place in a design. signs: of those that are never negative (1) or never positive (-1) within
-    the ranges of the problem.
+    expression: the formula. parts: the quantities that it names. dimensions: of crank, rod and offset those that it
+    names. varying: the other numbers that it names; of a machine in which one does not vary it takes the machine's.
+    signs: of dimensions and numbers that are never negative (1) or never positive (-1) within the problem's ranges.
     """
 
     expression: Node
     parts: tuple[Quantity, ...] = ()
-    columns: tuple[tuple[str, int], ...] = ()
+    dimensions: tuple[str, ...] = ()
+    varying: tuple[Varying, ...] = ()
     signs: tuple[tuple[str, int], ...] = ()
 
     @property
@@ -58,7 +62,7 @@ class FormulaQuantity(Quantity):
     @property
     def of_dimensions(self) -> bool:
         """Whether it follows from crank, rod and offset alone."""
-        return all(part.of_dimensions for part in self.parts) and all(column < 3 for _, column in self.columns)
+        return all(part.of_dimensions for part in self.parts) and not self.varying
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:
@@ -80,15 +84,16 @@ class FormulaQuantity(Quantity):
         """Return the formula for designs (n, 3 + k); see `Quantity`."""
         require_width(mechanism, dimensions)
         found = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
-        return self.combined(found, dimensions, gradients=gradients)
+        return self.combined(found, mechanism, dimensions, gradients=gradients)
 
-    def combined(self, found: Mapping[str, Values], dimensions: Array, *, gradients: bool = False) -> Values:
+    def combined(
+        self, found: Mapping[str, Values], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
+    ) -> Values:
         """Return the formula for designs (n, 3 + k). found: its parts, by their names, with gradients if asked for."""
         n, d = dimensions.shape
         leaves = dict(found)
-        for name, column in self.columns:
-            slopes = np.tile(np.arange(d) == column, (n, 1)).astype(np.float64) if gradients else None
-            leaves[name] = Values(dimensions[:, column].astype(np.float64), slopes)
+        for name, values, place in self._numbers(mechanism, dimensions):
+            leaves[name] = Values(values, _slope(n, d, place) if gradients else None)
         with np.errstate(all="ignore"):
             return fold(self.expression, Slopes(leaves, n, d, gradients))
 
@@ -101,11 +106,30 @@ class FormulaQuantity(Quantity):
             leaves[part.name] = both_of(
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
-        for name, column in self.columns:
-            one = smooth(dimensions[:, column].astype(np.float64), np.tile(np.arange(d) == column, (n, 1)) * 1.0)
+        for name, values, column in self._numbers(mechanism, dimensions):
+            one = smooth(values, _slope(n, d, column))
             leaves[name] = Both(one, one, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
+
+    def _numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
+        """Yield name, values (n,) and place in a design of dimensions and varying numbers; no place of a fixed one."""
+        for name in self.dimensions:
+            place = _DIMENSIONS.index(name)
+            yield name, designs[:, place].astype(np.float64), place
+        places = {item.name: 3 + place for place, item in enumerate(mechanism.varying)}
+        for item in self.varying:
+            if item.name in places:
+                place = places[item.name]
+                yield item.name, designs[:, place].astype(np.float64), place
+            else:
+                path, factor = item.sets[0]
+                number = number_at(mechanism, path)
+                yield item.name, np.full(len(designs), math.nan if number is None else number / factor), None
+
+
+def _slope(n: int, d: int, place: int | None) -> Array:
+    return np.tile(np.arange(d) == place, (n, 1)).astype(np.float64)
 
 
 def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
@@ -123,7 +147,8 @@ def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
 
 def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
     """Return what is linear of what a formula names."""
-    found: dict[str, Linear | None] = {name: unknown(name) for name, _ in of.columns}
+    found: dict[str, Linear | None] = {name: unknown(name) for name in of.dimensions}
+    found |= {item.name: unknown(item.name) for item in of.varying}
     for part in of.parts:
         if isinstance(part, FormulaQuantity):
             found[part.name] = linear_of(part.expression, _known(part))
@@ -144,7 +169,12 @@ def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
 
 
 def with_formulas(
-    quantities: Sequence[Quantity], found: Mapping[str, Values], dimensions: Array, *, gradients: bool = False
+    quantities: Sequence[Quantity],
+    found: Mapping[str, Values],
+    mechanism: Mechanism,
+    dimensions: Array,
+    *,
+    gradients: bool = False,
 ) -> list[Values]:
     """Return the values of quantities, those of formulas combined. found: the values of `leaves_of` by name."""
     known = dict(found)
@@ -152,7 +182,7 @@ def with_formulas(
     def value(item: Quantity) -> Values:
         if isinstance(item, FormulaQuantity) and item.name not in known:
             own = {part.name: value(part) for part in item.parts}
-            known[item.name] = item.combined(own, dimensions, gradients=gradients)
+            known[item.name] = item.combined(own, mechanism, dimensions, gradients=gradients)
         return known[item.name]
 
     return [value(item) for item in quantities]

@@ -123,4 +123,4 @@ def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array,
             if item.gradients is not None:
                 item.gradients[missed] = exact.gradients
     found |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in found}
-    return with_formulas(quantities, found, designs, gradients=gradients)
+    return with_formulas(quantities, found, mechanism, designs, gradients=gradients)

@@ -198,7 +198,8 @@ class Formulas:
             about_tolerances=any(part.about_tolerances for part in parts),
             expression=node,
             parts=parts,
-            columns=tuple((item, self._places[item]) for item in names if item in self._places),
+            dimensions=tuple(item for item in names if item in DIMENSIONS),
+            varying=tuple(item for item in self._machine.varying if item.name in names),
             signs=tuple((item, sign) for item in names if item in self._places and (sign := self._sign(item))),
         )
 

@@ -95,7 +95,7 @@ def _torn(problem: Problem, variants: NDArray[np.int64], dimensions: Array) -> N
             if pieces.other is not None:
                 held = pieces if asked[of.name] else pieces.other
                 apart = np.abs(held.values - held.values[:, :1])
-                ties = (apart <= ACTIVE * np.abs(held.values[:, :1])).sum(axis=1) > 1
+                ties = (apart <= ACTIVE * np.abs(held.values[:, 0]).max()).sum(axis=1) > 1
                 found[rows] |= ties
     return found
 

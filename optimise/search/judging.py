@@ -27,7 +27,7 @@ def quickly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list
         else screened.get(quantity.name) or quantity.evaluate(problem.mechanism, dimensions)
         for quantity in leaves
     }
-    return [item.values for item in with_formulas(quantities, found, dimensions)]
+    return [item.values for item in with_formulas(quantities, found, problem.mechanism, dimensions)]
 
 
 def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:

@@ -214,11 +214,14 @@ def test_the_text_and_the_form_are_in_step_and_unknown_parts_survive(form: Open,
     job = text_of(page)
     job["costs"] = {"crank": {"cost": 8.0, "at": "0.05 mm"}}
     job["variables"]["mechanism"] = {"slider": {"mass": ["1 kg", "3 kg"]}}
+    job["constraints"]["2 * crank + rod"] = {"max": "900 mm"}
+    job["constraints"]["stroke"] = {"max": "2.5 * crank"}
     job["mechanism"]["speed"] = "-90 rpm"
     page.locator("#job-text").fill(json.dumps(job))
     expect(page.get_by_label("crank speed", exact=True)).to_have_value("90")
     expect(page.get_by_label("direction", exact=True)).to_have_value("-")
-    expect(page.get_by_role("region", name="Other parts")).to_contain_text("costs, variables.mechanism")
+    others = 'costs, variables.mechanism, constraints."2 * crank + rod"'
+    expect(page.get_by_role("region", name="Other parts")).to_contain_text(others)
     page.get_by_label("crank speed", exact=True).fill("80")
     ready(page)
     assert text_of(page) == {**job, "mechanism": {**job["mechanism"], "speed": "-80 rpm"}}

@@ -1,0 +1,72 @@
+"""Formulas in conditions, orders and picks of stored designs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.service.designs.row_formulas import RowFormula, find_formula
+from slidercrank.service.designs.selection import parse_condition, select
+
+ROWS: list[dict[str, Any]] = [
+    {"crank_mm": 40.0, "offset_mm": 42.0, "peak_torque_Nm": 90.0, "slider_mass_kg": 2.0, "slow_stroke": "outward"},
+    {"crank_mm": 50.0, "offset_mm": 42.0, "peak_torque_Nm": 80.0, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
+    {"crank_mm": 60.0, "offset_mm": 65.0, "peak_torque_Nm": None, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
+]
+INCH = [{"crank_in": 1.0, "offset_in": 1.5, "peak_torque_lbf_in": 800.0}]
+
+
+@pytest.mark.parametrize(
+    ("condition", "chosen"),
+    [
+        ("offset - crank >= 1 mm", [0, 2]),
+        ("offset-crank>=2 mm", [0, 2]),
+        ("offset - crank = 0.2 cm", [0]),
+        ("peak_torque / crank > 2 kN", [0]),
+        ("mechanism.slider.mass * 9.81 m/s^2 <= 10 N", [1, 2]),
+        ("min(crank, offset) < 42 mm", [0]),
+        ("crank / offset >= 1", [1]),
+        ("offset_mm - crank >= 1 mm", [0, 2]),
+        ("slow_stroke = inward", [1, 2]),
+    ],
+)
+def test_conditions_take_formulas_of_columns(condition: str, chosen: list[int]) -> None:
+    assert select(ROWS, [condition]) == chosen
+
+
+def test_formulas_read_columns_of_either_system_of_units() -> None:
+    assert select(INCH, ["offset - crank >= 0.5 inch"]) == [0]
+    assert select(INCH, ["offset - crank > 12.8 mm"]) == []
+    assert select(INCH, ["peak_torque / crank <= 801 lbf"]) == [0]
+
+
+def test_a_formula_that_has_a_column_is_that_column() -> None:
+    keys = ["crank_mm", "offset_mm", "offset_minus_crank_mm"]
+    found = find_formula("offset -crank", keys)
+    assert not isinstance(found, RowFormula)
+    assert found.key == "offset_minus_crank_mm"
+    assert found.plain is None  # a number needs its unit: the formula does not say it
+
+
+@pytest.mark.parametrize(
+    ("condition", "said"),
+    [
+        ("offst - crank >= 1 mm", "no quantity or column is called 'offst'; did you mean offset"),
+        ("offset - crank >= 1 N", 'must be a length; got "1 N", which is a force'),
+        ("offset - crank >= 1", "must be a length with its unit"),
+        ("offset - peak_torque >= 1 mm", "subtracts mm and N m"),
+        ("offset - slow_stroke >= 1 mm", "holds words|subtracts mm and no unit"),
+        ("offset - >= 1 mm", "missing at its end"),
+        ("offset - crank", "a condition is a quantity or a formula, one of"),
+    ],
+)
+def test_a_wrong_formula_in_a_condition_is_refused(condition: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        select(ROWS, [condition])
+
+
+def test_a_condition_that_is_not_defined_is_not_met() -> None:
+    condition = parse_condition("sqrt(1 - crank / offset) >= 0", list(ROWS[0]), ROWS[0])
+    assert [condition.holds(row) for row in ROWS] == [True, False, True]
