@@ -48,20 +48,20 @@ class Algebra(Protocol[T]):
     """A meaning of formulas: values, units, ranges, text."""
 
     def number(self, number: Number) -> T:
-        """Return what a number means."""
+        """Return the meaning of a number."""
         ...
 
     def name(self, name: str) -> T:
-        """Return what a name means."""
+        """Return the meaning of a name."""
         ...
 
     def call(self, function: str, arguments: list[T]) -> T:
-        """Return what a function of these means."""
+        """Return the meaning of a function of these."""
         ...
 
 
 def fold(node: Node, algebra: Algebra[T]) -> T:
-    """Return what a formula means in an algebra."""
+    """Return the meaning of a formula in an algebra."""
     if isinstance(node, Number):
         return algebra.number(node)
     if isinstance(node, Name):

@@ -118,7 +118,7 @@ class Kinks:
         return Both(one, one, 1 if number.si >= 0.0 else -1)
 
     def name(self, name: str) -> Both:
-        """Return what a name means."""
+        """Return the pieces of a name."""
         return self.leaves[name]
 
     def call(self, function: str, arguments: list[Both]) -> Both:
@@ -143,7 +143,7 @@ def smooth(values: Array, gradients: Array) -> Side:
 
 
 def pieces_of(both: Both) -> Pieces:
-    """Return a formula as the greatest of its pieces, and as the least of others where it has kinks of both kinds."""
+    """Return a formula as the greatest of its pieces, with its other side where it has kinks of both kinds."""
     above, below = (
         Pieces(np.where(side.there, side.values, absent), side.gradients, side.labels, absent > 0.0)
         for side, absent in ((both.above, -np.inf), (both.below, np.inf))
@@ -208,7 +208,7 @@ def _combined(function: str, sides: list[Side]) -> Side:
 
 
 def _extreme(function: str, arguments: list[Both]) -> Both:
-    """Return the least or the greatest of parts: the pieces of all on one side, of the active one on the other."""
+    """Return the least or the greatest of parts: all pieces on one side, those of the active on the other."""
     greatest = function == "max"
     wide = [item.above if greatest else item.below for item in arguments]
     wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.there) for place, s in enumerate(wide)]

@@ -133,7 +133,7 @@ def _slope(n: int, d: int, place: int | None) -> Array:
 
 
 def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
-    """Return what is zero where a formula has a value, if that is linear in dimensions and varying numbers.
+    """Return the linear equation that a formula has a value; None if it is not linear in dimensions and numbers.
 
     A quotient of two linear formulas will do too.
     """
@@ -146,7 +146,7 @@ def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
 
 
 def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
-    """Return what is linear of what a formula names."""
+    """Return the linear formulas that a formula names, by name."""
     found: dict[str, Linear | None] = {name: unknown(name) for name in of.dimensions}
     found |= {item.name: unknown(item.name) for item in of.varying}
     for part in of.parts:

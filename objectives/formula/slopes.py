@@ -51,7 +51,7 @@ class Slopes:
         return Values(np.full(self.n, number.si), np.zeros((self.n, self.d)) if self.gradients else None)
 
     def name(self, name: str) -> Values:
-        """Return what a name means."""
+        """Return the values of a name."""
         return self.leaves[name]
 
     def call(self, function: str, arguments: list[Values]) -> Values:

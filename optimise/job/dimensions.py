@@ -115,7 +115,7 @@ def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
 
 
 def _value(function: str, arguments: list[_Part]) -> Fraction | None:
-    """Return the value of an exponent such as 1 / 3; None for what is no number, or too odd for an exponent."""
+    """Return the value of an exponent such as 1 / 3; None for no number, and for one too great."""
     values = [item.value for item in arguments]
     one, other = values[0], values[-1]
     if one is None or other is None or max(map(abs, (one, other))) > 1000:

@@ -64,7 +64,7 @@ class Units:
 
 
 def is_formula(text: str, names: Iterable[str] = ()) -> bool:
-    """Return whether a bound is meant as a formula, not as a value: it has a name in it, or one nearly.
+    """Return whether a bound is meant as a formula: it has a name in it, or nearly one.
 
     names: those besides the quantities that every job may name.
     """
@@ -111,7 +111,7 @@ class Formulas:
             raise JobError(f"{key}: {error}") from None
 
     def bound(self, of: Quantity, value: object, key: str) -> tuple[Quantity, float]:
-        """Return the quantity and the value that it is bounded by; a formula as a value leaves their difference and 0.
+        """Return the quantity and its bound; for a formula as a bound their difference, and 0.
 
         Raises JobError.
         """

@@ -188,7 +188,7 @@ def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
 
 
 def _by_pattern(node: Schema, part: object) -> Schema | None:
-    """Return what a table says of keys of a pattern, such as formulas."""
+    """Return the schema of keys of a pattern, such as formulas."""
     patterns = node.get("patternProperties", {}).items() if isinstance(part, str) else ()
     return next((inner for pattern, inner in patterns if re.search(pattern, str(part))), None)
 

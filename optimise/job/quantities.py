@@ -128,7 +128,7 @@ _IS_FORMULA = re.compile(_PATTERN)
 
 
 def _pattern_of(schema: dict[str, Any]) -> None:
-    """Put the formulas of a table, which have keys of their own, as a pattern of keys into its JSON Schema."""
+    """Turn the formulas of a table into a pattern of keys of its JSON Schema."""
     inner = schema["properties"].pop(_KEY)
     schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
 

@@ -25,7 +25,7 @@ SENSES: dict[str, Sense] = {
 Word = Literal["min", "max", "equals"]
 """Words of a constraint's bounds."""
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-_SIGNS = re.compile(r"[-+*/(.]")  # of the text of a formula
+_FORMULA = re.compile(r".* [-+*/] .*|-.*|.*\*\*.*|.*\(.*|[a-z_]+\..*")  # as `expression.text_of` writes them
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,7 @@ def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
 
 def _require_name(name: object) -> None:
     """Refuse a name that no quantity can have."""
-    if not isinstance(name, str) or not (_NAME.fullmatch(name) or _SIGNS.search(name)):
+    if not isinstance(name, str) or not (_NAME.fullmatch(name) or _FORMULA.fullmatch(name)):
         raise InputError(
             f"a quantity is named by small letters, digits and underscores, such as {PEAK_TORQUE.name!r}; got "
             f"{name!r}; choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"

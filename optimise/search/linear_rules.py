@@ -32,7 +32,7 @@ NOTHING = Block(())
 
 
 def linear_equations(wanted: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
-    """Return what is zero, in crank, rod, |offset| and varying numbers, for those equalities that are linear, by name.
+    """Return the equalities that are linear in crank, rod, |offset| and varying numbers, as sums that are zero.
 
     wanted: quantities with their values. sign: of the offset. None where no formula is among them: proportions by
     themselves have rules of their own.

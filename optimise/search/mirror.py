@@ -84,9 +84,9 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
 
 
 def _may_differ(of: Quantity) -> bool:
-    """Whether a quantity may tell offsets e and -e apart that random designs do not: all of a job's own but formulas.
+    """Whether a quantity may tell offsets e and -e apart where random designs do not.
 
-    Of these, those that have the offset's sign in them.
+    All of a job's own may but formulas, unless these have the offset's sign in them.
     """
     if isinstance(of, FormulaQuantity):
         return of.one_sided or any(map(_may_differ, of.parts))

@@ -6,7 +6,8 @@ import math
 import re
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ...model.errors import InputError
 from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
@@ -14,14 +15,12 @@ from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import key_of
 from ...objectives.formula.slopes import Slopes
 from ...objectives.kinds import Kind
-from ...objectives.quantity import Values
+from ...objectives.quantity import Array, Values
+from ...optimise.job.dimensions import kind_of_formula
+from ...optimise.job.formulas import Units
+from ...optimise.job.units import kind_for
 from ..runs.result import Row
 from .columns import Column, find_column, split_unit
-
-if TYPE_CHECKING:
-    from ...objectives.quantity import Array
-
-_PLAIN = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -35,27 +34,16 @@ class RowFormula:
 
     def of(self, row: Row) -> float:
         """Return its value at a design, SI; NaN where that is not defined."""
-        import numpy as np
-
         leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
             return float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
 
 
-def is_plain(name: str) -> bool:
-    """Return whether a text is one name, hence no formula unless it names a varying number."""
-    return _PLAIN.fullmatch(name.strip()) is not None
-
-
 def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
-    """Return what a formula means for a table: the column that it has there already, or what to compute.
+    """Return the column that a formula has in a table already, or the formula to compute.
 
     Raises `InputError`, with rule, value and remedy, for a wrong formula and for names that are no columns.
     """
-    from ...optimise.job.dimensions import kind_of_formula
-    from ...optimise.job.formulas import Units
-    from ...optimise.job.units import kind_for
-
     node = parse(text, Units(frozenset(split_unit(key)[0] for key in keys)))
     written = text_of(node)
     for key in keys:
@@ -77,8 +65,6 @@ def _column(name: str, keys: Collection[str]) -> Column:
 
 
 def _si(row: Row, column: Column) -> Array:
-    import numpy as np
-
     cell = row[column.key]
     if isinstance(cell, str):
         raise InputError(f"a formula has names of numbers; got {column.key}, which holds words; leave it out")

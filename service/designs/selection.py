@@ -7,17 +7,20 @@ import operator
 import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
-from .row_formulas import RowFormula, find_formula, is_plain
+
+if TYPE_CHECKING:
+    from .row_formulas import RowFormula
 
 _TOLERANCE = 1e-8
 """Relative: designs meet their constraints to this, so that one that sits on a bound counts as meeting it."""
 
 _FORM = re.compile(r"\s*([^<>=!≥≤]*[^<>=!≥≤\s])\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
+_NAME = re.compile(r"\w*", re.ASCII)
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "<=": operator.le,
@@ -79,8 +82,11 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
 
 def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
     """Return the column of a name, or of a formula one that the table does not have, with the formula."""
-    if is_plain(name):
+    if _NAME.fullmatch(name.strip()):
         return find_column(name, keys), None
+
+    from .row_formulas import find_formula  # brings what computes
+
     found = find_formula(name, keys)
     if isinstance(found, Column):
         return found, None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -26,12 +28,12 @@ MIXED = (
 )
 
 
-def tied(of: Quantity, seed: int, *, above: bool = True) -> np.ndarray:
+def tied(of: Quantity, seed: int, *, above: bool = True) -> Any:
     """Return designs (n, 4) between random ones, where the active piece changes from one to another."""
     ends = designs(400, seed)
     one, other = ends[:200], ends[200:]
 
-    def active(x: np.ndarray) -> np.ndarray:
+    def active(x: np.ndarray) -> Any:
         found = of.pieces(MACHINE, x)
         found = found if above or found.other is None else found.other
         return np.floor(found.labels[:, 0] / 50.0)  # the argument; the angle of a peak moves by itself

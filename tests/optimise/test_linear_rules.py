@@ -103,7 +103,7 @@ GOALS = ("footprint", "time_ratio", "stroke")
 
 
 def goal(name: str, x: Any) -> Any:
-    """Return what is minimised of a linkage."""
+    """Return the objective of a linkage, as it is minimised."""
     crank, rod, offset = x
     if name == "footprint":
         outer = np.sqrt((rod + crank) ** 2 - offset**2)
@@ -112,7 +112,7 @@ def goal(name: str, x: Any) -> Any:
 
 
 def random_rules(random: np.random.Generator) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
-    """Return one or two linear equalities that some design within the ranges meets: as a job has them, and A x = b."""
+    """Return linear equalities that some design within the ranges meets: as a job has them, and A x = b."""
     while True:
         x = np.array([random.uniform(0.03, 0.09), random.uniform(0.15, 0.35), random.uniform(0.0, 0.1)])
         if x[1] * np.cos(LEAST) > 1.05 * (x[0] + x[2]):

@@ -15,7 +15,7 @@ ROWS: list[dict[str, Any]] = [
     {"crank_mm": 50.0, "offset_mm": 42.0, "peak_torque_Nm": 80.0, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
     {"crank_mm": 60.0, "offset_mm": 65.0, "peak_torque_Nm": None, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
 ]
-INCH = [{"crank_in": 1.0, "offset_in": 1.5, "peak_torque_lbf_in": 800.0}]
+INCH: list[dict[str, Any]] = [{"crank_in": 1.0, "offset_in": 1.5, "peak_torque_lbf_in": 800.0}]
 
 
 @pytest.mark.parametrize(
