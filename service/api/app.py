@@ -27,6 +27,7 @@ from . import (
     preview,
     quantities,
     schema,
+    swing,
 )
 from .events import Feed
 from .health import Metrics, Timed
@@ -49,6 +50,7 @@ _PARTS = (
     analysis,
     inverse,
     measured,
+    swing,
     design_files,
     figures,
     exports,

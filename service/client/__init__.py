@@ -231,6 +231,30 @@ class Client:
         found: Record = self._get(f"jobs/{number}/designs/{design}/inverse", motion)["inverse"]
         return found
 
+    def swing(
+        self,
+        number: int,
+        design: int,
+        *,
+        start_deg: float,
+        end_deg: float,
+        driver: str = "crank",
+        law: str = "slow",
+        duration_s: float | None = None,
+        actuator_tolerance_mm: float = 0.0,
+    ) -> Record:
+        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them."""
+        asked = _given(
+            start_deg=start_deg,
+            end_deg=end_deg,
+            driver=driver,
+            law=law,
+            duration_s=duration_s,
+            actuator_tolerance_mm=actuator_tolerance_mm,
+        )
+        found: Record = self._get(f"jobs/{number}/designs/{design}/swing", asked)["swing"]
+        return found
+
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
         """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
 

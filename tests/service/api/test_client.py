@@ -112,6 +112,7 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     assert len(reader.curves(number, 1, angles=12)) == 12
     middle = float(reader.curves(number, 1)["slider_position_mm"].mean())
     assert len(reader.inverse(number, 1, position_mm=middle, velocity_m_s=0.5)["solutions"]) == 2
+    assert reader.swing(number, 1, start_deg=40.0, end_deg=80.0)["swing_angle_deg"] == pytest.approx(40.0)
     assert "knee" in reader.figures(number)
     assert reader.figure(number, "knee", tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
     assert reader.analyse(TABLES, crank="120 mm", rod="400 mm", offset="50 mm")["crank_mm"] == 120.0

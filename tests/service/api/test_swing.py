@@ -1,0 +1,60 @@
+"""A swing of a design over the API and the client: the record of the command line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+from typer.testing import CliRunner
+
+from slidercrank.service.cli import app as command_line
+from tests.service.api.fixed_front import Solved, client_of
+
+DESIGN = 2
+
+
+@pytest.fixture(scope="module")
+def client(solved: Solved) -> Iterator[httpx.Client]:
+    with client_of(solved.store) as opened:
+        yield opened
+
+
+def ask(client: httpx.Client, solved: Solved, **query: Any) -> httpx.Response:
+    return client.get(f"{solved.path}/designs/{DESIGN}/swing", params=query)
+
+
+@pytest.mark.parametrize("units", ["metric", "inch"])
+def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client, solved: Solved) -> None:
+    given = {"driver": "slider", "law": "cycloidal", "duration_s": 2.0, "actuator_tolerance_mm": 0.5}
+    found = ask(client, solved, start_deg=40.0, end_deg=110.0, **given, units=units).json()
+    assert (found["job"], found["number"]) == (solved.number, DESIGN)
+    arguments = ["swing", "latest", "--runs", str(solved.folder.parent), "--design", str(DESIGN), "--driver", "slider"]
+    arguments += ["--from", "40 deg", "--to", "110 deg", "--law", "cycloidal", "--duration", "2 s"]
+    done = CliRunner().invoke(command_line, [*arguments, "--actuator-tolerance", "0.5 mm", "--units", units, "--json"])
+    expected = json.loads(done.stdout)
+    assert list(found["swing"]) == list(expected)
+    for key, value in expected.items():
+        same = pytest.approx(value, rel=1e-6, abs=1e-6) if isinstance(value, float) else value
+        assert found["swing"][key] == same, key
+
+
+@pytest.mark.parametrize(
+    ("query", "status", "words"),
+    [
+        ({"start_deg": 40.0, "end_deg": 40.0}, 422, "less than a turn apart"),
+        ({"start_deg": -40.0, "end_deg": 100.0, "driver": "slider"}, 422, "dead point"),
+        ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "needs its duration"),
+        ({"start_deg": "nan", "end_deg": 100.0}, 422, "start_deg"),
+        ({"start_deg": 40.0, "end_deg": 100.0, "driver": "rod"}, 422, "driver"),
+        ({"start_deg": 40.0}, 422, "end_deg"),
+    ],
+)
+def test_wrong_input_is_a_problem(
+    query: dict[str, Any], status: int, words: str, client: httpx.Client, solved: Solved
+) -> None:
+    answer = ask(client, solved, **query)
+    assert answer.status_code == status
+    assert words in answer.text
