@@ -179,17 +179,17 @@ def per_si(symbol: str) -> float:
     return float(1 / _unit(symbol)[0])
 
 
-def to_si(value: object, kind: Kind, *, sign: Sign = "any") -> float:
+def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) -> float:
     """Return a value in SI, from a string of number and unit, or from a plain number in SI.
 
-    sign: what the value must be. A ratio is a plain number, as a number or as a string.
+    sign: what the value must be. plain: whether messages offer a plain number, which commands do not take. A ratio is a
+    plain number, as a number or as a string.
     Raises InputError, with rule, value and remedy, for anything else: another dimension, an unknown unit, an
     expression, NaN, infinity, a boolean.
     """
     rule = f"must be {kind.name}"
-    plain = f", or as a plain number in {kind.unit}" if kind.unit else ""
     example = f'"{kind.example}"' if kind.unit else kind.example
-    write = f"write it like {example}{plain}"
+    write = f"write it like {example}" + (f", or as a plain number in {kind.unit}" if kind.unit and plain else "")
     if isinstance(value, str):
         exact = _read(value, kind, rule, write)
     elif isinstance(value, int | float) and not isinstance(value, bool):

@@ -146,6 +146,6 @@ def value_option(option: str, text: str, kind: Kind, *, sign: Any = "any") -> fl
             f'{option} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"'
         )
     try:
-        return to_si(text, kind, sign=sign)
+        return to_si(text, kind, sign=sign, plain=False)
     except InputError as error:
         raise InputError(f"{option} {error}") from None

@@ -121,6 +121,7 @@ def test_a_design_of_a_run_swings_with_its_own_machine(command: Command) -> None
         ((*OVER, "--law", "harmonic", "--duration", "0 s"), "--duration must be"),
         ((*OVER, "--actuator-tolerance", "-1 mm"), "--actuator-tolerance must"),
         ((*OVER, "--curves", "-"), "name one"),
+        ((*OVER, "--actuator-tolerance", "inf mm"), 'got "inf mm"; write it like "80 mm"'),
     ],
 )
 def test_wrong_input_is_a_sentence(command: Command, given: tuple[str, ...], words: str) -> None:
@@ -128,6 +129,7 @@ def test_wrong_input_is_a_sentence(command: Command, given: tuple[str, ...], wor
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert "Traceback" not in done.stderr
+    assert "plain number" not in done.stderr  # a command takes none
 
 
 def test_a_linkage_that_does_not_close_is_told_where(command: Command) -> None:
