@@ -9,8 +9,10 @@ along the slider line and the crank's torque is zero:
 
 with `balance` and the names of `dynamics.torque`, and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
 friction the first two are linear in B, their determinant is r l sin(theta - phi): zero at a dead point. Friction in
-the pins makes them nonlinear; Newton's iteration starts from the frictionless force. Where the determinant changes
-sign on the way, friction locks the linkage, and the force is NaN.
+the pins makes them nonlinear: it turns the rows of the Jacobian, of lengths l and r, by at most
+asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r). Where the angle between rod and crank exceeds their sum, the
+determinant cannot vanish, there is one force whatever the load, and Newton's iteration from the frictionless force
+finds it. Elsewhere friction may lock the linkage, and the force is NaN.
 """
 
 from __future__ import annotations
@@ -32,6 +34,7 @@ from .swing import Array, Swing
 
 _STILL = 1e-200
 """A crank speed, rad/s, that says which way the crank turns and has no inertia."""
+_NOTHING = 1e-150
 _ITERATIONS = 50
 _SETTLED = 1e-14
 
@@ -95,8 +98,7 @@ def swing_curves(
     turning = swing.way * (-1.0 if back else 1.0)
     slowly = np.where(speed == 0.0, turning * _STILL, speed)
     found = curves_of(mechanism, linkage, theta, slowly, rise)
-    block = design_of(mechanism, linkage)
-    d = block._replace(speed=slowly, acceleration=rise)
+    d = design_of(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
     if swing.driver == "crank":
         drive, power, angle, error = found.torque, found.torque * speed, found.transmission_angle, found.position_error
         joints = {name: getattr(found, name) for name in _JOINTS}
@@ -105,6 +107,7 @@ def swing_curves(
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(_bend(theta, m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
+    found_load, drive, power = (_chopped(values) for values in (found.load, drive, power))
     return SwingCurves(
         share=share,
         crank_angle=theta,
@@ -113,7 +116,7 @@ def swing_curves(
         slider_position=m.x,
         slider_velocity=m.x_1 * speed,
         slider_acceleration=m.x_2 * speed**2 + m.x_1 * rise,
-        load=found.load,
+        load=found_load,
         drive=drive,
         power=power,
         rate=rate,
@@ -122,6 +125,11 @@ def swing_curves(
         rod_rate=m.rod_1,
         **joints,
     )
+
+
+def _chopped(values: Array) -> Array:
+    """Return values without those of a crank that hardly moves."""
+    return np.where(np.abs(values) < _NOTHING, 0.0, values)
 
 
 _JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
@@ -197,7 +205,9 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
         bx = (m.along * crank_0 - d.r * cosine * rod_0) / straight
         by = (m.across * crank_0 - d.r * sine * rod_0) / straight
         if np.any(a_side) or np.any(b_side) or np.any(o_side):
-            bx, by = _with_pins(bx, by, straight, residuals)
+            bx, by = _with_pins(bx, by, residuals)
+            sure = np.abs(straight) > d.r * d.l * np.sin(_locking_angle(d))
+            bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
     slide = np.sign(m.x_1 * d.speed)
     drive = b.pull + d.guide_friction * np.abs(guide) * slide - bx
@@ -209,25 +219,29 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
     }
 
 
-def _with_pins(bx: Array, by: Array, straight: Array, residuals: Any) -> tuple[Array, Array]:
-    """Return B with friction in the pins, from that without; NaN where friction locks the linkage."""
-    locked = np.zeros(bx.shape, dtype=bool)
-    settled = np.zeros(bx.shape, dtype=bool)
+def _with_pins(bx: Array, by: Array, residuals: Any) -> tuple[Array, Array]:
+    """Return B with friction in the pins, from that without."""
     for _ in range(_ITERATIONS):
         rod, crank, (rx, ry, cx, cy) = residuals(bx, by)
         det = rx * cy - ry * cx  # `straight` without friction
-        locked |= det * straight <= 0.0
         step_x = (-ry * crank + cy * rod) / det
         step_y = (-cx * rod + rx * crank) / det
         bx, by = bx - step_x, by - step_y
         size = np.hypot(step_x, step_y)
-        settled = size <= _SETTLED * (np.hypot(bx, by) + 1e-300)
-        if np.all(settled | locked):
+        if np.all((size <= _SETTLED * np.hypot(bx, by)) | ~np.isfinite(size)):
             break
-    # At a limit of rounding the steps stay at some units of the last place.
-    near = size <= 1e-9 * (np.hypot(bx, by) + 1e-300)
-    lost = locked | ~near
-    return np.where(lost, np.nan, bx), np.where(lost, np.nan, by)
+    near = size <= 1e-9 * np.hypot(bx, by)  # rounding may keep the last steps from falling further
+    return np.where(near, bx, np.nan), np.where(near, by, np.nan)
+
+
+def _locking_angle(d: Design) -> float:
+    """Return the angle between rod and crank, rad, above which friction in the pins cannot lock; 90 deg at most.
+
+    Each row of the two equations' Jacobian turns by no more than the circles of the pins in it, over its length.
+    """
+    at_rod = min(1.0, (d.crank_pin_circle + d.slider_pin_circle) / d.l)
+    at_crank = min(1.0, (d.crank_pin_circle + d.crank_pivot_circle) / d.r)
+    return float(min(0.5 * np.pi, np.arcsin(at_rod) + np.arcsin(at_crank)))
 
 
 def _direction(x: Array, y: Array) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import require_numbers
+from ..checks import require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
@@ -22,6 +22,7 @@ from .words import Driver, Law
 
 Array = NDArray[np.float64]
 _TURN = 2.0 * math.pi
+_LEAST, _MOST = 1e-6, 1e9  # s
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +42,7 @@ class Swing:
     actuator_tolerance: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "start", "end", what="the {} of a swing", unit="rad")
+        require_all_finite("start and end of a swing", (self.start, self.end))
         require_numbers(self, "duration", what="the duration of a swing", above=0.0, unit="s")
         require_numbers(self, "actuator_tolerance", what="the tolerance of the actuator", least=0.0, unit="m")
         require_word("driver", self.driver, Driver)
@@ -49,7 +50,7 @@ class Swing:
         angle = abs(self.end - self.start)
         if not 0.0 < angle < _TURN:
             raise InputError(
-                "a swing needs two crank angles less than a turn apart; "
+                "a swing needs two different crank angles, less than a turn apart; "
                 f"got {math.degrees(self.start):.6g} and {math.degrees(self.end):.6g} deg; "
                 "a crank that turns through is what all other analyses are of"
             )
@@ -58,6 +59,15 @@ class Swing:
                 "a swing that is not slow needs its duration, and a slow one has none; "
                 f"got the law {self.law} and {'no duration' if self.duration is None else f'{self.duration:g} s'}; "
                 "give both a law and a duration, or neither"
+            )
+        if self.duration is not None and not _LEAST <= self.duration <= _MOST:
+            raise InputError(
+                f"one way of a swing takes from {_LEAST:g} to {_MOST:g} s; got {self.duration:g} s; check the unit"
+            )
+        if self.actuator_tolerance and self.driver == "crank":
+            raise InputError(
+                "the tolerance of the actuator is of a slider that drives; got "
+                f"{1e3 * self.actuator_tolerance:g} mm with the crank driven; drive the slider, or leave it out"
             )
 
     @property
@@ -109,16 +119,28 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
             f"the swing from {_degrees(swing.start)} to {_degrees(swing.end)} has one at {_degrees(passed[0])}; "
             "stay on one side of it, change the dimensions, or drive the crank"
         )
+    if swing.driver == "slider" and _folded(own, swing):
+        raise InputError(
+            "a slider drives the crank only where crank and rod are not in line; got a rod as long as the crank, no "
+            f"offset, and both folded at {_degrees(0.5 * (swing.start + swing.end))}, the slider on the crank pivot; "
+            "swing on the other side, or change a length"
+        )
     for load in mechanism.loads:
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre") and not bool(turns):
             raise InputError(
-                f"a load is measured from the {datum}, which this linkage does not reach in a full turn; "
+                f"a load is measured from the {datum} of a full turn, which this linkage does not make; "
                 "measure it from the crank pivot"
             )
     if mechanism.friction.crank_pin.radius * mechanism.friction.crank_pin.coefficient and swing.driver == "crank":
         _require_one_sense(own, swing)
     return own
+
+
+def _folded(linkage: Linkage, swing: Swing) -> bool:
+    """Return whether crank and rod lie on each other over a whole swing that has no single dead point."""
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0
 
 
 def extreme_angles(swing: Swing) -> list[float]:

@@ -61,6 +61,9 @@ def swing(
     drawable(figure)
     if "-" in (str(curves), str(figure)):
         raise InputError("--curves and --figure write files; got -; name one")
+    for option, file, ending in (("--curves", curves, ".csv"), ("--figure", figure, ".png")):
+        if file is not None and (file.is_dir() or file.suffix.lower() != ending):
+            raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
     mechanism, linkage = _machine(job, size, design, runs)
     asked = Swing(
         start=value_option("--from", start, ANGLE),
@@ -86,7 +89,7 @@ def swing(
 
         with disk(figure.parent), waiting("drawing the figure"):
             figure.parent.mkdir(parents=True, exist_ok=True)
-            save_sheet(swing_sheet(mechanism, linkage, asked), figure)
+            save_sheet(swing_sheet(mechanism, linkage, asked, units), figure)
         say(f"figure: {figure}")
 
 

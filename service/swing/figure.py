@@ -8,29 +8,42 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
-from ...objectives.kinds import ANGLE, LENGTH, POWER, Face
-from ..figures.numerals import with_unit
-from ..figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, lengths
+from ...objectives.kinds import ANGLE, LENGTH, POWER, Face, Kind, System
+from ..figures.numerals import shown, with_unit
+from ..figures.sheets import CRANK_ANGLE, Line, Panel, Sheet
 from .record import both_ways, drive_kind, error_kind
 
 
-def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Sheet:
+def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Sheet:
     """Return the curves of both ways over the crank angle; the way back is drawn where it differs."""
     ways = both_ways(mechanism, linkage, swing)
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     driven = "slider position error" if swing.driver == "crank" else "crank angle error"
     between = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
     panels = [
-        _panel(drive, "drive", drive_kind(swing).metric, ways),
-        _panel("slider position", "slider_position", LENGTH.metric, ways[:1]),
+        _panel(drive, "drive", _face(drive_kind(swing), system), ways),
+        _panel("slider position", "slider_position", _face(LENGTH, system), ways[:1]),
         _panel(between, "driven_angle", ANGLE.metric, ways[:1]),
     ]
     if swing.duration is not None:
-        panels.append(_panel("power of the drive", "power", POWER.metric, ways))
+        panels.append(_panel("power of the drive", "power", _face(POWER, system), ways))
     if mechanism.tolerances.given or swing.actuator_tolerance:
-        panels.append(_panel(driven, "driven_error", error_kind(swing).metric, ways[:1]))
+        panels.append(_panel(driven, "driven_error", _face(error_kind(swing), system), ways[:1]))
     title = f"Swing driven at the {swing.driver}"
-    return Sheet(title, lengths(linkage), tuple(panels), columns=2 if len(panels) > 3 else 1, width=5.2)
+    sizes = (linkage.crank, linkage.rod, linkage.offset)
+    unit = _face(LENGTH, system)
+    crank, rod, offset = (shown(unit.factor * float(size)) for size in sizes)
+    return Sheet(
+        title,
+        f"crank {crank}, rod {rod}, offset {offset} {unit.symbol}",
+        tuple(panels),
+        columns=2 if len(panels) > 3 else 1,
+        width=5.2,
+    )
+
+
+def _face(kind: Kind, system: System) -> Face:
+    return kind.inch if system == "inch" and kind.inch is not None else kind.metric
 
 
 def _panel(title: str, name: str, face: Face, ways: tuple[SwingCurves, ...]) -> Panel:

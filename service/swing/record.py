@@ -8,17 +8,24 @@ from typing import Any
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
-from ...model.machine.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism, Window
 from ...model.swing.forces import SwingCurves, swing_curves
-from ...model.swing.summary import At, SwingSummary
+from ...model.swing.over import At
+from ...model.swing.summary import SwingSummary
 from ...model.swing.swing import Swing, require_swing
 from ...objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE, Kind
 from ..text.tables import plain
 
 POINTS = 181
 """Of one way, in curves and figures."""
-WITHOUT_LOADS = "nothing has mass, nothing is loaded: the drive is zero; give a JOB with masses or a load"
-LOCKED = "friction locks the linkage, so that no drive moves it, {way} at a crank angle of {angle:.4g} deg"
+WITHOUT_LOADS = (
+    "the drive is zero: no load acts and no mass weighs or is moved; "
+    "give a JOB with a load, or with masses and gravity or a law of motion"
+)
+LOCKED = (
+    "friction may lock the linkage {way}, first at a crank angle of {angle:.5g} deg: what drives it is not determined"
+)
+WINDOW = "the position error is that of the whole swing: during and part_of_stroke of [tolerances] do not limit it"
 COASTS = "forces at the ends, where the speed jumps, are left out: the driver's acceleration is not stated there"
 
 
@@ -58,7 +65,7 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
     }
     for end, pair in (("start", found.drive_start), ("end", found.drive_end)):
         for way, value in zip(("forth", "back"), pair, strict=True):
-            record[f"drive_at_{end}_{way}{drive.suffix}"] = plain(drive.factor * value)
+            record[f"drive_at_{end}_{way}{drive.suffix}"] = plain(drive.factor * value + 0.0)
     record |= {
         "holds_by_friction": found.holds,
         "energy_forth_J": plain(found.energy_forth),
@@ -77,7 +84,7 @@ def _at(key: str, at: At, factor: float, *, way: bool = False) -> dict[str, Any]
     """Return a value and its places; the key without its unit begins those of the places."""
     stem = key.rpartition("_")[0]
     return {
-        key: plain(factor * at.value),
+        key: plain(factor * at.value + 0.0),
         **({f"{stem}_way": "back" if at.back else "forth"} if way else {}),
         f"{stem}_at_crank_angle_deg": math.degrees(at.crank_angle),
         f"{stem}_at_slider_position_mm": 1e3 * at.slider_position,
@@ -89,8 +96,10 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
     if found.locked is not None:
         way = "on the way back" if found.locked.back else "on the way forth"
         notes.append(LOCKED.format(way=way, angle=math.degrees(found.locked.crank_angle)))
-    elif found.peak_drive.value == 0.0 and not mechanism.loads:
+    elif found.peak_drive.value == 0.0:
         notes.append(WITHOUT_LOADS)
+    if found.position_error is not None and mechanism.tolerances.window != Window():
+        notes.append(WINDOW)
     if found.swing.law == "constant":
         notes.append(COASTS)
     return notes

@@ -158,10 +158,10 @@ def test_friction_locks_a_crank_whose_rod_passes_within_the_friction_circles() -
     swing = Swing(start=math.radians(2.0), end=math.radians(60.0), driver="slider")
     found = swing_curves(machine, require_swing(machine, linkage, swing), swing, share)
     locked = np.isnan(found.drive)
-    lever = 0.1 * np.sin(found.crank_angle - np.arcsin(-0.1 * np.sin(found.crank_angle) / 0.3))
-    assert locked[lever < 0.0195].all()
-    assert not locked[lever > 0.0205].any()
+    bend = found.driven_angle
+    assert np.array_equal(locked, bend <= math.asin(0.01 / 0.3) + math.asin(0.02 / 0.1))
     assert 0 < locked.sum() < 61
+    assert (0.1 * np.sin(bend[~locked])).min() > 0.02  # no lever below both circles is let pass
 
 
 def test_position_error_of_the_column_is_that_of_the_dimensions_moved() -> None:

@@ -12,16 +12,18 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
+from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, dead_points, require_swing
+from slidercrank.model.swing.words import Law
 from tests.model.bodies import bodies
 from tests.model.swing.swings import random_swings
 
@@ -183,7 +185,12 @@ def test_dead_points_are_where_the_slider_turns() -> None:
         ({"start": 0.0, "end": 1.0, "law": "harmonic"}, "needs its duration"),
         ({"start": 0.0, "end": 1.0, "duration": 2.0}, "a slow one has none"),
         ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 0.0}, "positive"),
+        ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 1e300}, "check the unit"),
+        ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 1e-155}, "check the unit"),
+        ({"start": None, "end": 1.0}, "must be of numbers"),
+        ({"start": "1", "end": 1.0}, "must be of numbers"),
         ({"start": 0.0, "end": 1.0, "actuator_tolerance": -1.0}, "zero or more"),
+        ({"start": 0.0, "end": 1.0, "actuator_tolerance": 1e-3}, "of a slider that drives"),
     ],
 )
 def test_swings_that_are_none_are_refused(given: dict[str, object], words: str) -> None:
@@ -204,6 +211,85 @@ def test_swings_that_cannot_be_made_are_refused() -> None:
     spring = Spring(stiffness=100.0, datum="inner dead centre")
     with pytest.raises(InputError, match="measure it from the crank pivot"):
         summarise(replace(COLUMN, loads=(spring,)), short, Swing(start=0.0, end=0.3))
+
+
+@pytest.mark.parametrize("law", ["slow", "harmonic", "trapezoid", "constant"])
+@pytest.mark.parametrize("near", [3.0, 0.3, 1e-2, 1e-4])
+def test_energy_near_a_dead_point_is_that_of_the_potential(near: float, law: Law) -> None:
+    """The slider's force grows as the inverse root of the way from the dead point; its work does not."""
+    machine = Mechanism(crank=RigidLink(mass=2.0), rod=RigidLink(mass=3.0), slider_mass=4.0, gravity=(0.0, -9.81))
+    linkage = Linkage(0.04, 0.1, 0.01)
+    dead = min(dead_points(linkage), key=abs)
+    duration = None if law == "slow" else 40.0
+    swing = Swing(start=dead + math.radians(near), end=math.radians(80.0), driver="slider", law=law, duration=duration)
+    found = summarise(machine, linkage, swing)
+    heights = [
+        sum(part.mass * float(part.y(angle)) for part in bodies(machine, np.array([0.04, 0.1, 0.01])).values())
+        for angle in (swing.start, swing.end)
+    ]
+    wanted = 9.81 * (heights[1] - heights[0])
+    assert found.stored == pytest.approx(wanted, rel=1e-8)
+    if law != "constant":  # which moves at the ends
+        assert found.energy_forth == pytest.approx(wanted, rel=1e-7)
+        assert found.energy_back == pytest.approx(-wanted, rel=1e-7)
+    assert found.efficiency == pytest.approx(1.0, abs=1e-9)
+
+
+def test_efficiency_is_of_friction_alone() -> None:
+    """Not of a load that differs between the ways, nor of what moves at the ends; none where nothing is driven."""
+    column = replace(COLUMN, loads=(StrokeForce(outward=100.0, inward=600.0),))
+    for machine in (COLUMN, column):
+        for law, duration in (("slow", None), ("constant", 0.5), ("harmonic", 1.0)):
+            swing = replace(OVER, law=law, duration=duration)  # type: ignore[arg-type]
+            assert summarise(machine, SUPPORT, swing).efficiency == pytest.approx(1.0, abs=1e-9)
+            rubbed = summarise(replace(machine, friction=Friction(guide=0.1)), SUPPORT, swing).efficiency
+            assert rubbed is not None
+            assert 0.5 < rubbed < 1.0
+    even = Mechanism(crank=RigidLink(mass=1.0, centre=0.5), gravity=(0.0, -9.81))
+    for driver in ("crank", "slider"):
+        swing = Swing(start=math.radians(10.0), end=math.radians(170.0), driver=driver)
+        found = summarise(even, Linkage(0.5, 1.5), swing)
+        assert found.stored == found.energy_forth == 0.0
+        assert found.efficiency is None
+
+
+def test_a_place_that_may_lock_leaves_peaks_undefined() -> None:
+    pin = Pin(radius=0.02, coefficient=0.5)
+    machine = replace(COLUMN, friction=Friction(crank_pivot=pin, crank_pin=pin))
+    linkage = Linkage(0.1, 0.3)
+    found = summarise(machine, linkage, Swing(start=math.radians(2.0), end=math.radians(60.0), driver="slider"))
+    assert found.locked is not None
+    bend = math.sin(found.locked.crank_angle + math.asin(0.1 * math.sin(found.locked.crank_angle) / 0.3))
+    assert found.locked.share == 0.0
+    assert bend < 0.3
+    assert math.isnan(found.peak_drive.value)
+    assert math.isnan(found.energy_forth)
+    assert found.efficiency is None
+    later = summarise(machine, linkage, Swing(start=math.radians(60.0), end=math.radians(2.0), driver="slider"))
+    assert later.locked is not None
+    theta = later.locked.crank_angle
+    edge = math.asin(math.sin(theta + math.asin(0.1 * math.sin(theta) / 0.3)))
+    assert edge == pytest.approx(math.asin(0.01 / 0.3) + math.asin(0.02 / 0.1), abs=1e-9)
+
+
+def test_a_dashpot_holds_nothing_and_takes_nothing_slowly() -> None:
+    found = summarise(Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, OVER)
+    assert not found.holds
+    assert (found.peak_drive.value, found.drive_start, found.stored, found.efficiency) == (0.0, (0.0, 0.0), 0.0, None)
+    moved = summarise(
+        Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, replace(OVER, law="harmonic", duration=1.0)
+    )
+    assert moved.energy_forth > 0.0
+    assert not moved.holds
+
+
+def test_crank_and_rod_on_each_other_are_refused() -> None:
+    folded = Linkage(0.06, 0.06)
+    asked = Swing(start=math.radians(100.0), end=math.radians(150.0), driver="slider")
+    with pytest.raises(InputError, match="both folded"):
+        summarise(COLUMN, folded, asked)
+    other = summarise(COLUMN, folded, replace(asked, start=math.radians(20.0), end=math.radians(70.0)))
+    assert math.isfinite(other.peak_drive.value)
 
 
 @pytest.mark.parametrize("driver", ["crank", "slider"])

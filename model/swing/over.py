@@ -1,0 +1,190 @@
+"""One linkage over both ways of a swing: extremes of curves, energies between kinks, where friction locks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..cycle.cycle import kinks_of_loads
+from ..linkage.linkage import Linkage
+from ..machine.loads.load import Enters
+from ..machine.mechanism import Mechanism
+from ..machine.raw import load_structure
+from .forces import SwingCurves, driver_ends, swing_curves
+from .law import corners, share_of
+from .swing import Array, Swing, dead_points
+
+_SAMPLES = 721
+_ZOOMS, _ZOOMED = 7, 41
+_EQUAL = 1e-12
+_PANELS, _GRADED = 12, 3
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_SIDES = 400
+_BISECTIONS = 55
+
+
+@dataclass(frozen=True)
+class At:
+    """A value of a swing and its place: way, share of the time, crank angle, slider position; SI."""
+
+    value: float
+    back: bool
+    share: float
+    crank_angle: float
+    slider_position: float
+
+
+@dataclass(frozen=True)
+class Over:
+    """A machine, a linkage and a swing."""
+
+    mechanism: Mechanism
+    linkage: Linkage
+    swing: Swing
+
+    def at(self, share: Array, *, back: bool = False) -> SwingCurves:
+        """Return the curves at shares (n,) of the time of one way."""
+        return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
+
+    def greatest(self, name: str) -> At:
+        """Return the greatest size of a curve on both ways."""
+        forth, back = (self._extreme(name, way, np.abs) for way in (False, True))
+        # The same on both ways but for rounding, as without friction: the first.
+        return back if abs(back.value) > abs(forth.value) * (1.0 + _EQUAL) or np.isnan(forth.value) else forth
+
+    def least(self, name: str) -> At:
+        """Return the least value of a curve, the same on both ways."""
+        return self._extreme(name, False, np.negative)
+
+    def _extreme(self, name: str, back: bool, worth: np.ufunc) -> At:
+        low, high, count = 0.0, 1.0, _SAMPLES
+        for _ in range(1 + _ZOOMS):
+            share = np.linspace(low, high, count)
+            curves = self.at(share, back=back)
+            values = getattr(curves, name)
+            ranks = np.where(np.isnan(values), -np.inf, worth(values))
+            best = int(np.argmax(ranks))
+            low, high, count = share[max(best - 1, 0)], share[min(best + 1, len(share) - 1)], _ZOOMED
+        return _place(curves, best, back, float(values[best]))
+
+    def first_locked(self) -> At | None:
+        """Return the first place where friction may lock the linkage, to a bisection between many."""
+        for back in (False, True):
+            share = np.linspace(0.0, 1.0, _SAMPLES)
+            rows = np.flatnonzero(np.isnan(self.at(share, back=back).drive))
+            if len(rows):
+                first = int(rows[0])
+                low, high = share[max(first - 1, 0)], share[first]
+                for _ in range(_BISECTIONS if first else 0):
+                    middle = 0.5 * (low + high)
+                    locks = bool(np.isnan(self.at(np.array([middle]), back=back).drive[0]))
+                    low, high = (low, middle) if locks else (middle, high)
+                return _place(self.at(np.array([high]), back=back), 0, back, np.nan)
+        return None
+
+    def holds(self) -> bool:
+        """Return whether friction alone holds the linkage all over: no drive lies between those of both ways."""
+        if not self.mechanism.friction.acts:
+            return False
+        share = np.linspace(0.0, 1.0, _SAMPLES)
+        forth, back = self.at(share), self.at(share, back=True)
+        # Forth is along the driver's way: what resists needs a drive that way, and back one the other way.
+        first, last = driver_ends(self.linkage, self.swing)
+        way = np.sign(last - first)
+        return bool(np.all((way * forth.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
+
+    def energy(self, *, back: bool) -> float:
+        """Return the driver's work, J, zero where it is rounding.
+
+        Gauss's quadrature on panels between the places where the drive has kinks or jumps. Each stretch is graded
+        towards its ends, since near a dead point the drive grows as the inverse root of the way from it.
+        """
+        cuts = self._cuts(back)
+        edges = np.linspace(0.0, 1.0, _PANELS + 1)
+        half = 0.5 / _PANELS
+        u, w = (edges[:-1, None] + half + half * _NODES).ravel(), np.tile(half * _WEIGHTS, _PANELS)
+        slope = np.ones_like(u)
+        for _ in range(_GRADED):
+            slope = slope * 6.0 * u * (1.0 - u)
+            u = u * u * (3.0 - 2.0 * u)
+        spans = np.diff(cuts)
+        share = (cuts[:-1, None] + spans[:, None] * u).ravel()
+        curves = self.at(share, back=back)
+        parts = (spans[:, None] * (slope * w)).ravel() * curves.drive * curves.rate
+        total, gross = float(np.sum(parts)), float(np.sum(np.abs(parts)))
+        return 0.0 if abs(total) <= _EQUAL * gross else total
+
+    def _cuts(self, back: bool) -> Array:
+        shares = [0.0, 1.0, *corners(self.swing.law), *(self._share(angle) for angle in self._kinks())]
+        if back:
+            shares = [1.0 - share for share in shares]
+        return np.unique([*shares, *self._changes(back)])
+
+    def _kinks(self) -> list[float]:
+        """Return the crank angles at which loads or friction change: knots of tables, dead centres, the rod's turn."""
+        own, swing = self.linkage, self.swing
+        angles = [*dead_points(own), 0.5 * np.pi, 1.5 * np.pi]
+        if bool(own.rotates_fully):
+            angles += kinks_of_loads(self.mechanism, own).tolist()
+        else:  # then none is counted from a dead centre
+            loads = load_structure(self.mechanism)
+            for k, load in enumerate(self.mechanism.loads):
+                knots = loads.at[loads.start[k] : loads.start[k + 1]]
+                angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_of(knots)
+        return [inside for angle in angles for inside in swing.inside(float(angle))]
+
+    def _angles_of(self, knots: Array) -> list[float]:
+        """Return the crank angles at which the slider passes distances from the crank pivot."""
+        own = self.linkage
+        r, l, e = float(own.crank), float(own.rod), float(own.offset)
+        found: list[float] = []
+        for x in (own.sign * knots).tolist():
+            d = float(np.hypot(x, e))
+            ratio = (r * r + d * d - l * l) / (2.0 * r * d) if d else np.inf
+            if abs(ratio) < 1.0:
+                found += [float(np.arctan2(e, x) + side * np.arccos(ratio)) for side in (-1.0, 1.0)]
+        return found
+
+    def _share(self, angle: float) -> float:
+        first, last = driver_ends(self.linkage, self.swing)
+        place = angle
+        if self.swing.driver == "slider":
+            r, l, e, sign = self.linkage.crank, self.linkage.rod, self.linkage.offset, self.linkage.sign
+            place = float(r * np.cos(angle) + sign * np.sqrt(max(0.0, l * l - (e - r * np.sin(angle)) ** 2)))
+        return share_of(self.swing.law, float(np.clip((place - first) / (last - first), 0.0, 1.0)))
+
+    def _changes(self, back: bool) -> list[float]:
+        """Return the shares at which friction changes sides: of the guide, and of a crank pin that turns back."""
+        if not self.mechanism.friction.acts:
+            return []
+        share = np.linspace(0.0, 1.0, _SIDES)
+        found: list[float] = []
+        for side in (_guide, _pin_turn):
+            values = side(self.at(share, back=back))
+            for i in np.flatnonzero(values[:-1] * values[1:] < 0.0).tolist():
+                low, high, sign = share[i], share[i + 1], values[i]
+                for _ in range(_BISECTIONS):
+                    middle = 0.5 * (low + high)
+                    now = float(side(self.at(np.array([middle]), back=back))[0])
+                    low, high = (middle, high) if now * sign > 0.0 else (low, middle)
+                found.append(float(0.5 * (low + high)))
+        return found
+
+
+def _guide(curves: SwingCurves) -> Array:
+    return curves.guide
+
+
+def _pin_turn(curves: SwingCurves) -> Array:
+    return 1.0 - curves.rod_rate
+
+
+def _place(curves: SwingCurves, row: int, back: bool, value: float) -> At:
+    return At(
+        value,
+        back,
+        float(curves.share[row]),
+        float(curves.crank_angle[row]),
+        float(curves.slider_position[row]),
+    )
