@@ -1,4 +1,4 @@
-"""The engines under test, each started once."""
+"""The engines under test."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ def processes() -> Iterator[Processes]:
     made.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def cluster() -> Iterator[Cluster]:
+    """Return a cluster for the tests of a file: idle it takes a tenth of a processor, and its start a second."""
     with DaskCluster(2) as dask:
         made = Cluster(dask.address, patience=60.0)
         yield made
