@@ -18,7 +18,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem
 
-JOBS, AT_ONCE = 80, 20
+JOBS, AT_ONCE = 40, 10
 
 
 def listed(**changes: Any) -> dict[str, Any]:

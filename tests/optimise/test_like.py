@@ -27,7 +27,7 @@ SHAPE: dict[str, Sense] = {"time_ratio": "maximise", "transmission_angle": "maxi
 @lru_cache(maxsize=2)
 def front(torque: bool) -> ParetoFront:
     """Return a front with or without a torque among its objectives."""
-    return solve(problem(TORQUE if torque else SHAPE, HELD))
+    return solve(problem(TORQUE if torque else SHAPE, HELD, samples=512))
 
 
 CASES: dict[str, tuple[bool, tuple[Constraint, ...], Mapping[str, Ends]]] = {
@@ -55,7 +55,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
         least, greatest = ranges.get(name, (None, None))
         assert least is None or found.dimensions[0, column] >= least - 1e-10
         assert greatest is None or found.dimensions[0, column] <= greatest + 1e-10
-    dense = solve(replace(found.problem, settings=Settings(designs=30)))
+    dense = solve(replace(found.problem, settings=Settings(designs=30, samples=512)))
     here, there = found.values / span, dense.values / span
     assert not ((there <= here).all(axis=1) & (there < here - 1e-7).any(axis=1)).any()
     mine = float(distance(found.values, given.values[row], span)[0])

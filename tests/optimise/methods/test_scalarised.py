@@ -23,7 +23,7 @@ from tests.optimise.problems import Bounds, degrees, problem
 METHODS = ("epsilon_constraint", "chebyshev", "nbi")
 HELD: dict[str, Bounds] = {"stroke": (0.18, 0.2), "transmission_angle": (degrees(35.0), None)}
 PROBLEMS: dict[str, Problem] = {
-    "two": problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=16),
+    "two": problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=10),
     "three": problem({"peak_torque": "minimise", "time_ratio": "maximise", "footprint": "minimise"}, HELD, designs=24),
 }
 
