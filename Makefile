@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test test-slow test-rounding lint check docs benchmark pictures requests faults clean
+.PHONY: run test test-slow test-all test-rounding lint check docs benchmark pictures requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed
@@ -16,13 +16,18 @@ export PYTHONDONTWRITEBYTECODE :=
 # Two a processor, since many tests wait for processes and pages; at most 8: each one loads its own numba.
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
+MARKED := not slow
 test: $(VENV)/.installed-test
 	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.optimise slidercrank.model
-	$(PYTEST) -m 'not slow'
+	$(PYTEST) -m '$(MARKED)'
 
 # Faults, installed copies, long walks through API and documentation: minutes for a few tests.
 test-slow: $(VENV)/.installed-test
 	$(PYTEST) -m slow
+
+# Both at once, so that the other tests fill the pauses of the slow ones.
+test-all: MARKED :=
+test-all: test
 
 # The numbers with another rounding: neither fused multiply-add nor this processor's wide vectors. A part that takes a
 # minute and a half; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"
