@@ -176,7 +176,7 @@ OPTIMISE = ("optimise", "JOB", "--no-figures", "--designs", "6")
 
 
 def imported(command: tuple[str, ...], folder: Path, root: Path) -> set[str]:
-    """Return what is slow of the modules that a command has imported at its end."""
+    """Slow modules that a command has imported at its end."""
     line = ["slidercrank", *(str(root / "runs/feeder.toml") if word == "JOB" else word for word in command)]
     code = f"from slidercrank.service.cli import main; sys.argv = {line}; main()" if command else "import slidercrank"
     report = f"sys.stderr.write(json.dumps([name for name in {SLOW} if name in sys.modules]))"

@@ -21,7 +21,7 @@ def processes() -> Iterator[Processes]:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Cluster]:
-    """Return a cluster for the tests of a file: idle it takes a tenth of a processor, and its start a second."""
+    """Cluster for the tests of a file: idle, it takes a tenth of a processor."""
     with DaskCluster(2) as dask:
         made = Cluster(dask.address, patience=60.0)
         yield made

@@ -12,7 +12,7 @@ _OF_COLOURS = ("color-contrast", "link-in-text-block")
 
 
 def findings(page: Page, rules: Sequence[str] = ()) -> list[tuple[str, list[str]]]:
-    """Return what axe-core finds wrong: each broken rule with the places. rules: all unless given."""
+    """Findings of axe-core: each broken rule with its places. rules: all unless given."""
     # Places that break no rule are not described: that takes longer than to find them.
     options = {"resultTypes": ["violations"], **({"runOnly": list(rules)} if rules else {})}
     found = Axe().run(page, options=options).response["violations"]
