@@ -32,6 +32,7 @@ def test_designs_under_which_processes_end_again_and_again_are_named(processes: 
 
 
 def test_processes_killed_at_random_lose_nothing(processes: Processes) -> None:
+    processes.close()
     begin = time.monotonic()
     processes.map(work.process, range(4))
     start = time.monotonic() - begin  # a killed one needs as long again, on a machine under load many seconds
