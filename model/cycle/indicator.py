@@ -1,0 +1,64 @@
+"""Indicator diagram of a cylinder: pressure and volume over the crank angle, and the valve events."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..dynamics.gas import compressed_at, expanded_at
+from ..dynamics.segments import crank_angle_at
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.loads.cylinder import Cylinder
+from ..machine.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Indicator:
+    """Volume, m^3, and pressure, Pa, of the gas in a cylinder at crank angles, rad, each (n,)."""
+
+    crank_angle: Array
+    volume: Array
+    pressure: Array
+
+
+def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
+    """Return volume and pressure in one of a machine's cylinders; on a dead centre the pressure before it."""
+    linkage = single(mechanism, linkage)
+    theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    stroke, sign, top = _top(linkage, load)
+    z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
+    # The motion of a moment before: at a dead centre that of the stroke that ends there.
+    before = linkage.at(theta - 1e-9 * mechanism.direction, speed=mechanism.direction).slider_velocity
+    away = sign * linkage.sign * before > 0.0
+    pressure = np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
+    return Indicator(theta, load.clearance * load.area * stroke + load.clearance_volume + load.area * z, pressure)
+
+
+def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:
+    """Return the crank angles, rad in [0, 2 pi), at which expansion and compression end; None for no such event."""
+    linkage = single(mechanism, linkage)
+    stroke, sign, top = _top(linkage, load)
+    if load.compression_exponent == 0.0:
+        return None, None
+    h, ratio = load.clearance * stroke + load.clearance_volume / load.area, load.high / load.low
+    events = expanded_at(h, ratio, load.expansion_exponent), compressed_at(stroke, h, ratio, load.compression_exponent)
+    found: list[float | None] = []
+    for z, away in zip(events, (True, False), strict=True):
+        outward = away == (sign > 0.0)
+        second = outward == (mechanism.direction < 0.0)
+        x = linkage.sign * (top + sign * float(z))
+        angle = crank_angle_at(x, float(linkage.crank), float(linkage.rod), float(linkage.offset), second)
+        found.append(angle % (2.0 * math.pi) if 0.0 < z < stroke else None)
+    return found[0], found[1]
+
+
+def _top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
+    """Return stroke, sense in which the piston leaves its top (1 outward), and the top's distance from the pivot."""
+    inner, outer = (linkage.sign * float(linkage.at(angle).slider_position) for angle in linkage.dead_centre_angles)
+    return outer - inner, *((-1.0, outer) if load.head == "outer dead centre" else (1.0, inner))

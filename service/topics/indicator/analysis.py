@@ -1,0 +1,90 @@
+"""Indicator diagram of one design: pressure over volume in each cylinder, valve events, work."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from ....model.cycle.gas_cycle import cylinders
+from ....model.cycle.indicator import indicator, valve_events
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.loads.cylinder import Cylinder
+from ....model.machine.mechanism import Mechanism
+from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
+from ...text import tables as text
+
+_BAR, _CM3 = 1e-5, 1e6
+
+
+def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
+    found = cylinders(mechanism)
+    if not found:
+        raise InputError(
+            "an indicator diagram is of a cylinder; got none; add to the job for example "
+            '[[load]] with bore = "70 mm", suction = "1 bar", discharge = "8 bar" and clearance = 0.05'
+        )
+    return found
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return volumes, pressures, valve events and work of each cylinder, in the order of the loads.
+
+    The end of expansion or compression is None where no valve event comes. Raises `InputError` without a cylinder.
+    """
+    found = []
+    for place, load in _of(mechanism):
+        curve = indicator(mechanism, linkage, load, turn(np.array(linkage.dead_centre_angles)))
+        ends = valve_events(mechanism, linkage, load)
+        expansion, compression = (None if angle is None else math.degrees(angle) for angle in ends)
+        least, most = float(curve.volume.min()), float(curve.volume.max())
+        found.append(
+            {
+                "load": place + 1,
+                "least_volume_cm3": _CM3 * least,
+                "greatest_volume_cm3": _CM3 * most,
+                "least_pressure_bar": _BAR * load.low,
+                "greatest_pressure_bar": _BAR * load.high,
+                "expansion_ends_deg": expansion,
+                "compression_ends_deg": compression,
+            }
+        )
+    return {"cylinders": found}
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    for one in numbers["cylinders"]:
+        lines: list[text.Line] = [
+            ("least volume", one["least_volume_cm3"], "cm³", ""),
+            ("greatest volume", one["greatest_volume_cm3"], "cm³", ""),
+            ("least pressure", one["least_pressure_bar"], "bar", ""),
+            ("greatest pressure", one["greatest_pressure_bar"], "bar", ""),
+        ]
+        for name, words in (("expansion", "expansion ends"), ("compression", "compression ends")):
+            angle = one[f"{name}_ends_deg"]
+            if angle is not None:
+                lines.append((words, angle, "deg", "a valve opens"))
+        text.show_lines(console, f"Indicator diagram of load {one['load']} (pressures are absolute)", lines)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return pressure over volume and over the crank angle, a line for each cylinder."""
+    over_volume, over_angle = [], []
+    for style, (place, load) in enumerate(_of(mechanism)):
+        events = [angle for angle in valve_events(mechanism, linkage, load) if angle is not None]
+        theta = turn(np.array(linkage.dead_centre_angles), events)
+        curve = indicator(mechanism, linkage, load, theta)
+        # Closed: the diagram ends where it began.
+        volume, pressure = (_CM3 * np.append(curve.volume, curve.volume[0]), _BAR * curve.pressure)
+        name = f"load {place + 1}"
+        over_volume.append(Line(name, volume, np.append(pressure, pressure[0]), style))
+        over_angle.append(Line(name, np.degrees(theta), pressure, style))
+    panels = (
+        Panel("pressure, bar", "volume, cm³", tuple(over_volume)),
+        over_turn("pressure, bar", *over_angle),
+    )
+    return Sheet("Indicator diagram", "", panels, width=6.4, height=3.0)
