@@ -11,9 +11,12 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.loads.engine import Engine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.transient.forward import State, simulate
+from slidercrank.model.transient.steady import constant_torque_running
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 
@@ -69,6 +72,46 @@ def test_the_gas_reaches_its_peak_pressure_after_the_top_and_the_intake_pressure
     pressures = 101_325.0 - load / area
     wanted = [1e5 * 8.0**1.3, 40e5, 40e5 / 8.0**1.3, 1e5]
     assert pressures == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_without_a_motor_the_flywheel_gains_what_the_gas_gives_at_every_angle(direction: float) -> None:
+    """Massless links: J w^2 / 2 less what it was at the top is the closed work of the gas less the back pressure's."""
+    load = engine(expansion_exponent=1.25)
+    linkage = Linkage(0.027, 0.1, 0.004)
+    machine = Mechanism(speed=direction, loads=(load,))
+    top = float(linkage.dead_centre_angles[1])
+    drive = Drive(motor=ConstantTorque(torque=0.0), flywheel=0.02)
+    start = State(angle=top + 1e-9 * direction, speed=150.0 * direction)
+    found = simulate(machine, linkage, drive, duration=10.0, turns=4, start=start)
+    gained = 0.5 * 0.02 * (found.speed**2 - 150.0**2)
+    stroke = float(linkage.stroke)
+    z = float(linkage.at(top).slider_position) - found.slider_position
+    h, area = stroke / 7.0, load.area
+
+    def worked(p: float, n: float, at: float) -> Any:
+        """Return the work from a height to that of z, J."""
+        return area * p * at / (n - 1.0) * (1.0 - (at / (h + z)) ** (n - 1.0))
+
+    turned = (found.angle - top) * direction
+    turns = np.floor(turned / (2.0 * math.pi))
+    whole = QUANTITIES["indicated_work"].evaluate(machine, np.array([[0.027, 0.1, 0.004]])).values[0]
+    end = area * 40e5 * h / 0.25 * (1.0 - 8.0**-0.25)
+    away = found.slider_velocity < 0.0
+    gas = np.where(away, worked(40e5, 1.25, h), end + worked(1e5, 1.3, h + stroke))
+    wanted = turns * whole + gas - load.back_pressure * area * z
+    inside = (z > 1e-6 * stroke) & (z < (1.0 - 1e-6) * stroke)
+    assert inside.sum() > 300
+    assert np.abs(gained - wanted)[inside].max() <= 1e-8 * np.abs(wanted).max()
+
+
+def test_a_constant_torque_keeps_the_mean_speed_of_an_engine_by_taking_its_work() -> None:
+    machine, linkage = Mechanism(speed=200.0, loads=(engine(),)), Linkage(0.027, 0.1, 0.004)
+    running = constant_torque_running(machine, linkage, inertia=0.05)
+    whole = QUANTITIES["indicated_work"].evaluate(machine, np.array([[0.027, 0.1, 0.004]])).values[0]
+    assert -running.motor_torque[0] * 2.0 * math.pi == pytest.approx(whole, rel=1e-9)
+    energy = 0.5 * 0.05 * running.speed**2
+    assert energy.max() - energy.min() > 0.5 * whole
 
 
 def test_heat_gives_the_pressure_of_an_ideal_gas_at_constant_volume() -> None:
