@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from typing import Any
@@ -14,6 +15,8 @@ from slidercrank.model.cycle.cycle import breakpoints, cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import Drive, LinearMotor
+from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.model.machine.mechanism import Mechanism
@@ -148,6 +151,30 @@ def test_peaks_are_those_of_a_dense_sweep(signal: Signal) -> None:
         curve = cycle(machine, turning(machine, design), DENSE)
         swept = np.abs(curve.torque if signal == Signal.TORQUE else curve.guide).max()
         assert swept * (1.0 - 1e-12) <= value <= swept * (1.0 + 1e-3)
+
+
+def test_with_friction_the_mean_torque_is_the_integral_between_breakpoints() -> None:
+    """Sixty Gauss nodes on eighths of the segments between breakpoints; friction makes up to ten of these."""
+    friction = Friction(
+        guide=0.06, crank_pin=Pin(radius=0.014, coefficient=0.02), slider_pin=Pin(radius=0.009, coefficient=0.03)
+    )
+    machine = Mechanism(speed=90.0, slider_mass=0.35, rod=RigidLink(mass=0.3), loads=(AIR,), friction=friction)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    random = np.random.default_rng(2)
+    for _ in range(4):
+        design = np.array([[random.uniform(0.025, 0.035), random.uniform(0.08, 0.2), random.uniform(-0.03, 0.03)]])
+        linkage = turning(machine, design)
+        cuts = breakpoints(machine, linkage)
+        ends = np.concatenate(
+            [np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise([*cuts, cuts[0] + 2.0 * math.pi])]
+        )
+        ends = np.append(ends, cuts[0] + 2.0 * math.pi)
+        width, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
+        torque = cycle(machine, linkage, (middle + width * nodes).ravel()).torque.reshape(-1, 60)
+        wanted = float((torque @ weights) @ width[:, 0]) / (2.0 * math.pi)
+        assert average_torque(machine, design).mean[0] == pytest.approx(wanted, rel=1e-11)
+        works = [QUANTITIES[name].evaluate(machine, design).values[0] for name in ("delivered_work", "indicated_work")]
+        assert works[0] < works[1] < 0.0
 
 
 def test_valve_events_are_where_the_pressures_meet() -> None:
