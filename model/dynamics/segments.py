@@ -277,8 +277,12 @@ def load_on_slider(
         else:
             slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
             if loads.kind[k] == _ANGLE_TABLE:
-                at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
-                force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
+                # Apart, as the compiler may group a sum anew: tables from zero keep their last digits.
+                if loads.datum[k] == 0:
+                    force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
+                else:
+                    at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
+                    force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
             else:
                 at = block[DESIGN + LOAD_ROWS * k, j] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, j])
                 force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))
