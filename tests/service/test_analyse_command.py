@@ -39,6 +39,11 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
             "inertia",
             "shaking",
             "loaded",
+            "displacement",
+            "clearance",
+            "work",
+            "effective_pressure",
+            "volumetric",
         )
         assert (value is None) == any(word in key for word in unknown), key
     assert "need masses" in done.stderr

@@ -100,7 +100,9 @@ def test_every_number_of_the_design_is_in_it_with_all_its_digits() -> None:
         cell, column = row[key], find_column(key, list(row))
         assert title == column.title
         assert unit.replace("²", "^2").replace("³", "^3") == column.unit
-        if isinstance(cell, float):
+        if isinstance(cell, float) and math.isnan(cell):  # not defined for this machine
+            assert stored == ""
+        elif isinstance(cell, float):
             assert float(stored) == cell
             assert float(value.replace("−", "-")) == pytest.approx(cell, rel=1e-5)
         else:
