@@ -76,7 +76,7 @@ def test_the_gas_reaches_its_peak_pressure_after_the_top_and_the_intake_pressure
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 def test_without_a_motor_the_flywheel_gains_what_the_gas_gives_at_every_angle(direction: float) -> None:
-    """Massless links: J w^2 / 2 less what it was at the top is the closed work of the gas less the back pressure's."""
+    """Massless links: J w^2 / 2 rises by the closed work of the gas less the back pressure's."""
     load = engine(expansion_exponent=1.25)
     linkage = Linkage(0.027, 0.1, 0.004)
     machine = Mechanism(speed=direction, loads=(load,))
@@ -115,7 +115,7 @@ def test_a_constant_torque_keeps_the_mean_speed_of_an_engine_by_taking_its_work(
 
 
 def test_heat_gives_the_pressure_of_an_ideal_gas_at_constant_volume() -> None:
-    """The heat per swept volume is c_v times the rise of p V: 1.2 MJ/m^3 on a clearance of a seventh."""
+    """Heat is c_v times the rise of p V: 1.2 MJ/m^3 of swept volume, a seventh of it clearance."""
     load = engine(peak_pressure=0.0, heat="1.2 MJ/m^3", heat_capacity_ratio=1.35)
     rise = load.high - 1e5 * 8.0**1.3
     assert rise / (1.35 - 1.0) / 7.0 == pytest.approx(1.2e6, rel=1e-13)

@@ -2,5 +2,5 @@
 
 Where a load depends on the slider position, the position is counted from a `Datum`:
 the crank pivot (distance along the slider line), the inner dead centre (outward), or the outer dead centre (inward).
-Each module but `load` and `registry` is one kind of load.
+Each module but `load`, `cylinder` and `registry` is one kind of load; `cylinder` is what compressors and engines share.
 """
