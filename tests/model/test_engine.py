@@ -38,7 +38,7 @@ def engine(**changed: Any) -> Engine:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_delivered_work_is_that_of_the_two_polytropes(seed: int) -> None:
-    """Positive whichever way the crank turns: p_h V_c (1 - r^(1 - n)) / (n - 1) less the same of compression."""
+    """Positive either way round: p_h V_c (1 - r^(1 - n)) / (n - 1) less that of compression."""
     random = np.random.default_rng(seed)
     ratio, up, down = random.uniform(4.0, 18.0), random.uniform(1.1, 1.4), random.uniform(1.1, 1.3)
     low, bore = random.uniform(0.5e5, 2e5), random.uniform(0.03, 0.1)

@@ -137,7 +137,7 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
         ({"piston_rod": "100 mm"}, "thinner than the bore; got 100 mm"),
         ({"pressure_angles": ["0 deg", "40 deg", "720 deg"]}, "span less than 360 deg; got 720 deg"),
         ({"pressure_angles": ["0 deg", "40 deg", "30 deg"]}, "must increase; got"),
-        ({"pressures": ["1 bar", "2 bar"]}, "as many forces as angles"),
+        ({"pressures": ["1 bar", "2 bar"]}, "got 2 pressures at 3 points"),
     ],
 )
 def test_a_wrong_table_of_pressures_is_refused_at_its_key(wrong: dict[str, Any], words: str) -> None:

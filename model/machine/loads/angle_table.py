@@ -99,7 +99,7 @@ def _built(
 
 
 def _of_pressures(pressure_angles: tuple[float, ...], head: Head, during: During, **pressures: Any) -> AngleTable:
-    forces = piston_forces(head=head, **pressures)
+    forces = piston_forces(pressure_angles, head=head, **pressures)
     return AngleTable(angles=pressure_angles, forces=forces, datum=head, during=during)
 
 

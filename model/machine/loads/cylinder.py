@@ -169,8 +169,22 @@ PRESSURES = (
 
 
 def piston_forces(
-    bore: float, piston_rod: float, pressures: tuple[float, ...], back_pressure: float, head: Head
+    places: tuple[float, ...],
+    *,
+    bore: float,
+    piston_rod: float,
+    pressures: tuple[float, ...],
+    back_pressure: float,
+    head: Head,
 ) -> tuple[float, ...]:
-    """Return the forces, N outward, of pressures on a piston, less the back pressure on its other side."""
+    """Return the forces, N outward, of pressures on a piston, less the back pressure on its other side.
+
+    places: of the pressures, as many. Raises `InputError` for more or fewer, and as `piston_area` does.
+    """
+    if len(places) != len(pressures):
+        raise InputError(
+            f"a table needs a pressure at each of its points; got {len(pressures)} pressures at {len(places)} points; "
+            "add what is missing"
+        )
     area = piston_area(bore, piston_rod)
     return tuple((-area if head == "outer dead centre" else area) * (one - back_pressure) for one in pressures)

@@ -76,7 +76,7 @@ def _built(
 
 
 def _of_pressures(pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any) -> PositionTable:
-    forces = piston_forces(head=head, **pressures)
+    forces = piston_forces(pressure_positions, head=head, **pressures)
     return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during)
 
 
