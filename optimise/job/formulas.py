@@ -22,7 +22,7 @@ from ...objectives.reach import Ranges as Box
 from ...objectives.registry import FACTS, QUANTITIES
 from ..problem.requirements import Range
 from .dimensions import kind_of_formula
-from .units import closest, dimension_of, kind_for, kind_of, number_in_si, per_si, shown, to_si
+from .units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
 
 DIMENSIONS = ("crank", "rod", "offset")
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
@@ -68,8 +68,15 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 
     names: those besides the quantities that every job may name.
     """
+    if is_value(text):
+        return False
     known = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
-    return any(word in known or "." in word or (len(word) > 3 and closest(word, known)) for word in _WORD.findall(text))
+    return any(word in known or "." in word or (len(word) > 3 and closest(word, known)) for word in words_of(text))
+
+
+def words_of(text: object) -> list[str]:
+    """Return the words of a formula, names and units; none of what is no text."""
+    return _WORD.findall(text) if isinstance(text, str) else []
 
 
 class Formulas:

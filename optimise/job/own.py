@@ -24,7 +24,7 @@ from ...objectives.own.quantity import (
 )
 from ...objectives.registry import FACTS
 from . import formulas
-from .formulas import DIMENSIONS
+from .formulas import DIMENSIONS, words_of
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .units import kind_for, per_si, shown
@@ -185,7 +185,8 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         taken = name in FACTS or name == SLOW_STROKE
         if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = _stated(name.replace("_", " "), kind)
-    asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _keys(table)]
+    asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
+    asked += [word for name in names for word in words_of(parts[name]["formula"])]
     unknown = [name for name in dict.fromkeys(asked) if name not in {*FACTS, *tables, *names, SLOW_STROKE}]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
@@ -199,7 +200,7 @@ def _formulas(parts: object) -> tuple[str, ...]:
     given = parts.items() if isinstance(parts, Mapping) else ()
     return tuple(
         name
-        for name, part in itertools.islice(given, MOST_OWN)
+        for name, part in given
         if isinstance(name, str) and isinstance(part, Mapping) and "formula" in part and "function" not in part
     )
 
@@ -218,8 +219,12 @@ def _constraints(data: Mapping[str, Any]) -> Iterator[object]:
             yield option.get("constraints") if isinstance(option, Mapping) else None
 
 
-def _keys(table: object) -> list[str]:
-    return list(table) if isinstance(table, Mapping) else []
+def _names(table: object) -> Iterator[str]:
+    """Yield the names in the keys and the bounds of a table, those in formulas too."""
+    for key, value in table.items() if isinstance(table, Mapping) else ():
+        yield from words_of(key)
+        for bound in value.values() if isinstance(value, Mapping) else ():
+            yield from words_of(bound)
 
 
 def folders_of(folder: Path | None) -> list[str]:

@@ -15,6 +15,7 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
     SerializerFunctionWrapHandler,
     Tag,
@@ -22,6 +23,7 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
+from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.linkage import SlowStroke
@@ -60,6 +62,10 @@ class Target(Part):
     """A value to come near to. The field follows from the unit of the quantity."""
 
 
+_NAMED = "[A-Za-z_]{3}"
+"""Pattern of bounds that are formulas: a name is in them."""
+
+
 @dataclass(frozen=True)
 class _Bound(Physical):
     """Marks a bound: a physical value, or a formula, which stays a text until its names are known."""
@@ -70,6 +76,11 @@ class _Bound(Physical):
         if isinstance(value, str) and is_formula(value, self.names):
             return value
         return super().read(value)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = super().__get_pydantic_json_schema__(schema, handler)
+        about = {key: found.pop(key) for key in ("description", "examples")}
+        return {"anyOf": [*found.get("anyOf", [found]), {"type": "string", "pattern": _NAMED}], **about}
 
 
 class _Raw(Physical):

@@ -209,6 +209,15 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
     return number
 
 
+def is_value(text: str) -> bool:
+    """Return whether a text is one number, alone or with a unit of whatever kind."""
+    match = _VALUE.fullmatch(text.translate(_SUPERSCRIPTS)) if len(text) <= _LONGEST else None
+    try:
+        return match is not None and _unit(match[2] or "") is not None
+    except InputError:
+        return False
+
+
 def shown(value: object) -> str:
     """Return a value for a message: as a job file writes it, printable, of moderate length."""
     if value is None:

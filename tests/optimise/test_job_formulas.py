@@ -86,6 +86,14 @@ def test_a_bound_may_be_a_formula() -> None:
     assert asked["peak_torque - 3 * rms_torque"] == (None, 0.0)
 
 
+@pytest.mark.parametrize("value", ["1 foot", "3 inches", "0.2 m", "8e1 mm", "90 mm"])
+def test_a_bound_with_a_unit_whose_name_is_like_a_quantity_s_stays_a_value(value: str) -> None:
+    (found,) = [
+        item for item in parsed(constraints={"stroke": {"max": value}}).constraints if item.quantity == "stroke"
+    ]
+    assert found.upper is not None
+
+
 def test_varying_numbers_and_choices_take_formulas() -> None:
     options = [
         {"name": "short", "constraints": {"crank + rod": {"max": "150 mm"}}},
