@@ -20,7 +20,7 @@ _TOLERANCE = 1e-8
 """Relative: designs meet their constraints to this, so that one that sits on a bound counts as meeting it."""
 
 _FORM = re.compile(r"\s*([^<>=!≥≤]*[^<>=!≥≤\s])\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
-_NAME = re.compile(r"\w*", re.ASCII)
+_SIGN = re.compile(r"[-+*/^(.\s]")
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "<=": operator.le,
@@ -82,7 +82,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
 
 def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
     """Return the column of a name, or of a formula one that the table does not have, with the formula."""
-    if _NAME.fullmatch(name.strip()):
+    if not _SIGN.search(name.strip()):
         return find_column(name, keys), None
 
     from .row_formulas import find_formula  # brings what computes
