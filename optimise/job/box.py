@@ -108,9 +108,10 @@ def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Pro
     least, greatest = box.possible(of)
     assert of.reach is not None
     got = f"got {_bounds(constraint, of)}"
-    if constraint.lower is not None and constraint.lower > greatest + _SLACK * abs(greatest):
+    room = _SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
+    if constraint.lower is not None and constraint.lower > greatest + room:
         raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
-    if constraint.upper is not None and constraint.upper + _SLACK * abs(constraint.upper) < least:
+    if constraint.upper is not None and constraint.upper + room < least:
         raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.less}, or ask for more")
 
 

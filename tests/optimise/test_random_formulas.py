@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
 import math
 import string
 import time
@@ -150,7 +151,13 @@ def check_mutations(count: int, seed: int) -> tuple[int, float]:
             assert message.startswith("here: ")
             assert message.isprintable(), ascii(message)
             assert ";" in message, message
-        longest = max(longest, time.process_time() - begin)
+        taken_time = time.process_time() - begin
+        if taken_time > 0.5 * LONGEST:  # the collector of garbage may have come in between
+            begin = time.process_time()
+            with contextlib.suppress(JobError):
+                formulas().quantity(text, "here")
+            taken_time = min(taken_time, time.process_time() - begin)
+        longest = max(longest, taken_time)
     return taken, longest
 
 
