@@ -54,6 +54,8 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     for name, part in parts.items():
         if not isinstance(part, Mapping):
             raise JobError(f"quantity.{name[:60]}: must be a table of keys; got {shown(part)}; {write}")
+        if "formula" in part and "function" not in part:
+            continue  # runs nothing
         function = part.get("function")
         if not (isinstance(function, str) and FUNCTION.fullmatch(function)):
             got = f"got {shown(function)}" if "function" in part else "it is missing"

@@ -71,6 +71,10 @@ def test_designs_are_those_of_the_command_line(solved: Solved, client: httpx.Cli
         ),
         ({"sort": "rod"}, ("--sort", "rod")),
         ({"sort": "transmission_angle", "reverse": "true"}, ("--sort", "transmission_angle", "--reverse")),
+        (
+            {"where": "rod / crank >= 1.5", "sort": "crank+rod"},
+            ("--where", "rod / crank >= 1.5", "--sort", "crank+rod"),
+        ),
         ({"columns": "rod, peak_torque_Nm,rod"}, ("--columns", "rod, peak_torque_Nm,rod")),
     ],
 )

@@ -123,6 +123,18 @@ def test_functions_of_a_job_run_only_if_the_operator_allows_them(serve: Serve) -
     assert permitting.post("/jobs", json=asking(allowed)).status_code == 201
 
 
+def test_formulas_need_no_leave_of_the_operator(serve: Serve) -> None:
+    quantity = {"own": {"formula": "rod / crank"}}
+    objectives = {**EXAMPLE["objectives"], "own": "minimise"}  # type: ignore[dict-item]
+    job = {**EXAMPLE, "quantity": quantity, "objectives": objectives}
+    client = serve()
+    assert client.post("/jobs", json={"job": job}).status_code == 201
+    both = {**job, "quantity": {"own": {"formula": "rod / crank", "function": "os:remove"}}}
+    assert "only functions that the operator allows" in refused(client.post("/jobs", json={"job": both}), 422)
+    wrong = {**job, "quantity": {"own": {"formula": "rod / cranc"}}}
+    assert "did you mean crank" in refused(client.post("/jobs", json={"job": wrong}), 422)
+
+
 def test_limits_are_those_of_the_service_unless_lower_ones_are_asked_for(serve: Serve) -> None:
     client = serve(limits=Limits(seconds=100.0, memory=10**9))
     assert submitted(client)["limits"] == {"seconds": 100.0, "evaluations": None, "memory_bytes": 10**9}
