@@ -17,6 +17,7 @@ from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.kinds import RATIO
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.objectives.registry import QUANTITIES
+from tests.model.cases import AIR
 
 Array = NDArray[np.float64]
 FOUR = ["time_ratio", "peak_torque", "transmission_angle", "position_error"]
@@ -52,7 +53,7 @@ def designs(count: int, seed: int = 1) -> Array:
 
 
 def test_every_quantity_is_that_of_its_own_evaluation() -> None:
-    of, some, names = machine(), designs(40), list(QUANTITIES)
+    of, some, names = replace(machine(), loads=(*machine().loads, AIR)), designs(40), list(QUANTITIES)
     values, jacobian = sc.evaluate(of, some, names, gradients=True)
     assert values.shape == (40, len(names))
     assert jacobian.shape == (40, len(names), 3)

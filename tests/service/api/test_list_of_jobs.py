@@ -48,7 +48,7 @@ def test_rows_of_the_shipped_jobs_have_600_bytes_at_most(client: httpx.Client, s
         submit(store, {**preset["job"], "optimiser": quick})
     work(store, drain=True)
     jobs = store.jobs()
-    assert len(jobs) == 3
+    assert len(jobs) == 4
     for job in jobs:
         assert job.summary is not None
         assert job.summary["designs"] == 100
