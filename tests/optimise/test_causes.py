@@ -23,6 +23,7 @@ from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.problem.zero_objectives import idle_rules, require_ranking
 from slidercrank.optimise.solve import solve
+from tests.model.cases import fitted
 from tests.optimise.test_zero_objectives import job
 
 DESIGNS = np.array([[0.05, 0.2, 0.03], [0.03, 0.11, -0.02], [0.06, 0.25, 0.01]])
@@ -87,8 +88,8 @@ def test_every_quantity_without_some_cause_is_refused_with_its_remedy_or_finite_
             assert np.abs(found.values).max() > 1e-9 * np.abs(DESIGNS).max(), name
     closed = ("time_ratio", "transmission_angle", "stroke", "rod_to_offset", "rod_to_crank", "footprint")
     assert {name for name, count in refused.items() if not count} == set(closed)
-    for name in QUANTITIES:  # the remedies, followed
-        require_ranking(problem(machine(*CAUSES), name))
+    for name, quantity in QUANTITIES.items():  # the remedies, followed
+        require_ranking(problem(fitted(quantity, machine(*CAUSES)), name))
 
 
 @pytest.mark.parametrize("name", ["position_error", "position_error_rss", "self_locking_margin"])
