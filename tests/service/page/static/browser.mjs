@@ -41,11 +41,13 @@ const KINDS = Object.entries(UNITS).map(([name, units]) => ({
   inch: USUAL.inch[name] ?? Object.keys(units)[0],
 }));
 
+const SUFFIXES = { mm: "_mm", deg: "_deg", N: "_N", "N m": "_Nm", "m/s": "_m_s", "m/s^2": "_m_s2" };
+
 let chosen = "si";
 Object.defineProperty(globalThis, "localStorage", { value: { getItem: (name) => (name === "units" ? chosen : null) } });
 globalThis.fetch = async (url) => {
   if (url !== "api/v1/units") throw new Error(`nobody answers ${url}`);
-  return new Response(JSON.stringify({ inch: INCH, kinds: KINDS }));
+  return new Response(JSON.stringify({ inch: INCH, kinds: KINDS, suffixes: SUFFIXES }));
 };
 
 /** Choose the system of units: "si" or "inch". */

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { ends, fromShown, grouped, inShown, limitText, readySystem, text, unitOf, withUnit } from "../../../../../service/page/static/lib/numbers.js";
+import { ends, fromShown, grouped, inShown, limitText, readySystem, text, unitOf, valueOf, withUnit } from "../../../../../service/page/static/lib/numbers.js";
 import { choose, INCH } from "../browser.mjs";
 import { draws } from "../draws.mjs";
 
@@ -85,4 +85,13 @@ test("counts have their thousands apart", () => {
     const count = Math.floor(10 ** (whole(0, 900) / 100));
     assert.equal(grouped(count), count.toLocaleString("en-US"));
   }
+});
+
+test("a value is found by its name, whatever unit its key ends with", () => {
+  const record = { least_m_s: 1.5, least_m_s2: 2.5, greatest_mm: null, ratio: 3, note: "none", other_deg: "text" };
+  assert.deepEqual(valueOf(record, "least"), { value: 2.5, unit: "m/s^2" });
+  assert.deepEqual(valueOf({ least_m_s: 1.5 }, "least"), { value: 1.5, unit: "m/s" });
+  assert.deepEqual(valueOf(record, "greatest"), { value: null, unit: "mm" });
+  assert.deepEqual(valueOf(record, "ratio"), { value: 3, unit: "" });
+  for (const name of ["note", "other", "absent", ""]) assert.deepEqual(valueOf(record, name), { value: null, unit: "" });
 });
