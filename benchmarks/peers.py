@@ -15,8 +15,9 @@ from pymoo.optimize import minimize
 from pymoo.util.ref_dirs import get_reference_directions
 
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.evaluation import Evaluator
 
 from .machines import Array
 

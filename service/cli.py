@@ -48,6 +48,7 @@ _COMMANDS = (
         "certify",
         "compare",
         "like",
+        "round",
     ),
     *("check", "schema", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),

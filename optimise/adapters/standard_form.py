@@ -14,8 +14,8 @@ from ...objectives.quantity import Array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective
+from ..problem.violation import FEASIBLE, constraints_of, minimised
 from ..search.elimination import Sheet, sheets
-from ..search.evaluation import FEASIBLE, constraints_of, minimised
 
 if TYPE_CHECKING:
     from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint

@@ -17,9 +17,10 @@ from ...objectives.cycle_peak import CyclePeak
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
+from ..problem.violation import constraints_of
 from ..search.candidates import Table
 from ..search.elimination import UNKNOWNS
-from ..search.evaluation import Evaluator, constraints_of
+from ..search.evaluation import Evaluator
 from .cycle import Curve, best_angles
 from .enclosure import Array, Enclosure, beside, coordinate
 from .limits import Limits

@@ -8,8 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from ..search.elimination import Sheet, sheets
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from .boxes import Boxes, usable
 from .tree import Tree, pool
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..problem.requirements import Constraint
-from ..search.evaluation import FEASIBLE
+from ..problem.violation import FEASIBLE
 from .enclosure import INFLATION, Array, Enclosure
 
 _INSIDE = 1e-9  # relative: by how much a trial design stays off the limits

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE, constraints_of, minimised
 from ..search.assemble import span_of
 from ..search.candidates import Candidates
 from ..search.elimination import sheets
-from ..search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
+from ..search.evaluation import Evaluator
 from ..search.recorded import polish
 from .boxes import Boxes, usable
 from .certificate import Certificate, Status, Step, message_of

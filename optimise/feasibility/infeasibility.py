@@ -10,9 +10,10 @@ import numpy as np
 from ..engine.engine import Engine
 from ..front.stationarity import Array
 from ..problem.problem import Problem, Settings
+from ..problem.violation import FEASIBLE, constraints_of
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
-from ..search.evaluation import FEASIBLE, Evaluator, constraints_of
+from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 from ..search.violation import least_violation
 from .best import Best

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Sense, Word
-from ..search.evaluation import FEASIBLE
+from ..problem.violation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe
 

@@ -23,6 +23,8 @@ from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .picture import figure, svg
 from .progress import Progress
+from .rounded import Rounded
+from .rounding import rounded
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -195,6 +197,20 @@ class ParetoFront:
             raise InputError(f"no design of the front lies within {bounds}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
+
+    def rounded(self, row: int, to: float | Mapping[str, float], *, count: int = 5) -> Rounded:
+        """Return the best designs of round numbers near a design that keep every requirement, and what each costs.
+
+        to: a step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod": 1e-3})`.
+        Where no rounded design within 32 steps keeps all, the nearest are given, `met` is False. See `Rounded`.
+        """
+        part = self.part(row)
+        span, before = spread(self.values, size=self._sizes), np.abs(self.values[row])
+        own = np.maximum(np.where(np.isfinite(before), before, 0.0), self._sizes)  # of an objective that is constant
+        span = np.where(span > 0.0, span, np.where(own > 0.0, own, 1.0))
+        labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
+        stay = [f"{name} stays {label}" for name, label in zip(self.problem.choices, labels, strict=True)]
+        return rounded(part, self.dimensions[row], span, to, count=count, notes=stay)
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.

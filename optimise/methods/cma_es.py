@@ -20,8 +20,9 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from ..search.candidates import stacked
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed
 from .registry import Method, budget

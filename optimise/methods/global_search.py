@@ -9,8 +9,9 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from ..search.assemble import span_of
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
 from .local import by_slsqp, keep

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from ..search.assemble import span_of
 from ..search.candidates import Candidates
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 from ..search.search import BANDS, Archive, Run
 from .registry import Method, budget

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from ..search.candidates import Table
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .registry import budget
 

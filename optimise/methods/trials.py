@@ -11,7 +11,8 @@ import numpy as np
 
 from ..front.stationarity import Array
 from ..problem.problem import Problem
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..problem.violation import FEASIBLE
+from ..search.evaluation import Evaluator
 from .population import Generation, Rows
 
 if TYPE_CHECKING:

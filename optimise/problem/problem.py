@@ -92,7 +92,7 @@ class Problem:
     chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and constraints
     may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
-    only, see `slow_side`, and the time ratio is above 1, see `evaluation.constraints_of`.
+    only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`.
     """
 
     name: str

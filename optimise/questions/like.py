@@ -24,10 +24,11 @@ from ..front.stationarity import STATIONARY, Array
 from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings
 from ..problem.requirements import Constraint, Range
+from ..problem.violation import FEASIBLE
 from ..search.assemble import assemble, empty
 from ..search.candidates import Finished
 from ..search.elimination import UNKNOWNS, sheets
-from ..search.evaluation import FEASIBLE, Evaluator
+from ..search.evaluation import Evaluator
 from ..search.recorded import polish
 from ..search.sampling import generator
 from ..search.search import Archive, Run, enumerate_settled, explore, searched

@@ -10,7 +10,7 @@ from ..front.front import ParetoFront
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.robust import nominal
-from ..search.evaluation import FEASIBLE
+from ..problem.violation import FEASIBLE
 from ..solve import solve
 
 

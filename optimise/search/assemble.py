@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from ...model.kinematics.in_line import without_rounding
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.proportions import STROKE
-from ..front.constant import is_constant
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
+from ..front.slack import slack_of
 from ..front.stationarity import STATIONARY, Array, multipliers
 from ..problem.problem import Problem, choice_field
+from ..problem.violation import constraints_of
 from .candidates import Finished
-from .evaluation import Evaluator, constraints_of, sides
+from .evaluation import Evaluator
 from .fingerprint import versions
 from .pieces import ACTIVE
 from .search import Run
@@ -154,20 +155,8 @@ def _slacks(problem: Problem, dimensions: Array) -> Columns:
     for constraint in constraints_of(problem):
         quantity = problem.quantity(constraint.quantity)
         values = quantity.evaluate(problem.mechanism, dimensions).values
-        slack = np.full(len(values), np.inf)
-        if constraint.equality:
-            slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
-        else:
-            for side, bound, _ in sides(constraint):
-                slack = np.minimum(slack, _clear(values, bound, side * (bound - values)))
-        slacks[f"slack_{quantity.field}"] = slack * quantity.unit.factor + 0.0  # no negative zero
+        slacks[f"slack_{quantity.field}"] = slack_of(constraint, values) * quantity.unit.factor + 0.0  # no -0
     return slacks
-
-
-def _clear(values: Array, bound: float | None, slack: Array) -> Array:
-    """Return distances from a bound; 0 where a value differs from it by rounding."""
-    on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
-    return np.where(on_it, 0.0, slack)
 
 
 def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:

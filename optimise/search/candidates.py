@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..front.hypervolume import Stand, nondominated, unheard
 from ..front.stationarity import STATIONARY, Array
-from .evaluation import FEASIBLE, Evaluator
+from ..problem.violation import FEASIBLE
+from .evaluation import Evaluator
 from .sampling import apart
 
 EQUAL = 1e-9

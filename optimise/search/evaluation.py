@@ -7,65 +7,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.cycle.gas_cycle import may_deliver_nothing
-from ...objectives.quantity import Array, Pieces, Quantity
-from ...objectives.self_locking import SELF_LOCKING_MARGIN
-from ...objectives.time_ratio import TIME_RATIO
-from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ...objectives.volumetric_efficiency import VOLUMETRIC_EFFICIENCY
+from ...objectives.quantity import Array, Pieces
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
-from ..problem.requirements import Constraint, Objective, Range
+from ..problem.requirements import Objective, Range
+from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import UNKNOWNS, Sheet
 from .judging import exactly, joined, quickly
 from .pieces import Rows
 
-FEASIBLE = 1e-9
-"""Relative violation of a constraint that counts as rounding."""
 _HUGE = 1e100
-Side = tuple[float, float, float]
-"""A side of what is asked: 1 from above or -1 from below, the bound, and the scale of what lies beyond."""
-
-
-def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
-    """Return the constraints of a problem with the default floors where none is set.
-
-    They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
-    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio.
-    """
-    found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
-    if problem.mechanism.fullest.friction.acts:
-        found = _with_floor(found, SELF_LOCKING_MARGIN)
-    if may_deliver_nothing(problem.mechanism):
-        found = _with_floor(found, VOLUMETRIC_EFFICIENCY)
-    if problem.slow_stroke is not None:
-        found = _with_floor(found, TIME_RATIO, above=1.0)
-    return found
-
-
-def _with_floor(
-    constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
-) -> tuple[Constraint, ...]:
-    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
-    assert of.floor is not None
-    own = [c for c in constraints if c.quantity == of.name]
-    if any(c.lower is not None and (above is None or c.lower > above) for c in own):
-        return constraints
-    upper, least = next((c.upper for c in own), None), above or 0.0
-    lower = of.floor if upper is None else min(of.floor, least + 0.5 * (upper - least))
-    kept = [c for c in constraints if c.quantity != of.name]
-    return (*kept, Constraint(quantity=of.name, lower=float(lower), upper=upper))
-
-
-def minimised(objective: Objective, values: Array) -> Array:
-    """Return an objective's values as they are minimised: negated if maximised, a distance if it has a target."""
-    if objective.sense == "maximise":
-        return -values
-    if objective.target is not None:
-        return np.abs(values - objective.target)
-    return values
 
 
 class Evaluator:
@@ -89,7 +42,7 @@ class Evaluator:
         self.mechanism = problem.mechanism
         self.dimension = len(sheet.free)
         remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
-        self.constraints = tuple(sorted(remaining, key=lambda c: _costly(problem.quantity(c.quantity))))
+        self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
@@ -123,13 +76,13 @@ class Evaluator:
         violation = self._geometry_violation(dimensions)
         self.evaluations += len(dimensions)
         # What is out of reach already needs no cycle computed.
-        for costly in (False, True):
-            constraints = [c for c in self.constraints if _costly(self.problem.quantity(c.quantity)) == costly]
-            rows = np.flatnonzero(violation <= band + FEASIBLE if costly else np.isfinite(violation))
+        for slow in (False, True):
+            constraints = [c for c in self.constraints if costly(self.problem.quantity(c.quantity)) == slow]
+            rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
                 found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
                 for constraint, values in zip(constraints, found, strict=True):
-                    violation[rows] = np.maximum(violation[rows], _violation(constraint, values))
+                    violation[rows] = np.maximum(violation[rows], violated_by(constraint, values))
         rows = np.flatnonzero(violation <= band + FEASIBLE)
         objectives = np.zeros((len(rows), len(self.problem.objectives)))
         if len(rows):
@@ -155,12 +108,12 @@ class Evaluator:
             # A linear rule may give an offset of the other sign, which is of the other sheet.
             value = dimensions[:, UNKNOWNS.index(name)] * (self.sheet.sign if name == "offset" else 1.0)
             for side in _range_sides(self.sheet.bounds[name]):
-                violation = np.fmax(violation, _excess(value, *side))
+                violation = np.fmax(violation, excess(value, *side))
         rows = np.flatnonzero(turns)
         for constraint in self.problem.constraints:
             if constraint.quantity in self.sheet.eliminated and len(rows):
                 values = self.problem.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
-                spurious = _violation(constraint, values) > FEASIBLE
+                spurious = violated_by(constraint, values) > FEASIBLE
                 violation[rows[spurious]] = np.inf
         return violation
 
@@ -220,27 +173,9 @@ def _in_box(found: Pieces, jacobian: Array) -> Pieces:
     return Pieces(values, slopes, found.labels, found.least, other)
 
 
-def _costly(quantity: Quantity) -> bool:
-    return not quantity.of_dimensions
-
-
-def sides(constraint: Constraint) -> list[Side]:
-    """Return the sides of a constraint that are not open."""
-    bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
-    return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
-
-
 def _range_sides(bounds: Range) -> list[Side]:
     scale = max(bounds.upper, 1e-300)
     return [(1.0, bounds.upper, scale), (-1.0, bounds.lower, scale)]
-
-
-def _violation(constraint: Constraint, values: Array) -> Array:
-    """Relative violation (n,), zero or less where the constraint holds."""
-    violation = np.full(len(values), -np.inf)
-    for side in sides(constraint):
-        violation = np.maximum(violation, _excess(values, *side))
-    return np.where(np.isnan(values), np.inf, violation)
 
 
 def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
@@ -258,11 +193,7 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
 
 def _beyond(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
     """Return by how much pieces lie beyond a side of what is asked, relative."""
-    return Pieces(_excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
-
-
-def _excess(values: Array, side: float, bound: float, scale: float) -> Array:
-    return (values - bound if side > 0.0 else bound - values) / scale
+    return Pieces(excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
 def _held(pieces: Pieces, side: float) -> Pieces:

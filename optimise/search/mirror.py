@@ -17,8 +17,8 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import constraints_of
 from .elimination import Sheet
-from .evaluation import constraints_of
 from .sampling import generator
 
 _TRIED = 512  # random designs, of which those that turn fully count

@@ -14,9 +14,10 @@ from ..front.hypervolume import Stand, nondominated
 from ..front.progress import REPEATING, Progress
 from ..front.stationarity import Array
 from ..problem.problem import Problem
+from ..problem.violation import FEASIBLE
 from .candidates import Candidates, Finished
 from .checkpoints import Checkpoints
-from .evaluation import FEASIBLE, Evaluator
+from .evaluation import Evaluator
 from .growth import Growth
 from .recorded import polished
 from .sampling import around, first_samples, generator

@@ -67,7 +67,7 @@ class JudgedRule:
 
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
-    from ...optimise.search.evaluation import constraints_of
+    from ...optimise.problem.violation import constraints_of
 
     found = []
     for constraint in constraints_of(part):

@@ -20,8 +20,9 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
+from ...optimise.problem.violation import FEASIBLE, constraints_of
 from ...optimise.search.elimination import UNKNOWNS, Sheet, sheets
-from ...optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of
+from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
 from .partial_job import is_closed

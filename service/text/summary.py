@@ -15,10 +15,10 @@ from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
+from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.elimination import UNKNOWNS, sheets
-from ...optimise.search.evaluation import constraints_of
 
 
 def summarise(problem: Problem) -> dict[str, Any]:

@@ -12,8 +12,8 @@ import pytest
 from slidercrank.optimise.front.constant import SAME, is_constant, spread
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling, unheard
 from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.assemble import columns_of
-from slidercrank.optimise.search.evaluation import constraints_of
 from tests.optimise.problems import problem
 
 PAGE = Path(__file__).parents[2] / "service" / "page" / "static" / "lib" / "constant.js"

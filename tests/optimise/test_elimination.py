@@ -13,8 +13,9 @@ from scipy.optimize import minimize
 
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
+from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import UNKNOWNS, Sheet, sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import CLOSED, Array
 from tests.optimise.problems import Bounds, Ends, degrees, problem

@@ -15,8 +15,9 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
+from slidercrank.optimise.problem.violation import FEASIBLE, constraints_of, minimised
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator, constraints_of, minimised
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.pieces import Rows
 from tests.optimise.independent import Array, excess, objectives, value
 from tests.optimise.problems import Bounds, degrees, problem

@@ -19,8 +19,9 @@ from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
+from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import Evaluator, constraints_of
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.service.text.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))

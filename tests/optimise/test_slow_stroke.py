@@ -14,9 +14,9 @@ from slidercrank.objectives.time_ratio import TIME_RATIO
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Variant
+from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import constraints_of
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 

@@ -155,6 +155,7 @@ def test_library_and_commands_work_without_extras(script: str, place: Path, root
         ["analyse", job, *LENGTHS, "--show", "friction", "--show", "tolerances"],
         ["optimise", job, "--no-figures", "--designs", "4"],
         ["like", "latest", "1", "--where", "transmission_angle >= 30 deg"],
+        ["round", "latest", "1", "--to", "0.5 mm"],
         ["compare", "1", "2"],
         ["jobs"],
         ["submit", job, "--store", "others.db"],

@@ -79,6 +79,7 @@ def test_help_names_every_command(command: Command) -> None:
         "front",
         "export",
         "like",
+        "round",
         "compare",
         "cases",
     ):

@@ -29,7 +29,8 @@ import numpy as np
 
 from ...front.stationarity import Array
 from ...problem.problem import Problem
-from ...search.evaluation import FEASIBLE, Evaluator
+from ...problem.violation import FEASIBLE
+from ...search.evaluation import Evaluator
 from ...search.sampling import apart, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
 from ..local import spent

@@ -21,8 +21,9 @@ from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.evaluation import Evaluator
 from tests.optimise.problems import JOBS, MACHINE, Bounds, degrees, problem, shipped
 
 CLOSED = ("time_ratio", "transmission_angle", "stroke", "rod_to_offset", "rod_to_crank", "footprint")

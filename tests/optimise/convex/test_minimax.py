@@ -11,8 +11,9 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.methods.minimax.minimax import starts
 from slidercrank.optimise.methods.minimax.scp import Descent, Point, residual_of
 from slidercrank.optimise.problem.problem import Problem, Settings
+from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import explore
 from slidercrank.optimise.solve import solve
 from tests.optimise.convex.random_problems import random_problem

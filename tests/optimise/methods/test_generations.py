@@ -17,8 +17,9 @@ from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.population import Brood, Generation, generation_seed
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.evaluation import FEASIBLE, Evaluator
+from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem

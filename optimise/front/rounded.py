@@ -1,0 +1,135 @@
+"""Designs of round numbers with what they cost, and which requirement is tightest or missed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...objectives.tables.varying_column import varying_column
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint
+from ..problem.violation import FEASIBLE, violated_by
+from .slack import slack_of
+from .stationarity import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rounded:
+    """Designs of round numbers near a design of a front, the best first.
+
+    Those that keep every requirement, the least loss first, none dominated by another; where `met` is False those that
+    come nearest: that of the least relative violation first, then those that miss more but lose less.
+
+    problem: that they answer, its choices in place. given: (3 + v,), the design. steps: of the numbers that were
+    rounded, SI. dimensions: (n, 3 + v). before: (m,), the
+    design's objectives, SI. values: (n, m). losses: (n, m), by how much each objective is worse, as a share of its
+    range over the front; below zero where it is better. constraints: c of them, floors included. held: (n, c), their
+    values. reach: multiples of a step looked at on either side. judged: how many combinations turned fully and were
+    judged. kept: how many of them keep every requirement. notes: what stayed as it was, in words.
+    """
+
+    problem: Problem
+    given: Array
+    steps: Mapping[str, float]
+    dimensions: Array
+    before: Array
+    values: Array
+    losses: Array
+    held: Array
+    constraints: tuple[Constraint, ...]
+    reach: int
+    judged: int
+    kept: int
+    notes: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.dimensions)
+
+    def __repr__(self) -> str:
+        return f"Rounded({self.problem.name!r}: {self.message})"
+
+    @property
+    def met(self) -> bool:
+        """Whether the designs keep every requirement."""
+        return self.kept > 0
+
+    @property
+    def message(self) -> str:
+        """What was found, in words."""
+        if not self.judged:
+            return f"no rounded design within {self.reach} steps turns fully; give smaller steps"
+        if self.met:
+            keep = "keeps" if self.kept == 1 else "keep"
+            return f"{self.kept} of {self.judged} rounded designs within {self.reach} steps {keep} every requirement"
+        told = "; the nearest are told" if len(self) else " or has all that is required; give smaller steps"
+        return f"none of {self.judged} rounded designs within {self.reach} steps keeps every requirement{told}"
+
+    @cached_property
+    def violations(self) -> Array:
+        """Relative violation (n, c) of every constraint, zero or less where it is kept."""
+        columns = [violated_by(constraint, self.held[:, j]) for j, constraint in enumerate(self.constraints)]
+        return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
+
+    def tightest(self, row: int) -> str | None:
+        """Return the quantity of the inequality that a design is nearest to break, relative; None without one."""
+        rest = [
+            (self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints) if not item.equality
+        ]
+        return max(rest)[1] if rest else None
+
+    def missed(self, row: int) -> list[str]:
+        """Return the quantities whose requirement a design misses, the worst first."""
+        found = [(-self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
+        return [name for short, name in sorted(found) if -short > FEASIBLE]
+
+    @property
+    def names(self) -> dict[str, tuple[str, float]]:
+        """The column of each number of a design, with the factor from SI to its unit."""
+        more = {item.name: varying_column(item) for item in self.problem.mechanism.varying}
+        lengths = {name: (f"{name}_mm", 1e3) for name in ("crank", "rod", "offset")}
+        return lengths | {name: (column, unit.factor) for name, (column, unit) in more.items()}
+
+    @cached_property
+    def columns(self) -> dict[str, Array]:
+        """The columns of the table of designs, see `designs`."""
+        found: dict[str, Array] = {}
+        for place, (column, factor) in enumerate(self.names.values()):
+            found[column] = _written(self.dimensions[:, place] * factor)
+        for place, wanted in enumerate(self.problem.objectives):
+            of = self.problem.quantity(wanted.quantity)
+            now, before = self.values[:, place], self.before[place]
+            with np.errstate(invalid="ignore", divide="ignore"):
+                change = np.where(now == before, 0.0, now - before)
+                percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
+            found[of.field] = now * of.unit.factor
+            found[f"change_{of.field}"] = change * of.unit.factor
+            found[f"change_{of.name}_percent"] = percent
+        found["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
+        for place, constraint in enumerate(self.constraints):
+            of = self.problem.quantity(constraint.quantity)
+            found[f"slack_{of.field}"] = slack_of(constraint, self.held[:, place]) * of.unit.factor + 0.0
+        return found
+
+    @cached_property
+    def designs(self) -> pd.DataFrame:
+        """The designs as a table of pandas, one row a design.
+
+        Columns: crank, rod, offset and varying numbers; each objective, its change from the design of the front,
+        `change_...`, and that in percent; `loss_percent`, the greatest loss in percent of the objective's range over
+        the front; `slack_...` of every requirement, below zero where it is missed; `tightest` requirement.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(self.columns | {"tightest": [self.tightest(row) for row in range(len(self))]})
+
+
+def _written(values: Array) -> Array:
+    """Return round numbers without the rounding of their conversion: 73.5, not 73.50000000000001."""
+    return np.array([float(f"{value:.12g}") for value in values.tolist()])

@@ -1,0 +1,27 @@
+"""Slack of a constraint: the distance of values from the nearer bound."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..problem.requirements import Constraint
+from ..problem.violation import sides
+from .constant import is_constant
+from .stationarity import Array
+
+
+def slack_of(constraint: Constraint, values: Array) -> Array:
+    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, below 0 where it is missed."""
+    slack = np.full(len(values), np.inf)
+    if constraint.equality:
+        slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
+    else:
+        for side, bound, _ in sides(constraint):
+            slack = np.minimum(slack, _clear(values, bound, side * (bound - values)))
+    return slack
+
+
+def _clear(values: Array, bound: float | None, slack: Array) -> Array:
+    """Return distances from a bound; 0 where a value differs from it by rounding."""
+    on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
+    return np.where(on_it, 0.0, slack)

@@ -1,0 +1,82 @@
+"""What a problem asks of a design as numbers: its constraints with the floors, by how much each is violated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...model.cycle.gas_cycle import may_deliver_nothing
+from ...objectives.quantity import Array, Quantity
+from ...objectives.self_locking import SELF_LOCKING_MARGIN
+from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
+from ...objectives.volumetric_efficiency import VOLUMETRIC_EFFICIENCY
+from .problem import Problem
+from .requirements import Constraint, Objective
+
+FEASIBLE = 1e-9
+"""Relative violation of a constraint that counts as rounding."""
+Side = tuple[float, float, float]
+"""A side of what is asked: 1 from above or -1 from below, the bound, and the scale of what lies beyond."""
+
+
+def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
+    """Return the constraints of a problem with the default floors where none is set.
+
+    They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
+    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio.
+    """
+    found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
+    if problem.mechanism.fullest.friction.acts:
+        found = _with_floor(found, SELF_LOCKING_MARGIN)
+    if may_deliver_nothing(problem.mechanism):
+        found = _with_floor(found, VOLUMETRIC_EFFICIENCY)
+    if problem.slow_stroke is not None:
+        found = _with_floor(found, TIME_RATIO, above=1.0)
+    return found
+
+
+def _with_floor(
+    constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
+) -> tuple[Constraint, ...]:
+    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
+    assert of.floor is not None
+    own = [c for c in constraints if c.quantity == of.name]
+    if any(c.lower is not None and (above is None or c.lower > above) for c in own):
+        return constraints
+    upper, least = next((c.upper for c in own), None), above or 0.0
+    lower = of.floor if upper is None else min(of.floor, least + 0.5 * (upper - least))
+    kept = [c for c in constraints if c.quantity != of.name]
+    return (*kept, Constraint(quantity=of.name, lower=float(lower), upper=upper))
+
+
+def minimised(objective: Objective, values: Array) -> Array:
+    """Return an objective's values as they are minimised: negated if maximised, a distance if it has a target."""
+    if objective.sense == "maximise":
+        return -values
+    if objective.target is not None:
+        return np.abs(values - objective.target)
+    return values
+
+
+def sides(constraint: Constraint) -> list[Side]:
+    """Return the sides of a constraint that are not open."""
+    bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
+    return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
+
+
+def violated_by(constraint: Constraint, values: Array) -> Array:
+    """Return the relative violation (n,), zero or less where the constraint holds; infinite without a value."""
+    violation = np.full(len(values), -np.inf)
+    for side in sides(constraint):
+        violation = np.maximum(violation, excess(values, *side))
+    return np.where(np.isnan(values), np.inf, violation)
+
+
+def excess(values: Array, side: float, bound: float, scale: float) -> Array:
+    """Return by how much values lie beyond a side of what is asked, in units of its scale."""
+    return (values - bound if side > 0.0 else bound - values) / scale
+
+
+def costly(quantity: Quantity) -> bool:
+    """Return whether a quantity needs the cycle computed: no closed form gives it."""
+    return not quantity.of_dimensions
