@@ -100,8 +100,9 @@ class Rounded:
     def columns(self) -> dict[str, Array]:
         """The columns of the table of designs, see `designs`."""
         found: dict[str, Array] = {}
-        for place, (column, factor) in enumerate(self.names.values()):
-            found[column] = _written(self.dimensions[:, place] * factor)
+        for place, (name, (column, factor)) in enumerate(self.names.items()):
+            shown = self.dimensions[:, place] * factor
+            found[column] = np.array([written(value) for value in shown.tolist()]) if name in self.steps else shown
         for place, wanted in enumerate(self.problem.objectives):
             of = self.problem.quantity(wanted.quantity)
             now, before = self.values[:, place], self.before[place]
@@ -130,6 +131,6 @@ class Rounded:
         return pd.DataFrame(self.columns | {"tightest": [self.tightest(row) for row in range(len(self))]})
 
 
-def _written(values: Array) -> Array:
-    """Return round numbers without the rounding of their conversion: 73.5, not 73.50000000000001."""
-    return np.array([float(f"{value:.12g}") for value in values.tolist()])
+def written(value: float) -> float:
+    """Return a round number without the rounding of its conversion: 73.5, not 73.50000000000001."""
+    return float(f"{value:.12g}")

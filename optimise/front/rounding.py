@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
+from ...objectives.kinds import LENGTH
 from ...objectives.robust.quantity import RobustQuantity
+from ...objectives.tables.varying_column import varying_column
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
@@ -28,7 +30,7 @@ LENGTHS = ("crank", "rod", "offset")
 REACHES = (16, 32)
 """Multiples of a step on either side of the design that are looked at, the next ones where none before met all."""
 _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
-_NEAREST = 256  # designs of least violation that are looked at for those that lose less
+_NEAREST, _AT_ONCE = 256, 4096  # designs of least violation that are looked at, and judged at once to find them
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
 _TIE = 9  # decimals of a share of a range: nearer together is rounding
 
@@ -96,15 +98,17 @@ class _Search:
 
     def best(self) -> Array:
         """Return the best designs (n, 3 + v) of the least window that has any which keep all; else the nearest."""
-        designs, short = np.zeros((0, len(self.given))), np.zeros(0)
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
             short = self._violation(designs, self.quick)
-            keep = self._kept(designs, np.flatnonzero(short <= FEASIBLE))
-            if len(keep):
+            kept = designs[short <= FEASIBLE]
+            kept = kept[self._violation(kept, self.slow) <= FEASIBLE]
+            values = self.values(kept)
+            had = ~np.isnan(values).any(axis=1)
+            if had.any():
                 break
-        self.judged, self.kept = len(designs), len(keep)
-        return self._ranked(designs[keep]) if len(keep) else self._nearest(designs, short)
+        self.judged, self.kept = len(designs), int(had.sum())
+        return self._ranked(kept[had], values[had]) if had.any() else self._nearest(designs, short)
 
     def values(self, designs: Array) -> Array:
         """Return the objectives (n, m) of designs, SI."""
@@ -147,10 +151,18 @@ class _Search:
         found = [x for x in every if lower - room <= x <= upper + room and (side is None or side * x > 0.0)]
         if not found and reach == 1:
             raise InputError(
-                f"the step of {name} must have a multiple from {lower:.6g} to {upper:.6g}, where it may lie (SI)"
-                f"{'' if side is None else ', on the side of the slow stroke'}; got {step:.6g}; give a smaller one"
+                f"the step of {name} must have a multiple within its range, {self._told(name, lower)} to "
+                f"{self._told(name, upper)}{'' if side is None else ', on the side that slow_stroke asks for'}; got "
+                f"{self._told(name, step)}; give a smaller one, or none, so that it stays"
             )
         return found
+
+    def _told(self, name: str, value: float) -> str:
+        """Return a number of a design in its shown unit."""
+        unit = LENGTH.metric
+        for item in self.part.mechanism.varying:
+            unit = varying_column(item)[1] if item.name == name else unit
+        return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
 
     def _reaches(self) -> list[int]:
         """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""
@@ -170,7 +182,8 @@ class _Search:
         grid = np.meshgrid(*self._ladders(reach), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         crank, rod, offset = designs.T[:3]
-        return np.asarray(designs[(crank > 0.0) & (rod > crank + np.abs(offset))])
+        # Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
+        return np.asarray(designs[(crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod)])
 
     def _violation(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
         """Return the greatest relative violation (n,) of some constraints, 0 where they hold."""
@@ -180,11 +193,6 @@ class _Search:
             found = np.maximum(found, violated_by(constraint, held[:, column]))
         return found
 
-    def _kept(self, designs: Array, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return which of the rows, which keep what closed forms tell, keep everything."""
-        rows = rows[self._violation(designs[rows], self.slow) <= FEASIBLE]
-        return rows[~np.isnan(self.values(designs[rows])).any(axis=1)]
-
     def _order(self, designs: Array, losses: Array) -> NDArray[np.int64]:
         """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
@@ -192,8 +200,7 @@ class _Search:
         total = np.clip(losses, 0.0, None).sum(axis=1)
         return np.lexsort((way, np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
 
-    def _ranked(self, designs: Array) -> Array:
-        values = self.values(designs)
+    def _ranked(self, designs: Array, values: Array) -> Array:
         losses = self.losses(values)
         order = self._order(designs, losses)
         if losses.shape[1] == 1:  # one dominates all others: the next best are worth to be known
@@ -205,8 +212,8 @@ class _Search:
         """Return the designs that miss least: the nearest, then those that miss more but lose less."""
         order = np.argsort(short, kind="stable")
         taken, missed = np.zeros(0, dtype=np.int64), np.zeros(0)
-        for begin in range(0, len(order), _NEAREST):
-            rows = order[begin : begin + _NEAREST]
+        for begin in range(0, len(order), _AT_ONCE):
+            rows = order[begin : begin + _AT_ONCE]
             if len(missed) == _NEAREST and missed[-1] <= short[rows[0]]:
                 break  # what closed forms tell is less than all
             worst = np.maximum(short[rows], self._violation(designs[rows], self.slow))
@@ -243,8 +250,8 @@ def _steps(to: float | Mapping[str, float], ranges: Mapping[str, tuple[float, fl
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         if step < _SMALLEST * max(abs(end) for end in ranges[name]):
             raise InputError(
-                f"the step of {name} must be {_SMALLEST:g} of its range's greatest number or more; got {step:g}, which "
-                "is rounding; give a greater one"
+                f"the step of {name} must be {_SMALLEST:g} of its range's greatest number or more; got {step:g} of "
+                f"{max(abs(end) for end in ranges[name]):g} (SI); give a greater one"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 

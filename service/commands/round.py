@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,7 +11,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.columns import DIMENSIONS, find_column, key_in, split_unit
+from ..designs.columns import DIMENSIONS, find_column, key_in, metric_key, split_unit
 from ..designs.picking_options import require_alone
 from ..designs.shown_units import record_in
 from ..runs.result import json_text
@@ -60,7 +61,7 @@ def round(
         found = front.rounded(number - 1, steps, count=count)
         record = {"run": str(folder), "number": number} | _record(found)
     if json:
-        give(json_text(record_in(record, units)))
+        give(json_text(_in(units, record, found)))
     elif len(found):
         _show(f"{result.name}: design {number}", record, found, units)
     if not found.met:
@@ -83,6 +84,7 @@ def _steps(to: list[str], part: Problem) -> dict[str, float]:
     found: dict[str, float] = {}
     for text in to:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
+        name = metric_key(name)
         if equals and name not in names:
             raise InputError(f"--to is for {', '.join(kinds)}; got {name!r}; name one of them, like {_EXAMPLE}")
         key = names[name] if equals else ""
@@ -96,9 +98,10 @@ def _steps(to: list[str], part: Problem) -> dict[str, float]:
 def _step(text: str, kind: Any) -> float:
     """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in"."""
     fraction = _FRACTION.fullmatch(text)
-    if fraction is None or int(fraction[2]) == 0:
-        return value_option("--to", text, kind, sign="positive")
-    return value_option("--to", f"{fraction[1]} {fraction[3]}", kind, sign="positive") / int(fraction[2])
+    if fraction is not None and int(fraction[2]):
+        with contextlib.suppress(InputError):  # told below, with the text as it is
+            return value_option("--to", f"{fraction[1]} {fraction[3]}", kind, sign="positive") / int(fraction[2])
+    return value_option("--to", text, kind, sign="positive")
 
 
 def _record(found: Rounded) -> dict[str, Any]:
@@ -124,6 +127,17 @@ def _record(found: Rounded) -> dict[str, Any]:
         "designs": rows,
         "notes": list(found.notes),
     }
+
+
+def _in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
+    """Return the answer in a system of units, its round numbers as they are written there."""
+    from ...optimise.front.rounded import written
+
+    told: dict[str, Any] = record_in(record, units)
+    keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
+    for row in (told["steps"], *told["designs"]):
+        row.update({key: written(row[key]) for key in keys})
+    return told
 
 
 def _sized(found: Rounded, design: Any) -> list[tuple[tuple[str, float], float]]:

@@ -1,0 +1,334 @@
+"""Designs of round numbers near a design of a front, against every combination judged one by one."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.machine.varying import Varying
+from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.optimise.front.rounded import Rounded
+from slidercrank.optimise.problem.problem import Problem, Variant
+from slidercrank.optimise.problem.requirements import Range
+from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.solve import solve
+from tests.optimise.problems import MACHINE, Bounds, Ends, degrees, polish_few, problem
+
+NAMES = ("crank", "rod", "offset", "slider_mass")
+WISHES: dict[str, Any] = {
+    "time_ratio": "maximise",
+    "transmission_angle": "maximise",
+    "peak_torque": "minimise",
+    "position_error": "minimise",
+    "footprint": "minimise",
+    "peak_guide_force": "minimise",
+    "rms_torque": "minimise",
+    "stroke": 0.1503,
+}
+HELD: dict[str, Bounds] = {"stroke": (0.15, 0.152), "transmission_angle": (degrees(30.0), None)}
+PLAIN: dict[str, Any] = {"time_ratio": "maximise", "transmission_angle": "maximise"}
+
+
+def random_case(seed: int) -> tuple[Problem, dict[str, float]]:
+    """Return a small problem and steps for some of its numbers."""
+    random = np.random.default_rng([16, seed])
+    held: dict[str, Bounds] = {"transmission_angle": (degrees(random.uniform(20.0, 45.0)), None)}
+    wished = [name for name in random.permutation(list(WISHES)).tolist() if name != "stroke"]
+    stroke = random.choice(["band", "narrow", "equal", "aimed at"])
+    if stroke == "aimed at":
+        wished.insert(0, "stroke")
+    else:
+        bands: dict[str, Bounds] = {"band": (0.148, 0.156), "narrow": (0.15, 0.1501), "equal": 0.15}
+        held["stroke"] = bands[stroke]
+    proportion = random.choice(["none", "equal", "between"])
+    if proportion != "none":
+        held["rod_to_offset"] = 3.2 if proportion == "equal" else (3.0, 6.0)
+    if random.random() < 0.3:
+        held["peak_slider_acceleration"] = (None, random.uniform(90.0, 200.0))
+    machine = MACHINE
+    if random.random() < 0.4:
+        machine = replace(
+            MACHINE, varying=(Varying(name="slider_mass", sets=(("slider_mass", 1.0),), lower=0.9, upper=2.3),)
+        )
+    offsets: list[Ends] = [(0.02, 0.2), (-0.2, 0.2), 0.0503]
+    offset = offsets[random.choice(3, p=[0.6, 0.25, 0.15])]
+    asked = problem(
+        {name: WISHES[name] for name in wished[: random.integers(1, 5)]},
+        held,
+        offset=offset if proportion == "none" else (0.02, 0.2),
+        mechanism=machine,
+        designs=6,
+        samples=256,
+    )
+    every = [name for name in NAMES[: 3 + len(machine.varying)] if random.random() < 0.85] or ["rod"]
+    steps = {name: float(random.choice([0.000125, 0.0005, 0.001, 0.00254 / 4, 0.005])) for name in every}
+    if "slider_mass" in steps:
+        steps["slider_mass"] = 0.1
+    return asked, steps
+
+
+def combinations(asked: Problem, given: np.ndarray, steps: dict[str, float], reach: int) -> np.ndarray:
+    """Return every combination of the multiples around a design within the ranges, one by one."""
+    choices = []
+    ranges: list[Range | Varying] = [asked.crank, asked.rod, asked.offset, *asked.mechanism.varying]
+    for value, name, ends in zip(given.tolist(), NAMES, ranges, strict=False):
+        if name not in steps or ends.lower == ends.upper:
+            choices.append([value])
+            continue
+        step, k = steps[name], round(value / steps[name])
+        near = [k * step for k in range(k - reach - 2, k + reach + 3)]
+        below = sorted(x for x in near if x < value - 1e-9 * abs(value))[-reach:]
+        above = sorted(x for x in near if x > value + 1e-9 * abs(value))[:reach]
+        on = [x for x in near if abs(x - value) <= 1e-9 * abs(value)]
+        if on:  # the multiple itself is the first on either side
+            below, above = below[1:], above[: reach - 1]
+        choices.append([x for x in [*below, *on, *above] if ends.lower - 1e-12 <= x <= ends.upper + 1e-12])
+    return np.array(list(itertools.product(*choices)))
+
+
+def brute_force(front: ParetoFront, row: int, steps: dict[str, float], reach: int) -> tuple[np.ndarray, ...]:
+    """Return designs that turn, their greatest relative miss, and their losses, from `Problem.evaluate` alone."""
+    asked = front.problem
+    designs = combinations(asked, front.dimensions[row], steps, reach)
+    held = {item.quantity: item for item in asked.constraints}
+    values = asked.evaluate(designs, [*held, *(item.quantity for item in asked.objectives)])
+    before = asked.evaluate(front.dimensions[row])
+    turns = ~np.isnan(values).all(axis=1) & (designs[:, 1] - designs[:, 0] - abs(designs[:, 2]) > 1e-9)
+    designs, values = designs[turns], values[turns]
+    miss = np.zeros(len(designs))
+    for column, item in enumerate(held.values()):
+        for bound, sign in ((item.lower, 1.0), (item.upper, -1.0)):
+            if bound is not None:
+                miss = np.maximum(miss, sign * (bound - values[:, column]) / abs(bound))
+    losses = []
+    for column, wanted in enumerate(asked.objectives):
+        now, was, over = values[:, len(held) + column], before[column], front.values[:, column]
+        if wanted.target is not None:
+            now, was = abs(now - wanted.target), abs(was - wanted.target)
+        sign = -1.0 if wanted.sense == "maximise" else 1.0
+        size = max(abs(over).max(), abs(wanted.target or 0.0))
+        span = np.ptp(over)
+        span = span if span > 1e-9 * size else max(abs(front.values[row, column]), abs(wanted.target or 0.0))
+        losses.append(sign * (now - was) / span)
+    return designs, miss, np.stack(losses, axis=1)
+
+
+def require_best(front: ParetoFront, row: int, steps: dict[str, float], found: Rounded) -> str:
+    """Check that no combination beats what was found; return in a word what that was."""
+    designs, miss, losses = brute_force(front, row, steps, found.reach)
+    assert len(designs) == found.judged
+    kept = miss <= 1e-9
+    assert found.met == kept.any()
+    assert found.kept == kept.sum()
+    for design in found.dimensions:  # each is one of the combinations
+        assert np.abs(designs - design).max(axis=1).min() <= 1e-12
+    own = found.losses.max(axis=1)
+    if not found.met:
+        of = found.violations.max(axis=1)
+        assert of[0] == pytest.approx(miss.min(), rel=1e-6, abs=1e-12)
+        assert (np.diff(of) >= 0.0).all()
+        assert (np.diff(own) < 0.0).all()
+        return "missed"
+    losses = losses[kept]
+    assert own[0] == pytest.approx(losses.max(axis=1).min(), rel=1e-6, abs=1e-8)
+    assert (np.diff(own) >= -1e-8).all()
+    assert (found.violations <= 1e-9).all()
+    if len(front.objectives) == 1:
+        assert own == pytest.approx(np.sort(losses[:, 0])[: len(own)], rel=1e-6, abs=1e-8)
+        return "kept"
+    for lost in found.losses:
+        assert not ((losses <= lost).all(axis=1) & (losses < lost - 1e-8).any(axis=1)).any()
+    # None that nothing dominates and that loses less than the last one is left out.
+    for lost in losses[losses.max(axis=1) < own[-1] - 1e-8]:
+        beaten = (losses <= lost).all(axis=1) & (losses < lost).any(axis=1)
+        assert beaten.any() or np.abs(found.losses - lost).max(axis=1).min() <= 1e-8
+    return "kept"
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_combination_beats_the_answer(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    polish_few(monkeypatch)
+    monkeypatch.setattr("slidercrank.optimise.front.rounding.REACHES", (3, 6))
+    asked, steps = random_case(seed)
+    front = solve(asked)
+    assert len(front)
+    row = len(front) // 2
+    require_best(front, row, steps, front.rounded(row, steps, count=4))
+
+
+@lru_cache(maxsize=1)
+def plain_front() -> ParetoFront:
+    """Return a front of closed forms within a band of strokes."""
+    return solve(problem(PLAIN, HELD, designs=8, samples=256))
+
+
+@pytest.mark.parametrize(
+    ("to", "words"),
+    [
+        (0.0, "the step of crank must be above zero and finite; got 0.0"),
+        (-0.001, "must be above zero and finite; got -0.001"),
+        (float("nan"), "must be above zero and finite; got nan"),
+        (float("inf"), "must be above zero and finite; got inf"),
+        (True, "must be above zero and finite; got True"),
+        ("1 mm", "must be above zero and finite; got '1 mm'"),
+        (1e-13, "the step of crank must be 1e-09 of its range's greatest number or more; got 1e-13 of 0.2"),
+        ({"rod": 0.7}, "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
+        ({"rods": 0.001}, "a step is for one of crank, rod, offset; got 'rods'"),
+        ({}, "say what to round"),
+    ],
+)
+def test_a_wrong_step_is_refused(to: Any, words: str) -> None:
+    with pytest.raises(InputError, match=words.replace("(", r"\(")):
+        plain_front().rounded(0, to)
+
+
+@pytest.mark.parametrize("count", [0, -1, 1.5, True])
+def test_a_wrong_count_is_refused(count: Any) -> None:
+    with pytest.raises(InputError, match="count must be a whole number of 1 or more"):
+        plain_front().rounded(0, 0.001, count=count)
+
+
+def test_a_row_that_is_none_of_the_front_is_refused() -> None:
+    with pytest.raises(InputError, match="a row must be one of the front"):
+        plain_front().rounded(99, 0.001)
+
+
+def test_multiples_are_the_numbers_that_a_drawing_has() -> None:
+    found = plain_front().rounded(3, {"crank": 0.0001, "rod": 0.0003, "offset": 0.0254 / 32})
+    for name, step in (("crank", 0.1), ("rod", 0.3), ("offset", 0.79375)):
+        for value in found.designs[f"{name}_mm"]:
+            assert value == float(f"{round(value / step) * step:.12g}")
+    assert found.designs["crank_mm"].tolist() == pytest.approx((1e3 * found.dimensions[:, 0]).tolist(), rel=1e-14)
+
+
+def test_a_design_that_is_round_already_is_its_own_best_neighbour() -> None:
+    front = plain_front()
+    first = front.rounded(3, 0.001, count=1)
+    assert first.met
+    there = replace(front, dimensions=np.repeat(first.dimensions, len(front), axis=0))
+    again = there.rounded(3, 0.001)
+    assert again.dimensions[0].tolist() == first.dimensions[0].tolist() or again.losses[0].max() < 0.0
+    assert (again.losses.max(axis=1) >= again.losses[0].max()).all()
+
+
+def test_an_equality_that_no_round_numbers_meet_gives_the_nearest_and_the_miss() -> None:
+    front = solve(problem(PLAIN, {"stroke": 0.15, "rod_to_offset": 3.2}, offset=(0.01, 0.2), designs=6, samples=256))
+    found = front.rounded(2, 0.0005)
+    assert not found.met
+    assert found.reach == 32
+    row = found.designs.iloc[0]
+    miss = front.problem.evaluate(found.dimensions[0], ["stroke", "rod_to_offset"]) - [0.15, 3.2]
+    assert row["slack_stroke_mm"] == pytest.approx(-1e3 * abs(miss[0]), abs=1e-9)
+    assert row["slack_rod_to_offset"] == pytest.approx(-abs(miss[1]), abs=1e-12)
+    assert found.missed(0) == [
+        name for name, by in zip(("stroke", "rod_to_offset"), abs(miss), strict=True) if by > 1e-8
+    ]
+    assert 0.0 < max(abs(miss) / [0.15, 3.2]) < 1e-3
+    assert "none of" in found.message
+
+
+def test_what_is_fixed_or_has_no_step_stays_and_is_told() -> None:
+    front = solve(problem(PLAIN, HELD, offset=0.0503, designs=6, samples=256))
+    found = front.rounded(1, 0.0005)
+    assert set(found.dimensions[:, 2]) == {0.0503}
+    assert found.notes == ("offset is fixed in this job and stays, though it is no multiple of the step",)
+    assert front.rounded(1, 0.0001).notes == ()
+    alone = front.rounded(1, {"rod": 0.001})
+    assert set(alone.dimensions[:, 0]) == {front.dimensions[1, 0]}
+    assert alone.notes == ("crank has no step and stays as it is", "offset has no step and stays as it is")
+    with pytest.raises(InputError, match="got offset, fixed in this job"):
+        front.rounded(1, {"offset": 0.001})
+
+
+def test_the_options_of_choices_stay() -> None:
+    front = plain_front()
+    given = front.problem
+    ends: dict[str, Any] = {"crank": given.crank, "rod": given.rod, "offset": given.offset}
+    short = Variant(labels=("short",), mechanism=MACHINE, **ends | {"rod": Range(lower=0.06, upper=0.2002)})
+    whole = Variant(labels=("long",), mechanism=MACHINE, **ends)
+    chosen = replace(
+        front, problem=replace(given, choices=("frame",), variants=(short, whole)), variants=(0,) * len(front)
+    )
+    row = int(np.argmin(abs(front.dimensions[:, 1] - 0.2)))
+    found = chosen.rounded(row, 0.0005)
+    assert found.notes == ("frame stays short",)
+    assert (found.dimensions[:, 1] <= 0.2).all()
+    assert (front.rounded(row, 0.0005).dimensions[:, 1]).max() >= found.dimensions[:, 1].max()
+
+
+def test_a_slow_stroke_keeps_its_side_of_the_offset() -> None:
+    asked = replace(problem(PLAIN, HELD, offset=(-0.1, 0.1), designs=6, samples=256), slow_stroke="outward")
+    front = solve(asked)
+    for row in range(len(front)):
+        found = front.rounded(row, 0.02)
+        assert (found.dimensions[:, 2] * front.dimensions[row, 2] > 0.0).all()
+
+
+def test_objectives_without_an_end_are_answered() -> None:
+    """The rod to an offset of zero is infinite, of the design or of those around it."""
+    asked = problem(
+        {"rod_to_offset": "minimise", "footprint": "minimise"}, HELD, offset=(-0.02, 0.02), designs=6, samples=256
+    )
+    front = solve(asked)
+    found = front.rounded(0, 0.001)
+    assert found.met
+    assert not np.isnan(found.losses).any()
+    away = replace(front, dimensions=front.dimensions * [1.0, 1.0, 0.0], values=front.values * [np.inf, 1.0])
+    found = away.rounded(0, 0.001)
+    assert found.met
+    assert not np.isnan(found.losses).any()
+    assert np.isneginf(found.losses).any()  # better by more than any number
+
+
+def test_nothing_that_turns_is_said() -> None:
+    """The only rod is 110 mm, the only crank 99.6 mm, the only offset 18 mm."""
+    sizes: dict[str, Any] = {"crank": (0.099, 0.1), "rod": (0.11, 0.13), "offset": (0.015, 0.02)}
+    front = solve(problem(PLAIN, {"transmission_angle": (0.02, None)}, **sizes, designs=4, samples=128))
+    found = front.rounded(0, {"rod": 0.055, "offset": 0.018, "crank": 0.0332})
+    assert (found.judged, len(found), found.met) == (0, 0, False)
+    assert "turns fully; give smaller steps" in found.message
+    assert len(found.designs) == 0
+
+
+def test_robust_requirements_are_kept_by_the_rounded_designs() -> None:
+    asked = robust(problem({"time_ratio": "maximise"}, HELD, designs=4, samples=128), Robust(kind="worst case"))
+    front = solve(asked)
+    found = front.rounded(0, 0.0005)
+    assert found.met
+    values = asked.evaluate(found.dimensions, [item.quantity for item in asked.constraints])
+    for column, item in enumerate(asked.constraints):
+        assert item.lower is None or (values[:, column] >= item.lower * (1.0 - 1e-9)).all()
+        assert item.upper is None or (values[:, column] <= item.upper * (1.0 + 1e-9)).all()
+
+
+def test_very_many_numbers_are_refused_and_many_looked_at_nearby() -> None:
+    paths = ("slider_mass", "crank.width", "crank.depth", "rod.width", "rod.depth", "crank.density", "rod.density")
+    sizes = (
+        dict.fromkeys(paths, (0.01, 0.03)) | dict.fromkeys(paths[5:], (7000.0, 8000.0)) | {"slider_mass": (1.0, 2.0)}
+    )
+    varying = tuple(Varying(name=path, sets=((path, 1.0),), lower=a, upper=b) for path, (a, b) in sizes.items())
+    machine = replace(MACHINE, varying=varying)
+    front = plain_front()
+    middle = [0.5 * (a + b) for a, b in sizes.values()]
+    wide = replace(
+        front,
+        problem=replace(front.problem, mechanism=machine),
+        dimensions=np.array([[*design, *middle] for design in front.dimensions.tolist()]),
+    )
+    steps = {"crank": 0.0005, "rod": 0.0005, "offset": 0.0005} | {
+        name: (b - a) / 17.3 for name, (a, b) in sizes.items()
+    }
+    found = wide.rounded(3, steps)
+    assert found.reach < 16
+    assert found.judged <= 1 << 18
+    rounding = "slidercrank.optimise.front.rounding._MOST"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rounding, 1 << 9)
+        with pytest.raises(InputError, match="at most 9 numbers are rounded together; got 10"):
+            wide.rounded(3, steps)

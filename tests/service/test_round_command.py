@@ -1,0 +1,134 @@
+"""`slidercrank round`: rounded neighbours of a design of a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from slidercrank.service.cli import app
+from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.runs.stored_runs import problem_of, read_run
+from tests.service import fronts
+from tests.service.conftest import Command
+
+BAND = 'stroke = { min = "280 mm", max = "282 mm" }'
+VARYING = "[variables]", '[variables]\n"mechanism.slider.mass" = ["1 kg", "2.05 kg"]'
+
+
+@pytest.fixture(scope="module")
+def banded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a place with a run of the small job whose stroke may lie in a band and whose slider's mass varies."""
+    place, folder = tmp_path_factory.mktemp("banded"), tmp_path_factory.mktemp("job")
+    job = fronts.job_file(folder)
+    text = job.read_text().replace('stroke = { equals = "280 mm" }', BAND).replace(*VARYING)
+    job.write_text(text.replace("[objectives]", '[objectives]\npeak_torque = "minimise"'))
+    done = CliRunner().invoke(app, ["optimise", str(job), "--runs", str(place), "--no-figures"])
+    assert done.exit_code == 0, done.output
+    return place
+
+
+def answer(command: Command, place: Path, number: int, *options: str, code: int = 0) -> dict[str, Any]:
+    done = command("round", "latest", number, "--runs", place, *options, "--json")
+    assert done.exit_code == code, done.output
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def test_help_names_the_command(command: Command) -> None:
+    assert "  round " in command("--help").stdout
+    assert command("round", "--help").exit_code == 0
+
+
+def test_json_has_the_numbers_of_python(banded: Path, command: Command) -> None:
+    (folder,) = (file.parent for file in banded.glob("*/front.json"))
+    result = read_run(folder)
+    front = front_of(problem_of(folder, result), result)
+    expected = front.rounded(
+        2, {"crank": 0.0005, "rod": 0.001, "offset": 0.0005, "mechanism.slider.mass": 0.1}, count=3
+    )
+    options = ("--to", "0.5 mm", "--to", "rod=1 mm", "--to", "mechanism.slider.mass=0.1 kg", "--count", "3")
+    found = answer(command, banded, 3, *options)
+    assert (found["met"], found["kept"], found["judged"]) == (True, expected.kept, expected.judged)
+    assert found["steps"] == {"crank_mm": 0.5, "rod_mm": 1.0, "offset_mm": 0.5, "slider_mass_kg": 0.1}
+    assert found["given"] == {key: pytest.approx(result.designs[2][key], rel=1e-12) for key in found["given"]}
+    rows = expected.designs.to_dict("records")
+    assert len(rows) == len(found["designs"]) == 3
+    for row, one in zip(rows, found["designs"], strict=True):
+        assert one.pop("missed") == []
+        assert one == {key: value if isinstance(value, str) else pytest.approx(value) for key, value in row.items()}
+        assert (one["crank_mm"] % 0.5, one["rod_mm"] % 1.0, round(one["slider_mass_kg"] * 10.0, 9) % 1.0) == (0, 0, 0)
+        assert 280.0 <= one["slack_stroke_mm"] + 280.0 <= 281.0
+
+
+def test_the_table_tells_changes_and_the_tightest_requirement(banded: Path, command: Command) -> None:
+    best = answer(command, banded, 3, "--to", "0.5 mm", "--count", "1")["designs"][0]
+    done = command("round", "latest", 3, "--runs", banded, "--to", "0.5 mm", "--count", "1")
+    assert done.exit_code == 0
+    for key in ("crank_mm", "rod_mm", "offset_mm", "time_ratio", "peak_torque_Nm"):
+        assert f"{best[key]:.6g}" in done.stdout
+    assert f"{best['change_peak_torque_percent']:+.2g}" in done.stdout
+    assert f"{best['change_peak_torque_Nm']:+.3g}" in done.stdout
+    assert "1: tightest is " in done.stdout
+    assert "keep every requirement" in done.stdout
+    assert done.stderr == "note: mechanism.slider.mass has no step and stays as it is\n"
+
+
+def test_inches_are_given_and_shown(banded: Path, command: Command) -> None:
+    found = answer(command, banded, 3, "--to", "1/32 in", "--units", "inch")
+    assert found["steps"] == {f"{name}_in": 0.03125 for name in ("crank", "rod", "offset")}
+    for row in found["designs"]:
+        for name in ("crank", "rod", "offset"):
+            assert row[f"{name}_in"] * 32.0 == round(row[f"{name}_in"] * 32.0)
+        assert not any(key.endswith("_mm") or key.endswith("_Nm") for key in row)
+    metric = answer(command, banded, 3, "--to", "0.79375 mm")
+    assert [row["loss_percent"] for row in metric["designs"]] == [row["loss_percent"] for row in found["designs"]]
+    shown = command("round", "latest", 3, "--runs", banded, "--to", "0.01 in", "--units", "inch").stdout
+    assert "crank 0.01 in" in shown
+    assert "lbf in" in shown
+
+
+def test_an_equality_that_cannot_be_met_is_exit_code_3_with_the_nearest(kept: Path, command: Command) -> None:
+    found = answer(command, kept, 3, "--to", "0.5 mm", code=3)
+    assert found["met"] is False
+    first = found["designs"][0]
+    assert first["missed"] == ["stroke"]
+    assert -0.5 < first["slack_stroke_mm"] < 0.0
+    done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
+    assert done.exit_code == 3
+    assert f"1: misses stroke by {-first['slack_stroke_mm']:.4g} mm" in done.stdout
+    assert "keeps every requirement; the nearest are told" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("number", "steps", "words"),
+    [
+        (99, ["1 mm"], "the run has designs 1 to"),
+        (1, ["0 mm"], "--to must be positive; got"),
+        (1, ["-1 mm"], "--to must be positive; got"),
+        (1, ["nan mm"], "--to must be a finite number"),
+        (1, ["0.5"], "--to must be a length with its unit"),
+        (1, ["1/0 in"], '--to must be a length; got "1/0 in"'),
+        (1, ["1/32 kg"], '--to must be a length; got "1/32 kg"'),
+        (1, ["crank="], "--to must be a length"),
+        (1, ["crank=1 kg"], "--to must be a length"),
+        (1, ["mechanism.slider.mass=1 mm"], "--to must be a mass"),
+        (1, ["rood=1 mm"], "--to is for crank, rod, offset, mechanism.slider.mass; got 'rood'"),
+        (1, ["=1 mm"], "got ''"),
+        (1, ["1 mm", "2 mm"], "got that of all lengths twice"),
+        (1, ["rod=1 mm", "rod_in=2 mm"], "got rod twice"),
+        (1, ["rod=700 mm"], "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
+        (1, ["1e-12 mm"], "the step of crank must be 1e-09 of"),
+    ],
+)
+def test_a_wrong_request_is_one_sentence_and_exit_code_2(
+    number: int, steps: list[str], words: str, banded: Path, command: Command
+) -> None:
+    done = command("round", "latest", number, "--runs", banded, *(f"--to={step}" for step in steps))
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert done.stderr.startswith("slidercrank: ")
+    assert done.stderr.count("\n") == 1
