@@ -140,7 +140,7 @@ def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
 
 
 def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the crank angles (k,) of one fully turning linkage at which a load has a kink or jumps, either way."""
+    """Return the crank angles (k,) of one fully turning linkage at which a load has kinks or jumps."""
     loads = load_structure(mechanism)
     block, out = _block(mechanism, linkage, loads), np.empty(room_for(loads))
     block[_SPEED] = 0.0  # valves open in both senses of rotation

@@ -94,7 +94,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
 
 
 def _efficiency(slow: Over, free: Over) -> float | None:
-    """Return what a way takes without friction over what it takes with it, of the first way that is driven."""
+    """Return the energy without friction over that with it, of the first way that is driven."""
     for back in (False, True):
         least, spent = free.energy(back=back), slow.energy(back=back)
         if least > 0.0 and spent > 0.0:

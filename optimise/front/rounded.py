@@ -62,7 +62,7 @@ class Rounded:
 
     @property
     def message(self) -> str:
-        """What was found, in words."""
+        """The findings in words."""
         if not self.judged:
             return f"no rounded design within {self.reach} steps turns fully; give smaller steps"
         if self.met:

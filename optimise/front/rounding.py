@@ -97,7 +97,7 @@ class _Search:
         self._ladders(1)  # refuses steps without a multiple
 
     def best(self) -> Array:
-        """Return the best designs (n, 3 + v) of the least window that has any which keep all; else the nearest."""
+        """Return the best designs (n, 3 + v) of the least window with any that keep all; else the nearest."""
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
             short = self._violation(designs, self.quick)

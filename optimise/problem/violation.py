@@ -1,4 +1,4 @@
-"""What a problem asks of a design as numbers: its constraints with the floors, by how much each is violated."""
+"""Constraints of a problem with their floors, and by how much a design violates them."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def analyse_swing(
     actuator_tolerance_mm: ActuatorTolerance = 0.0,
     units: UnitsAsked = "metric",
 ) -> SwingModel:
-    """Analyse a swing of a design between two crank angles, forth and back, driven at the crank or at the slider."""
+    """Analyse a swing of a design between two crank angles, forth and back, driven at either end."""
     asked = Swing(
         start=radians(start_deg),
         end=radians(end_deg),

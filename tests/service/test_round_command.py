@@ -21,7 +21,7 @@ VARYING = "[variables]", '[variables]\n"mechanism.slider.mass" = ["1 kg", "2.05 
 
 @pytest.fixture(scope="module")
 def banded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a place with a run of the small job whose stroke may lie in a band and whose slider's mass varies."""
+    """Return a place with a run of the small job: stroke in a band, slider's mass varying."""
     place, folder = tmp_path_factory.mktemp("banded"), tmp_path_factory.mktemp("job")
     job = fronts.job_file(folder)
     text = job.read_text().replace('stroke = { equals = "280 mm" }', BAND).replace(*VARYING)

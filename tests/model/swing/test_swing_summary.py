@@ -236,7 +236,7 @@ def test_energy_near_a_dead_point_is_that_of_the_potential(near: float, law: Law
 
 
 def test_efficiency_is_of_friction_alone() -> None:
-    """Not of a load that differs between the ways, nor of what moves at the ends; none where nothing is driven."""
+    """Loads that differ between the ways and moving ends do not count; none where nothing is driven."""
     column = replace(COLUMN, loads=(StrokeForce(outward=100.0, inward=600.0),))
     for machine in (COLUMN, column):
         for law, duration in (("slow", None), ("constant", 0.5), ("harmonic", 1.0)):
