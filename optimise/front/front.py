@@ -24,7 +24,7 @@ from .picking import Normalisation, Priority, by_range, knee, lexicographic, top
 from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
-from .rounding import rounded
+from .rounding import ranges_or_sizes, rounded
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -205,11 +205,9 @@ class ParetoFront:
         Where no rounded design within 32 steps keeps all, the nearest are given, `met` is False. See `Rounded`.
         """
         part = self.part(row)
-        span, before = spread(self.values, size=self._sizes), np.abs(self.values[row])
-        own = np.maximum(np.where(np.isfinite(before), before, 0.0), self._sizes)  # of an objective that is constant
-        span = np.where(span > 0.0, span, np.where(own > 0.0, own, 1.0))
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = [f"{name} stays {label}" for name, label in zip(self.problem.choices, labels, strict=True)]
+        span = ranges_or_sizes(self.values, self.values[row], self._sizes)
         return rounded(part, self.dimensions[row], span, to, count=count, notes=stay)
 
     def rates(self, row: int) -> Array:

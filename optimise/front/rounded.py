@@ -25,7 +25,7 @@ class Rounded:
     """Designs of round numbers near a design of a front, the best first.
 
     Those that keep every requirement, the least loss first, none dominated by another; where `met` is False those that
-    come nearest: that of the least relative violation first, then those that miss more but lose less.
+    come nearest: that of the least relative violation first, then those that miss more but lose clearly less.
 
     problem: that they answer, its choices in place. given: (3 + v,), the design. steps: of the numbers that were
     rounded, SI. dimensions: (n, 3 + v). before: (m,), the
@@ -62,14 +62,19 @@ class Rounded:
 
     @property
     def message(self) -> str:
-        """The findings in words."""
+        """Result of the search, in words."""
         if not self.judged:
             return f"no rounded design within {self.reach} steps turns fully; give smaller steps"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
             return f"{self.kept} of {self.judged} rounded designs within {self.reach} steps {keep} every requirement"
-        told = "; the nearest are told" if len(self) else " or has all that is required; give smaller steps"
-        return f"none of {self.judged} rounded designs within {self.reach} steps keeps every requirement{told}"
+        none = f"none of {self.judged} rounded designs within {self.reach} steps"
+        if not len(self):
+            return f"{none} has every quantity that is required; give smaller steps"
+        asked = {item.quantity for item in self.constraints if item.equality} & set(self.missed(0))
+        exact = " and ".join(sorted(self.problem.quantity(name).title for name in asked))
+        remedy = f"; {exact} must have one value: ask for a range instead" if asked else ""
+        return f"{none} keeps every requirement; the nearest are told{remedy}"
 
     @cached_property
     def violations(self) -> Array:

@@ -22,6 +22,7 @@ from ...objectives.tables.varying_column import varying_column
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
+from .constant import spread
 from .hypervolume import nondominated
 from .rounded import Rounded
 from .stationarity import Array
@@ -30,7 +31,8 @@ LENGTHS = ("crank", "rod", "offset")
 REACHES = (16, 32)
 """Multiples of a step on either side of the design that are looked at, the next ones where none before met all."""
 _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
-_NEAREST, _AT_ONCE = 256, 4096  # designs of least violation that are looked at, and judged at once to find them
+_NEAREST = 4096  # designs of least violation that are looked at for those that lose less
+_CLEARLY = 0.75  # of the loss before: what is worth to miss more for
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
 _TIE = 9  # decimals of a share of a range: nearer together is rounding
 
@@ -74,6 +76,16 @@ def rounded(
     )
 
 
+def ranges_or_sizes(values: Array, of: Array, sizes: Sequence[float]) -> Array:
+    """Return the ranges (m,) of objectives over a front (n, m); of a constant one the size.
+
+    of: (m,), the objectives of a design, whose size it then is. sizes: (m,), the targets, where they are greater.
+    """
+    span = spread(values, size=sizes)
+    own = np.maximum(np.where(np.isfinite(of), np.abs(of), 0.0), sizes)
+    return np.where(span > 0.0, span, np.where(own > 0.0, own, 1.0))
+
+
 class _Search:
     """Search among the combinations of round numbers around a design."""
 
@@ -97,7 +109,7 @@ class _Search:
         self._ladders(1)  # refuses steps without a multiple
 
     def best(self) -> Array:
-        """Return the best designs (n, 3 + v) of the least window with any that keep all; else the nearest."""
+        """Return the best designs (n, 3 + v) of the least window where some keep all; else the nearest."""
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
             short = self._violation(designs, self.quick)
@@ -209,25 +221,29 @@ class _Search:
         return np.asarray(designs[order[free]])
 
     def _nearest(self, designs: Array, short: Array) -> Array:
-        """Return the designs that miss least: the nearest, then those that miss more but lose less."""
+        """Return the design that misses least, then those that miss more but lose clearly less."""
         order = np.argsort(short, kind="stable")
         taken, missed = np.zeros(0, dtype=np.int64), np.zeros(0)
-        for begin in range(0, len(order), _AT_ONCE):
-            rows = order[begin : begin + _AT_ONCE]
+        for begin in range(0, len(order), _NEAREST):
+            rows = order[begin : begin + _NEAREST]
             if len(missed) == _NEAREST and missed[-1] <= short[rows[0]]:
                 break  # what closed forms tell is less than all
             worst = np.maximum(short[rows], self._violation(designs[rows], self.slow))
             taken, missed = np.concatenate([taken, rows]), np.concatenate([missed, worst])
             best = np.argsort(missed, kind="stable")[:_NEAREST]
             taken, missed = taken[best], missed[best]
-        losses = self.losses(self.values(designs[taken])).max(axis=1) if len(taken) else missed
+        taken, missed = taken[np.isfinite(missed)], missed[np.isfinite(missed)]
+        losses = self.losses(self.values(designs[taken])).max(axis=1)
+        order = np.lexsort((losses, np.round(missed, _TIE)))
         found: list[int] = []
         least = np.inf
-        for row, loss, miss in zip(taken.tolist(), losses.tolist(), missed.tolist(), strict=True):
-            if math.isfinite(miss) and (not found or loss < least):
+        for row, loss in zip(taken[order].tolist(), losses[order].tolist(), strict=True):
+            if not found or loss <= _CLEARLY * least:
                 found.append(row)
                 least = loss
-        return designs[found]
+            if least <= 0.0:
+                break  # nothing is lost: there is no reason to miss more
+        return np.asarray(designs[found])
 
 
 def _ranges(part: Problem) -> dict[str, tuple[float, float]]:

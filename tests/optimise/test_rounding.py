@@ -133,7 +133,12 @@ def require_best(front: ParetoFront, row: int, steps: dict[str, float], found: R
         of = found.violations.max(axis=1)
         assert of[0] == pytest.approx(miss.min(), rel=1e-6, abs=1e-12)
         assert (np.diff(of) >= 0.0).all()
-        assert (np.diff(own) < 0.0).all()
+        nearest = losses.max(axis=1)[miss <= miss.min() + 1e-12]
+        assert own[0] == pytest.approx(nearest.min(), rel=1e-6, abs=1e-8)
+        for before, after in itertools.pairwise(range(len(found))):  # none that misses less loses clearly less
+            assert own[after] <= 0.75 * own[before]
+            between = (miss < of[after] - 1e-8) & (losses.max(axis=1) <= 0.75 * own[before] - 1e-8)
+            assert not between.any()
         return "missed"
     losses = losses[kept]
     assert own[0] == pytest.approx(losses.max(axis=1).min(), rel=1e-6, abs=1e-8)

@@ -21,7 +21,7 @@ VARYING = "[variables]", '[variables]\n"mechanism.slider.mass" = ["1 kg", "2.05 
 
 @pytest.fixture(scope="module")
 def banded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a place with a run of the small job: stroke in a band, slider's mass varying."""
+    """Return a place with a run of the small job, its stroke in a band, the slider's mass varying."""
     place, folder = tmp_path_factory.mktemp("banded"), tmp_path_factory.mktemp("job")
     job = fronts.job_file(folder)
     text = job.read_text().replace('stroke = { equals = "280 mm" }', BAND).replace(*VARYING)
@@ -100,7 +100,7 @@ def test_an_equality_that_cannot_be_met_is_exit_code_3_with_the_nearest(kept: Pa
     done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
     assert done.exit_code == 3
     assert f"1: misses stroke by {-first['slack_stroke_mm']:.4g} mm" in done.stdout
-    assert "keeps every requirement; the nearest are told" in done.stderr
+    assert "keeps every requirement; the nearest are told; stroke must have one value: ask for a range" in done.stderr
 
 
 @pytest.mark.parametrize(
