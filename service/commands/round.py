@@ -168,7 +168,8 @@ def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> 
     screen.print()
     for number, row in enumerate(designs, 1):
         screen.print(f"{number}: {_requirements(row, found, units)}", soft_wrap=True)
-    screen.print(f"\n{found.message}", soft_wrap=True) if found.met else None
+    if found.met:
+        screen.print(f"\n{found.message}", soft_wrap=True)
     for note in found.notes:
         say(f"note: {note}")
 
@@ -196,4 +197,4 @@ def _told(key: str, value: float, units: System, *, bare: bool = False) -> str:
     name, factor = key_in(key, units)
     plain, unit, _ = split_unit(name)
     number = f"{factor * value:.4g} {unit}".strip()
-    return number if bare else f"{plain} {number}"
+    return number if bare else f"{plain.replace('_', ' ')} {number}"
