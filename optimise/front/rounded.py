@@ -116,7 +116,7 @@ class Rounded:
                 percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
             found[of.field] = now * of.unit.factor
             found[f"change_{of.field}"] = change * of.unit.factor
-            found[f"change_{of.name}_percent"] = percent
+            found[f"change_{of.stem}_percent"] = percent
         found["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
         for place, constraint in enumerate(self.constraints):
             of = self.problem.quantity(constraint.quantity)

@@ -96,7 +96,8 @@ def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constrain
         name = names.get(condition.column.key)
         if name is None or isinstance(condition.value, str):
             raise InputError(
-                f"a design can be asked for by quantities and dimensions only; got {text!r}; write it like {_EXAMPLE}"
+                "a design can be asked for by quantities, dimensions and formulas of its job; "
+                f"got {text!r}; write it like {_EXAMPLE}"
             )
         factor = 1e3 if name in DIMENSIONS else problem.quantity(name).unit.factor
         ends = common(found.get(name, (None, None)), _ends(condition, factor, text))

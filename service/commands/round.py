@@ -153,7 +153,8 @@ def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> 
     given, designs = record["given"], record["designs"]
     heads = [f">{number}" for number in range(1, len(designs) + 1)]
     rows = table("quantity", "unit", ">given", *heads, ruled=True, padding=(0, 2, 0, 0), pad_edge=True)
-    objectives = {found.problem.quantity(wanted.quantity).field: wanted.quantity for wanted in found.problem.objectives}
+    wanted = [found.problem.quantity(item.quantity) for item in found.problem.objectives]
+    objectives = {of.field: of.stem for of in wanted}
     for key in given:
         name, factor = key_in(key, units)
         column = find_column(name, {key_in(each, units)[0]: None for each in given})
@@ -163,7 +164,12 @@ def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> 
             percents = [row[f"change_{objectives[key]}_percent"] for row in designs]
             rows.add_row("  change", column.unit, "", *(f"{factor * row[f'change_{key}']:+.3g}" for row in designs))
             rows.add_row("", "%", "", *(_percent(percent) for percent in percents))
-    rows.add_row("greatest loss", "% of range", "", *(_percent(row["loss_percent"]) for row in designs))
+    rows.add_row(
+        "greatest loss",
+        "% of range" if len(wanted) > 1 else "% of value",
+        "",
+        *(_percent(row["loss_percent"]) for row in designs),
+    )
     print_table(screen, rows)
     screen.print()
     for number, row in enumerate(designs, 1):

@@ -339,3 +339,19 @@ def test_quantities_of_cylinders_are_refused_without_one() -> None:
                     "objectives": {name: "maximise"},
                 }
             )
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"expansion_exponent": 1e-9}, "at least 0.2"),
+        ({"compression_exponent": 0.1}, "at least 0.2"),
+        ({"low": 1e5, "high": 1e5}, "raise the discharge pressure"),
+        ({"low": 2e5, "high": 1e5}, "swap the two"),
+        ({"piston_rod": 0.07}, "give a thinner rod"),
+    ],
+)
+def test_remedies_fit_what_was_given(given: dict[str, float], words: str) -> None:
+    usual = {"bore": 0.07, "low": 1e5, "high": 8e5, "compression_exponent": 1.3, "expansion_exponent": 1.2}
+    with pytest.raises(InputError, match=words):
+        Compressor(**(usual | given))  # type: ignore[arg-type]

@@ -143,3 +143,18 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
 def test_a_wrong_table_of_pressures_is_refused_at_its_key(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         built({**OVER_ANGLE, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("degrees", "forces", "words"),
+    [
+        ((0.0, 180.0, 360.0), (5.0, 1.0, 5.0), "leave out the last point, which repeats the first"),
+        ((0.0, 180.0, 360.0), (5.0, 1.0, 1.0), "does not close"),
+        ((0.0, 180.0, 720.0), (5.0, 1.0, 5.0), "more than a turn"),
+    ],
+)
+def test_tables_of_a_turn_and_more_are_refused_with_what_they_need(
+    degrees: tuple[float, ...], forces: tuple[float, ...], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        AngleTable(angles=tuple(np.radians(degrees).tolist()), forces=forces)

@@ -27,6 +27,8 @@ from .load import (
     require_word,
 )
 
+_ROUNDING = 1e-9  # rad
+
 
 @dataclass(frozen=True, kw_only=True)
 class AngleTable(Load):
@@ -52,9 +54,20 @@ class AngleTable(Load):
         span = self.angles[-1] - self.angles[0]
         if span >= 2.0 * math.pi:
             raise InputError(
-                f"angles of a periodic table must span less than 360 deg; got {math.degrees(span):g} deg; "
-                "leave out the last point, which repeats the first"
+                f"angles of a periodic table must span less than 360 deg; got {math.degrees(span):.6g} deg; "
+                + self._instead(span)
             )
+
+    def _instead(self, span: float) -> str:
+        """Return the remedy for a table of a turn or more."""
+        if span > 2.0 * math.pi + _ROUNDING:
+            return "a cycle of more than a turn, such as that of four strokes, is not covered; give one turn"
+        if self.forces[0] == self.forces[-1]:
+            return "leave out the last point, which repeats the first"
+        return (
+            "its last point is the first one a turn later, with another value, so that the table does not close; "
+            "correct one of the two and leave out the last"
+        )
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return factors of one in the strokes in which the force acts."""

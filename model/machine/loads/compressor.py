@@ -25,7 +25,8 @@ class Compressor(Cylinder):
         if not self.high > self.low:
             raise InputError(
                 "the discharge pressure must exceed the suction pressure; got "
-                f"{1e-5 * self.high:g} bar over {1e-5 * self.low:g} bar; swap the two"
+                f"{1e-5 * self.high:g} bar over {1e-5 * self.low:g} bar; "
+                + ("raise the discharge pressure" if self.high == self.low else "swap the two")
             )
         ratio = self.high / self.low
         n = min(self.compression_exponent, self.expansion_exponent)

@@ -17,12 +17,15 @@ ATMOSPHERE = 101_325.0
 """Pa, the standard atmosphere (10th CGPM, 1954)."""
 
 
+_LEAST_EXPONENT = 0.2
+
+
 def piston_area(bore: float, piston_rod: float) -> float:
     """Return the area of a piston, m^2, with a rod through its side. Raises `InputError` for a rod as thick as it."""
     if piston_rod >= bore:
         raise InputError(
             f"the piston rod must be thinner than the bore; got {1e3 * piston_rod:g} mm in a bore of "
-            f"{1e3 * bore:g} mm; swap the two, or leave the rod out"
+            f"{1e3 * bore:g} mm; give a thinner rod, or leave it out"
         )
     return 0.25 * math.pi * (bore**2 - piston_rod**2)
 
@@ -71,6 +74,12 @@ class Cylinder(Load):
         require_numbers(self, "low", "high", what="the {} pressure, absolute,", above=0.0, unit="Pa")
         require_numbers(self, "back_pressure", what="the back pressure, absolute,", least=0.0, unit="Pa")
         require_numbers(self, "compression_exponent", "expansion_exponent", what="the {}", least=0.0)
+        for exponent in (self.compression_exponent, self.expansion_exponent):
+            if 0.0 < exponent < _LEAST_EXPONENT:
+                raise InputError(
+                    f"an exponent of p V^n is at least {_LEAST_EXPONENT:g}, or zero for a liquid; got {exponent:g}; "
+                    "1 is isothermal, 1.4 adiabatic for air"
+                )
         require_word("head", self.head, Head)
         piston_area(self.bore, self.piston_rod)
         if (self.compression_exponent == 0.0) != (self.expansion_exponent == 0.0):
