@@ -16,6 +16,11 @@ def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     `AssemblyError` for one that does not turn fully.
     """
     linkage.require_full_rotation()
+    return one_linkage(mechanism, linkage)
+
+
+def one_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+    """Return one linkage that need not turn fully, its dimensions as floats; raise `InputError` as `single` does."""
     if np.ndim(linkage.rotates_fully):
         raise InputError(
             f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"

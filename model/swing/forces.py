@@ -101,7 +101,7 @@ def swing_curves(
     d = design_of(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
     if swing.driver == "crank":
         drive, power, angle, error = found.torque, found.torque * speed, found.transmission_angle, found.position_error
-        joints = {name: getattr(found, name) for name in _JOINTS}
+        joints = {name: getattr(found, name) for name in JOINTS}
     else:
         drive, joints = _pushed(theta, m, d, found.load)
         power = drive * m.x_1 * speed
@@ -132,7 +132,7 @@ def _chopped(values: Array) -> Array:
     return np.where(np.abs(values) < _NOTHING, 0.0, values)
 
 
-_JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
+JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
 
 
 def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
@@ -213,10 +213,7 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
     drive = b.pull + d.guide_friction * np.abs(guide) * slide - bx
     ax, ay = bx + b.rod_x, by + b.rod_y
     joints = (ax + b.crank_x, ay + b.crank_y, ax, ay, bx, by, guide)
-    shape = theta.shape
-    return np.asarray(drive), {
-        name: np.array(np.broadcast_to(value, shape)) for name, value in zip(_JOINTS, joints, strict=True)
-    }
+    return np.asarray(drive), dict(zip(JOINTS, joints, strict=True))
 
 
 def _with_pins(bx: Array, by: Array, residuals: Any) -> tuple[Array, Array]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..cycle.cycle import kinks_of_loads
+from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
@@ -15,6 +19,7 @@ from .forces import SwingCurves, driver_ends, swing_curves
 from .law import corners, share_of
 from .swing import Array, Swing, dead_points
 
+Bools = NDArray[np.bool_]
 _SAMPLES = 721
 _ZOOMS, _ZOOMED = 7, 41
 _EQUAL = 1e-12
@@ -70,17 +75,15 @@ class Over:
 
     def first_locked(self) -> At | None:
         """Return the first place where friction may lock the linkage, to a bisection between many."""
+        if not self.mechanism.friction.acts:
+            return None
         for back in (False, True):
             share = np.linspace(0.0, 1.0, _SAMPLES)
             rows = np.flatnonzero(np.isnan(self.at(share, back=back).drive))
             if len(rows):
                 first = int(rows[0])
-                low, high = share[max(first - 1, 0)], share[first]
-                for _ in range(_BISECTIONS if first else 0):
-                    middle = 0.5 * (low + high)
-                    locks = bool(np.isnan(self.at(np.array([middle]), back=back).drive[0]))
-                    low, high = (low, middle) if locks else (middle, high)
-                return _place(self.at(np.array([high]), back=back), 0, back, np.nan)
+                at = self._change(share[max(first - 1, 0)], share[first], _locks, back) if first else 0.0
+                return _place(self.at(np.array([at]), back=back), 0, back, np.nan)
         return None
 
     def holds(self) -> bool:
@@ -140,18 +143,13 @@ class Over:
         r, l, e = float(own.crank), float(own.rod), float(own.offset)
         found: list[float] = []
         for x in (own.sign * knots).tolist():
-            d = float(np.hypot(x, e))
-            ratio = (r * r + d * d - l * l) / (2.0 * r * d) if d else np.inf
-            if abs(ratio) < 1.0:
-                found += [float(np.arctan2(e, x) + side * np.arccos(ratio)) for side in (-1.0, 1.0)]
+            if abs(r - l) < math.hypot(x, e) < r + l:
+                found += [crank_angle_at(x, r, l, e, second) for second in (False, True)]
         return found
 
     def _share(self, angle: float) -> float:
         first, last = driver_ends(self.linkage, self.swing)
-        place = angle
-        if self.swing.driver == "slider":
-            r, l, e, sign = self.linkage.crank, self.linkage.rod, self.linkage.offset, self.linkage.sign
-            place = float(r * np.cos(angle) + sign * np.sqrt(max(0.0, l * l - (e - r * np.sin(angle)) ** 2)))
+        place = angle if self.swing.driver == "crank" else float(self.linkage.at(angle).slider_position)
         return share_of(self.swing.law, float(np.clip((place - first) / (last - first), 0.0, 1.0)))
 
     def _changes(self, back: bool) -> list[float]:
@@ -160,24 +158,31 @@ class Over:
             return []
         share = np.linspace(0.0, 1.0, _SIDES)
         found: list[float] = []
-        for side in (_guide, _pin_turn):
+        for side in (_presses, _turns_back):
             values = side(self.at(share, back=back))
-            for i in np.flatnonzero(values[:-1] * values[1:] < 0.0).tolist():
-                low, high, sign = share[i], share[i + 1], values[i]
-                for _ in range(_BISECTIONS):
-                    middle = 0.5 * (low + high)
-                    now = float(side(self.at(np.array([middle]), back=back))[0])
-                    low, high = (middle, high) if now * sign > 0.0 else (low, middle)
-                found.append(float(0.5 * (low + high)))
+            places = np.flatnonzero(values[:-1] != values[1:]).tolist()
+            found += [self._change(share[i], share[i + 1], side, back) for i in places]
         return found
 
+    def _change(self, low: float, high: float, side: Callable[[SwingCurves], Bools], back: bool) -> float:
+        """Return the share between two at which a side changes, on the side of the latter; bisection."""
+        after = side(self.at(np.array([high]), back=back))[0]
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if side(self.at(np.array([middle]), back=back))[0] == after else (middle, high)
+        return float(high)
 
-def _guide(curves: SwingCurves) -> Array:
-    return curves.guide
+
+def _locks(curves: SwingCurves) -> Bools:
+    return np.isnan(curves.drive)
 
 
-def _pin_turn(curves: SwingCurves) -> Array:
-    return 1.0 - curves.rod_rate
+def _presses(curves: SwingCurves) -> Bools:
+    return curves.guide > 0.0
+
+
+def _turns_back(curves: SwingCurves) -> Bools:
+    return curves.rod_rate > 1.0
 
 
 def _place(curves: SwingCurves, row: int, back: bool, value: float) -> At:

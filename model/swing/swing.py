@@ -16,6 +16,7 @@ from ..checks import require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
+from ..linkage.single import one_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .words import Driver, Law
@@ -102,15 +103,7 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     Raises `InputError` for arrays, another branch than the mechanism's, a dead point where the slider drives, and loads
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
-    turns = linkage.rotates_fully
-    if np.ndim(turns):
-        raise InputError(f"one linkage at a time; got an array of shape {np.shape(turns)}; loop over it")
-    if linkage.branch != mechanism.branch:
-        raise InputError(
-            f"linkage and mechanism must be on the same branch; got {linkage.branch} and {mechanism.branch}; "
-            "set branch in both"
-        )
-    own = Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
+    own = one_linkage(mechanism, linkage)
     _require_closing(own, swing)
     passed = sorted(angle for dead in dead_points(own) for angle in swing.inside(dead))
     if swing.driver == "slider" and passed:
@@ -127,12 +120,12 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
         )
     for load in mechanism.loads:
         datum = getattr(load, "datum", "")
-        if datum.endswith("dead centre") and not bool(turns):
+        if datum.endswith("dead centre") and not bool(own.rotates_fully):
             raise InputError(
                 f"a load is measured from the {datum} of a full turn, which this linkage does not make; "
                 "measure it from the crank pivot"
             )
-    if mechanism.friction.crank_pin.radius * mechanism.friction.crank_pin.coefficient and swing.driver == "crank":
+    if mechanism.friction.crank_pin.circle and swing.driver == "crank":
         _require_one_sense(own, swing)
     return own
 
@@ -143,14 +136,14 @@ def _folded(linkage: Linkage, swing: Swing) -> bool:
     return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0
 
 
-def extreme_angles(swing: Swing) -> list[float]:
+def _extreme_angles(swing: Swing) -> list[float]:
     """Return the ends of a swing, and its crank angles normal to the slider line."""
     return [swing.start, swing.end, *swing.inside(0.5 * math.pi), *swing.inside(1.5 * math.pi)]
 
 
 def _require_closing(linkage: Linkage, swing: Swing) -> None:
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    worst = max(extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
+    worst = max(_extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
     reach = abs(e - r * math.sin(worst))
     if reach >= l:
         raise AssemblyError(

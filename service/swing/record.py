@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Window
-from ...model.swing.forces import SwingCurves, swing_curves
+from ...model.swing.forces import JOINTS, SwingCurves, swing_curves
 from ...model.swing.over import At
 from ...model.swing.summary import SwingSummary
 from ...model.swing.swing import Swing, require_swing
@@ -130,13 +130,10 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
             "load_N": curves.load,
             "transmission_angle_deg": np.degrees(curves.driven_angle),
             f"{driven(swing)}_position_error{error.suffix}": error.factor * curves.driven_error,
-            **{f"{name}_N": getattr(curves, name) for name in _FORCES},
+            **{f"{name}_N": getattr(curves, name) for name in JOINTS},
         }
         if swing.duration is None:
             for name in ("time_s", "slider_velocity_m_s", "slider_acceleration_m_s2", "power_W"):
                 del columns[name]
         rows += [{"way": way} | {name: plain(values[i]) for name, values in columns.items()} for i in range(POINTS)]
     return rows
-
-
-_FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
