@@ -9,7 +9,8 @@ from time import perf_counter
 
 import numpy as np
 
-from slidercrank.optimise.front.hypervolume import choose, hypervolume, nondominated, scaling
+from slidercrank.optimise.front.dominance import nondominated
+from slidercrank.optimise.front.hypervolume import choose, hypervolume, scaling
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.registry import methods as known

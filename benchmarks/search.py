@@ -7,7 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
-from slidercrank.optimise.front.hypervolume import hypervolume, nondominated, scaling
+from slidercrank.optimise.front.dominance import nondominated
+from slidercrank.optimise.front.hypervolume import hypervolume, scaling
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets

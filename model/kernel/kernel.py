@@ -25,6 +25,7 @@ Cube = Annotated[NDArray[np.float64], 3]
 ComplexTable = Annotated[NDArray[np.complex128], 2]
 ComplexCube = Annotated[NDArray[np.complex128], 3]
 Integers = Annotated[NDArray[np.int64], 1]
+IntegerTable = Annotated[NDArray[np.int64], 2]
 Flags = Annotated[NDArray[np.bool_], 1]
 
 KERNELS: list[Kernel] = []

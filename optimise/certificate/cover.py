@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Flags, Integers, Row, Table, kernel
-from ..front.hypervolume import hypervolume, nondominated
+from ..front.dominance import nondominated
+from ..front.hypervolume import hypervolume
 from .enclosure import Array
 
 _EXACT = 4000  # points in three and more dimensions of which the hypervolume takes about a second

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import heapq
-import math
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.kernel.batches import in_chunks
-from ...model.kernel.kernel import Flags, Row, Table, kernel
+from ...model.kernel.kernel import Row, Table, kernel
 from .constant import spread
 from .stationarity import Array
 
@@ -31,17 +29,6 @@ def scaling(values: Array) -> tuple[Array, Array]:
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
-def nondominated(values: Array) -> NDArray[np.int64]:
-    """Return the indices of designs that no other dominates (all objectives minimised); of equals, the first."""
-    if not len(values):
-        return np.zeros(0, dtype=np.int64)
-    if values.shape[1] == 1:
-        return np.array([int(np.argmin(values[:, 0]))])
-    import moocore
-
-    return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
-
-
 def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True) -> float:
     """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate.
 
@@ -59,30 +46,6 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True
 
     volume = moocore.hypervolume(np.ascontiguousarray(scaled), ref=REFERENCE)
     return float(volume / REFERENCE ** scaled.shape[1])
-
-
-@kernel
-def _beat(points: Table, others: Table, clearly: float, slightly: float, found: Flags) -> None:
-    for i in range(points.shape[0]):
-        for k in range(others.shape[0]):
-            worst, best, known = -np.inf, np.inf, True
-            for j in range(others.shape[1]):
-                apart = points[i, j] - others[k, j]
-                worst, best, known = max(worst, apart), min(best, apart), known and not math.isnan(apart)
-            if known and ((worst <= 0.0 and -best > clearly) or (worst <= clearly and -best > slightly)):
-                found[i] = True
-                break
-
-
-def beating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> NDArray[np.bool_]:
-    """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
-
-    slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.
-    """
-    found = np.zeros(len(points), dtype=bool)
-    points, others = np.ascontiguousarray(points), np.ascontiguousarray(others)
-    in_chunks(len(points), lambda begin, end: _beat(points[begin:end], others, clearly, slightly, found[begin:end]))
-    return found
 
 
 @kernel

@@ -23,7 +23,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
 from .constant import spread
-from .hypervolume import nondominated
+from .dominance import nondominated
 from .rounded import Rounded
 from .stationarity import Array
 

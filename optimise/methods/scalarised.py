@@ -16,7 +16,8 @@ from math import comb
 
 import numpy as np
 
-from ..front.hypervolume import nondominated, scaling
+from ..front.dominance import nondominated
+from ..front.hypervolume import scaling
 from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.candidates import Candidates

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ..front.constant import spread
-from ..front.hypervolume import hypervolume, nondominated, scaling
+from ..front.dominance import nondominated
+from ..front.hypervolume import hypervolume, scaling
 from ..front.stationarity import Array
 
 TOLERANCE = 1e-6

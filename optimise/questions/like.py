@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
+from ..front.dominance import beating
 from ..front.front import ParetoFront
-from ..front.hypervolume import beating, scaling
+from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY, Array
 from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings

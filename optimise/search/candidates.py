@@ -9,7 +9,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..front.hypervolume import Stand, nondominated, unheard
+from ..front.dominance import nondominated
+from ..front.hypervolume import Stand, unheard
 from ..front.stationarity import STATIONARY, Array
 from ..problem.violation import FEASIBLE
 from .evaluation import Evaluator

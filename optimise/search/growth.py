@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..front.hypervolume import hypervolume, nondominated, scaling
+from ..front.dominance import nondominated
+from ..front.hypervolume import hypervolume, scaling
 from ..front.stationarity import Array
 
 _MOST = {1: 1, 2: 5000, 3: 5000, 4: 1000, 5: 600}

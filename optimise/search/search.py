@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.robust.quantity import RobustQuantity
-from ..front.hypervolume import Stand, nondominated
+from ..front.dominance import nondominated
+from ..front.hypervolume import Stand
 from ..front.progress import REPEATING, Progress
 from ..front.stationarity import Array
 from ..problem.problem import Problem

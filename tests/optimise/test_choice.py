@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.front.hypervolume import REFERENCE, beating, choose, nondominated, scaling
+from slidercrank.optimise.front.dominance import beating, nondominated
+from slidercrank.optimise.front.hypervolume import REFERENCE, choose, scaling
 
 Array = NDArray[np.float64]
 

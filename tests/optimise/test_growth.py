@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.hypervolume import REFERENCE, nondominated
+from slidercrank.optimise.front.dominance import nondominated
+from slidercrank.optimise.front.hypervolume import REFERENCE
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.checkpoints import Record

@@ -1,11 +1,12 @@
-"""Hypervolume, non-dominance and choice against brute force."""
+"""Hypervolume and choice against brute force."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.hypervolume import REFERENCE, choose, hypervolume, nondominated, scaling
+from slidercrank.optimise.front.dominance import nondominated
+from slidercrank.optimise.front.hypervolume import REFERENCE, choose, hypervolume, scaling
 
 UNIT = (np.zeros(3), np.ones(3))
 
@@ -24,17 +25,6 @@ def test_hypervolume_agrees_with_counting_random_points() -> None:
         covered |= (points >= design).all(axis=1)
     # Three standard deviations of a share counted among 200,000 points.
     assert hypervolume(designs, *UNIT) == pytest.approx(covered.mean(), abs=3.0 * 0.5 / np.sqrt(200_000))
-
-
-def test_nondominated_agrees_with_comparing_all_pairs() -> None:
-    values = np.random.default_rng(4).integers(0, 6, (120, 3)).astype(float)
-    keep = []
-    for i, row in enumerate(values):
-        better = (values <= row).all(axis=1) & (values < row).any(axis=1)
-        same_before = (values[:i] == row).all(axis=1).any()
-        if not better.any() and not same_before:
-            keep.append(i)
-    assert nondominated(values).tolist() == keep
 
 
 def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:

@@ -15,8 +15,9 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.front.dominance import nondominated
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.hypervolume import hypervolume, nondominated
+from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Range
 from slidercrank.optimise.search.elimination import sheets

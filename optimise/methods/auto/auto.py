@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...front.dominance import beating, nondominated
 from ...front.front import ParetoFront
-from ...front.hypervolume import Stand, beating, choose, nondominated
+from ...front.hypervolume import Stand, choose
 from ...front.neighbours import neighbours
 from ...front.stationarity import Array
 from ...problem.problem import Problem

@@ -1,0 +1,116 @@
+"""Which designs dominate which: no worse in every objective, better in one; all objectives are minimised."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.kernel.batches import in_chunks
+from ...model.kernel.kernel import Flags, IntegerTable, Table, kernel
+from .stationarity import Array
+
+_WORD = 63  # designs told by the bits of one integer, whose sign is left alone
+_CHUNK = 2048  # designs that one thread filters at a time
+_OBJECTIVES, _MANY = 4, 40_000  # of fewer objectives, and of more designs, a filter of n log n steps is quicker
+
+
+def nondominated(values: Array) -> NDArray[np.int64]:
+    """Return the indices of designs that no other dominates, ascending; of equals, the first.
+
+    Designs are put in order, by the first objective first: only those before one may dominate it. For each other
+    objective bits say which designs come up to some place in its order; where those of all objectives meet are the few
+    that may be as good as the design that has these places. They are compared with it.
+    """
+    count, objectives = values.shape
+    if objectives == 1:
+        return np.array([int(np.argmin(values[:, 0]))] if count else [], dtype=np.int64)
+    if objectives < _OBJECTIVES or count > _MANY or not np.isfinite(values).all():
+        import moocore
+
+        return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
+    order = np.argsort(values[:, 0])
+    if not np.diff(values[order, 0]).all():
+        order = np.lexsort(values.T[::-1])
+    ordered = np.ascontiguousarray(values[order, 1:].T)
+    ranked = np.argsort(ordered, axis=1)
+    words = -(-count // _WORD)
+    bits, upto = np.zeros((len(ordered) * words, words), np.int64), np.empty(ordered.shape, np.int64)
+    _mark(ordered, ranked, bits, upto)
+    kept = np.ones(count, np.bool_)
+    in_chunks(count, lambda begin, end: _filter(ordered, bits, upto, begin, end, kept), size=_CHUNK)
+    return np.sort(order[kept])
+
+
+@kernel
+def _mark(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: IntegerTable) -> None:
+    """Set, for each word of the order by an objective, the bits of the designs up to its end.
+
+    upto: the row of bits of the last design that is as good as this one in an objective.
+    """
+    count, words = ranked.shape[1], bits.shape[1]
+    for column in range(ranked.shape[0]):
+        last = count - 1
+        for place in range(count - 1, -1, -1):
+            if ordered[column, ranked[column, place]] < ordered[column, ranked[column, last]]:
+                last = place
+            upto[column, ranked[column, place]] = column * words + last // _WORD
+        for word in range(words):
+            row = column * words + word
+            if word:
+                for i in range(words):
+                    bits[row, i] = bits[row - 1, i]
+            for place in range(word * _WORD, min((word + 1) * _WORD, count)):
+                design = ranked[column, place]
+                bits[row, design // _WORD] |= 1 << (design % _WORD)
+
+
+@kernel
+def _filter(ordered: Table, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, kept: Flags) -> None:
+    """Say of which designs from `begin` to `end` one before them is as good in all of these objectives."""
+    some, of_word = np.empty(bits.shape[1], np.int64), np.empty(_WORD, np.int64)
+    for i in range(begin, end):
+        words = some[: 1 + i // _WORD]
+        words[:] = bits[upto[0, i], : len(words)]
+        for column in range(1, ordered.shape[0]):
+            line = bits[upto[column, i]]
+            for w in range(len(words)):
+                words[w] &= line[w]
+        for w in range(len(words)):
+            if not words[w]:
+                continue
+            first = w * _WORD
+            as_good = of_word[: min(_WORD, i - first)]
+            as_good[:] = 1
+            for column in range(ordered.shape[0]):
+                values, own = ordered[column, first : first + len(as_good)], ordered[column, i]
+                for k in range(len(as_good)):
+                    as_good[k] &= values[k] <= own
+            if as_good.any():
+                kept[i] = False
+                break
+
+
+@kernel
+def _beat(points: Table, others: Table, clearly: float, slightly: float, found: Flags) -> None:
+    for i in range(points.shape[0]):
+        for k in range(others.shape[0]):
+            worst, best, known = -np.inf, np.inf, True
+            for j in range(others.shape[1]):
+                apart = points[i, j] - others[k, j]
+                worst, best, known = max(worst, apart), min(best, apart), known and not math.isnan(apart)
+            if known and ((worst <= 0.0 and -best > clearly) or (worst <= clearly and -best > slightly)):
+                found[i] = True
+                break
+
+
+def beating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> NDArray[np.bool_]:
+    """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
+
+    slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.
+    """
+    found = np.zeros(len(points), dtype=bool)
+    points, others = np.ascontiguousarray(points), np.ascontiguousarray(others)
+    in_chunks(len(points), lambda begin, end: _beat(points[begin:end], others, clearly, slightly, found[begin:end]))
+    return found
