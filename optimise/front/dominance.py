@@ -31,8 +31,11 @@ def nondominated(values: Array) -> NDArray[np.int64]:
 
         return np.flatnonzero(moocore.is_nondominated(np.ascontiguousarray(values), keep_weakly=False))
     order = np.argsort(values[:, 0])
-    if not np.diff(values[order, 0]).all():
-        order = np.lexsort(values.T[::-1])
+    equal = np.diff(values[order, 0]) == 0.0
+    if equal.any():
+        tied = np.append(equal, False) | np.append(False, equal)
+        those = np.sort(order[tied])
+        order[tied] = those[np.lexsort(values[those].T[::-1])]
     ordered = np.ascontiguousarray(values[order, 1:].T)
     ranked = np.argsort(ordered, axis=1)
     words = -(-count // _WORD)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
 
 Array = NDArray[np.float64]
@@ -18,18 +19,19 @@ def neighbours(points: Array, count: int) -> tuple[Array, NDArray[np.int64]]:
     order = np.argsort(points[:, 0], kind="stable")
     distance = np.full((len(points), count), np.inf)
     found = np.zeros(len(points) * count, dtype=np.int64)
-    _search(points[order], distance, found)
+    ordered = points[order]
+    in_chunks(len(points), lambda begin, end: _search(ordered, begin, end, distance, found))
     rows = np.empty_like(order)
     rows[order] = np.arange(len(order))
     return distance[rows], order[found.reshape(-1, count)[rows]]
 
 
 @kernel
-def _search(points: Table, distance: Table, found: Integers) -> None:
+def _search(points: Table, begin: int, end: int, distance: Table, found: Integers) -> None:
     """Points in the order of their first coordinate: beyond the farthest of the nearest there, none is nearer."""
     n, m = points.shape
     count = distance.shape[1]
-    for i in range(n):
+    for i in range(begin, end):
         distance[i, 0], found[i * count] = 0.0, i
         for way in range(2):
             k = i + 1 if way else i - 1

@@ -85,7 +85,9 @@ class Archive(Candidates):
     def put(self, *others: Candidates) -> None:
         """Take in designs of any sheets."""
         together = self.join(*others)
-        self.become(together[_worth(together)])
+        rows = _worth(together)
+        as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())
+        self.become(together if as_they_are else together[rows])
 
 
 def _some(values: Array) -> Array:
