@@ -18,6 +18,7 @@ from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
 from .loads.registry import code_of
 from .mechanism import Mechanism
+from .remembered import remembered
 
 Raw = IntEnum(
     "Raw",
@@ -98,21 +99,12 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
     return np.array(raw, dtype=np.float64)
 
 
-_last: tuple[Mechanism | None, NDArray[np.float64], Loads | None] = (None, np.zeros(0), None)
-
-
+@remembered
 def fullest_inputs(mechanism: Mechanism) -> tuple[NDArray[np.float64], Loads]:
-    """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has.
-
-    A search asks for the same machine thousands of times: the last answer is kept.
-    """
-    global _last
-    before, raw, loads = _last
-    if before is not mechanism or loads is None:
-        raw, loads = raw_vector(mechanism.fullest), load_structure(mechanism)
-        raw.flags.writeable = False
-        _last = mechanism, raw, loads
-    return raw, loads
+    """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has."""
+    raw = raw_vector(mechanism.fullest)
+    raw.flags.writeable = False
+    return raw, load_structure(mechanism)
 
 
 def _link_numbers(link: Link) -> tuple[float, ...]:

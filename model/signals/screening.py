@@ -27,6 +27,7 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
+from ..machine.remembered import remembered
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .signals import Signal, design_motion, signal
@@ -57,6 +58,7 @@ class Screened:
     gradients: Array | None
 
 
+@remembered
 def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
     """Whether `screen` handles this signal of this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..dynamics.segments import Watch
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
+from ..machine.remembered import remembered
 from .signals import Signal
 
 Array = NDArray[np.float64]
@@ -40,6 +41,7 @@ def _no_loads() -> Loads:
     return load_structure(Mechanism())
 
 
+@remembered
 def stroke_dependent(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
     if any(load.by_stroke for load in mechanism.fullest.loads):
