@@ -162,6 +162,10 @@ def _require_new(
     for name, ends in ranges.items():
         if name not in UNKNOWNS:
             raise InputError(f"a range is that of crank, rod or offset; got {name!r}; name one of them")
+        if ends[0] is not None and ends[1] is not None and ends[0] > ends[1]:
+            raise InputError(
+                f"a range of {name} rises; got {1e3 * ends[0]:g} mm to {1e3 * ends[1]:g} mm; put the smaller end first"
+            )
         columns.append((f"{name}_mm", 1e3, ends))
     if not columns:
         raise InputError("say what is to be different: add a constraint or a range")

@@ -111,7 +111,8 @@ def _meant(name: str, keys: Collection[str]) -> str:
     meant = {alias: key for alias, key in aliases.items() if key in keys}
     if name in meant:
         return meant[name]
-    longer = [key for key in keys if name and key.startswith(f"{name}_")]  # a unit of an own quantity's
+    # An own quantity's key has its unit after its name.
+    longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _titles()]
     if len(longer) == 1:
         return longer[0]
 

@@ -40,8 +40,12 @@ def text_of(path: Path) -> str:
         if len(content) > _LARGEST:
             raise InputError(f"{_NAME} has at most {_LARGEST // 1_000_000} MB; got more in {path}; keep fewer rows")
         return content.decode("utf-8-sig")
+    except IsADirectoryError:
+        raise InputError(f"{_NAME} is CSV text; got the folder {path}; name a file in it") from None
     except OSError as error:
-        raise InputError(f"{_NAME} is one that can be read; got {path}: {error.strerror}; name it") from None
+        raise InputError(
+            f"{_NAME} is one that can be read; got {path}: {error.strerror}; name another one, or permit it"
+        ) from None
     except UnicodeDecodeError:
         raise InputError(f"{_NAME} is UTF-8 text; got other bytes; save it as CSV in UTF-8") from None
 

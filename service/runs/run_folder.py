@@ -169,7 +169,9 @@ class RunFolder:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Write a file as a whole or not at all. Raises `RunError` when the disk refuses."""
+    """Write a file as a whole or not at all. Raises `RunError` when the disk refuses, `InputError` for a folder."""
+    if path.is_dir():
+        raise InputError(f"what is written needs the name of a file; got the folder {path}; name a file in it")
     with disk(path.parent):
         _write(path, content)
 

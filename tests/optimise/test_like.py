@@ -109,3 +109,5 @@ def test_what_asks_for_nothing_new_is_refused() -> None:
         like_design(given, 0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
     with pytest.raises(InputError, match="crank, rod or offset; got 'speed'"):
         like_design(given, 0, ranges={"speed": (1.0, None)})
+    with pytest.raises(InputError, match="a range of crank rises; got 50 mm to 40 mm"):
+        like_design(given, 0, ranges={"crank": (0.05, 0.04)})

@@ -175,7 +175,7 @@ def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monke
     for file, words in (
         (latin, "is UTF-8 text; got other bytes"),
         (wide, "is UTF-8 text; got other bytes"),
-        (tmp_path, "Is a directory"),
+        (tmp_path, "got the folder"),
         (large, "has at most 0 MB; got more in"),
         (tmp_path / "none.csv", "No such file"),
     ):

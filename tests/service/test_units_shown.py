@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputError
 from slidercrank.objectives.kinds import KINDS, RATIO, SHOWN, shown_in
 from slidercrank.optimise.job.units import kind_for, per_si, to_si
 from slidercrank.service.designs.columns import find_column, key_in, metric_key, split_unit
@@ -162,6 +163,12 @@ def test_conditions_name_their_own_unit_whatever_is_shown(run: Path, command: Co
     ]
     assert 0 < len(numbers[0]) < len(least)
     assert len({len(rows) for rows in numbers}) == 1
+
+
+def test_a_dimension_without_a_column_is_no_ratio_of_it() -> None:
+    with pytest.raises(InputError, match="no quantity or column is called 'rod'"):
+        find_column("rod", ["crank_mm", "rod_to_offset", "rod_to_crank"])
+    assert find_column("stiffness", ["rod_to_offset", "stiffness_N_mm"]).key == "stiffness_N_mm"
 
 
 def test_columns_are_called_as_any_export_writes_them(run: Path, command: Command) -> None:
