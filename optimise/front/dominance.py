@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.kernel.batches import in_chunks
-from ...model.kernel.kernel import Flags, IntegerTable, Table, kernel
+from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
 from .stationarity import Array
 
 _WORD = 63  # designs told by the bits of one integer, whose sign is left alone
@@ -41,8 +41,9 @@ def nondominated(values: Array) -> NDArray[np.int64]:
     words = -(-count // _WORD)
     bits, upto = np.zeros((len(ordered) * words, words), np.int64), np.empty(ordered.shape, np.int64)
     _mark(ordered, ranked, bits, upto)
+    by_word = np.pad(ordered, ((0, 0), (0, words * _WORD - count))).reshape(-1, words, _WORD)
     kept = np.ones(count, np.bool_)
-    in_chunks(count, lambda begin, end: _filter(ordered, bits, upto, begin, end, kept), size=_CHUNK)
+    in_chunks(count, lambda begin, end: _filter(by_word, bits, upto, begin, end, kept), size=_CHUNK)
     return np.sort(order[kept])
 
 
@@ -70,27 +71,31 @@ def _mark(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: Intege
 
 
 @kernel
-def _filter(ordered: Table, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, kept: Flags) -> None:
+def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, kept: Flags) -> None:
     """Say of which designs from `begin` to `end` one before them is as good in all of these objectives."""
-    some, of_word = np.empty(bits.shape[1], np.int64), np.empty(_WORD, np.int64)
+    some, as_good = np.empty(bits.shape[1], np.int64), np.empty(_WORD, np.int64)
     for i in range(begin, end):
-        words = some[: 1 + i // _WORD]
-        words[:] = bits[upto[0, i], : len(words)]
-        for column in range(1, ordered.shape[0]):
-            line = bits[upto[column, i]]
-            for w in range(len(words)):
-                words[w] &= line[w]
-        for w in range(len(words)):
-            if not words[w]:
-                continue
-            first = w * _WORD
-            as_good = of_word[: min(_WORD, i - first)]
-            as_good[:] = 1
-            for column in range(ordered.shape[0]):
-                values, own = ordered[column, first : first + len(as_good)], ordered[column, i]
-                for k in range(len(as_good)):
-                    as_good[k] &= values[k] <= own
-            if as_good.any():
+        words = 1 + i // _WORD
+        row = upto[0, i]
+        for w in range(words):
+            some[w] = bits[row, w]
+        for column in range(1, by_word.shape[0]):
+            row = upto[column, i]
+            for w in range(words):
+                some[w] &= bits[row, w]
+        for w in range(words):
+            before = min(_WORD, i - w * _WORD)
+            found = 0
+            if some[w]:
+                for k in range(before):
+                    as_good[k] = 1
+                for column in range(by_word.shape[0]):
+                    own = by_word[column, words - 1, i % _WORD]
+                    for k in range(before):
+                        as_good[k] &= by_word[column, w, k] <= own
+                for k in range(before):
+                    found += as_good[k]
+            if found:
                 kept[i] = False
                 break
 
