@@ -8,6 +8,7 @@ from typing import Literal
 
 from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import InputError
+from .arrangement import Arrangement
 from .clearance import Clearance
 from .drive import Drive
 from .friction import Friction
@@ -96,6 +97,7 @@ class Mechanism:
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
+    arrangement: identical cylinders on one crankshaft, for `cycle.several`; everything else is of one cylinder.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
     offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
@@ -114,6 +116,7 @@ class Mechanism:
     branch: Branch = "open"
     drive: Drive | None = None
     clearance: Clearance | None = None
+    arrangement: Arrangement | None = None
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:

@@ -28,6 +28,7 @@ from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.arrangement import require_one_cylinder
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.friction import require_frictionless
@@ -133,6 +134,7 @@ class CrankEquation:
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
         linkage = single(mechanism, linkage)
         require_frictionless(mechanism.friction, "motion under a motor")
+        require_one_cylinder(mechanism.arrangement, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
         raw = np.repeat(raw_vector(mechanism)[:, None], 5, axis=1)

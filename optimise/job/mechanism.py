@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, model_validator
 
 from ...model.errors import InputError
+from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
 from .units import shown
@@ -18,6 +19,7 @@ from .values import (
     AngularAcceleration,
     AngularSpeed,
     Built,
+    Checked,
     Clearance,
     Density,
     Fraction,
@@ -114,6 +116,30 @@ class CounterweightPart(Built[Counterweight]):
     inertia: Inertia = optional("about its own mass centre", "0.0001 kg m^2", default=0.0)
 
 
+class CylindersPart(Checked[Arrangement]):
+    """Identical cylinders on one crankshaft, each a machine of this job."""
+
+    makes = Arrangement
+
+    phases: tuple[Angle, ...] = required(
+        "angle of the crank of each cylinder from the shaft's zero, counter-clockwise",
+        ["0 deg", "180 deg"],
+        max_length=MOST,
+    )
+    banks: tuple[Angle, ...] = optional(
+        "angle of each cylinder's slider line from +x, counter-clockwise; all zero if left out",
+        ["-45 deg", "45 deg"],
+        default=(),
+        max_length=MOST,
+    )
+    places: tuple[Length, ...] = optional(
+        "place of each cylinder along the shaft, for the rocking couple; all in one plane if left out",
+        ["-50 mm", "50 mm"],
+        default=(),
+        max_length=MOST,
+    )
+
+
 class SliderPart(Part):
     """The slider."""
 
@@ -147,6 +173,10 @@ class MechanismPart(Part):
         "a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}
     )
     slider: SliderPart | None = optional("the slider; massless if left out", {"mass": "0.8 kg"})
+    cylinders: CylindersPart | None = optional(
+        "several identical cylinders on one crankshaft, for analyse --show cylinders; quantities are of one cylinder",
+        {"phases": ["0 deg", "180 deg"]},
+    )
     gravity: Gravity | None = optional("size of the gravity; none if left out", "9.81 m/s^2")
     gravity_direction: Angle | None = optional(
         "counter-clockwise from +x (the outward direction on the open branch, the inward one on the "

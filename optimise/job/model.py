@@ -161,7 +161,7 @@ class Job(Part):
         """Return the machine of the job, its numbers as they are given."""
         own = self.mechanism
         parts: dict[str, Any] = {"crank": own.crank, "rod": own.rod, "counterweight": own.counterweight}
-        parts |= {"drive": self.drive, "clearance": self.clearance}
+        parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": own.cylinders}
         return Mechanism(
             speed=own.speed,
             acceleration=own.acceleration,

@@ -81,6 +81,8 @@ def _given(mechanism: Mechanism) -> list[str]:
             f"at {math.degrees(weight.angle):.6g} deg from the crank"
         )
     lines.append(f"slider: {mechanism.slider_mass:.6g} kg")
+    if mechanism.arrangement is not None:
+        lines.append(f"on one crankshaft: {mechanism.arrangement.text}; quantities are of one cylinder")
     if any(mechanism.gravity):
         x, y = mechanism.gravity
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")

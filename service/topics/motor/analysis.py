@@ -14,6 +14,7 @@ from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.self_locking import locking_margin
 from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
+from ....model.machine.arrangement import require_one_cylinder
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average, average_torque
@@ -30,8 +31,9 @@ _SAMPLES = 2048
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
-    Torque and power are None where friction locks the linkage.
+    Torque and power are None where friction locks the linkage. Raises `InputError` for several cylinders.
     """
+    require_one_cylinder(mechanism.arrangement, "motor sizing")
     design = row_of(linkage)
     torque = find_peaks(mechanism, Signal.TORQUE, design, kept=1)
     power = find_peaks(mechanism, Signal.POWER, design, kept=1)

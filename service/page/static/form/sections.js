@@ -24,7 +24,7 @@ export function sections(form) {
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
+    section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Several cylinders on one crankshaft", byschema(form, ["mechanism", "cylinders"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
     section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form)),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),

@@ -1,0 +1,189 @@
+"""Several identical cylinders on one crankshaft: torque, shaking force, moment and rocking couple of the whole.
+
+Each cylinder is a single machine at its own crank angle, seen in axes that turn with its bank (`arrangement`): gravity
+is turned back into them, and what it gives is turned out of them. What acts on the shaft or the frame adds up. With z
+the place of a cylinder along the shaft, its shaking force F gives the rocking couple (-z F_y, z F_x) about the plane
+z = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..signals.panels import Extreme, Panels, panels_of
+from .cycle import breakpoints, cycle
+from .shaking import shaking_curves
+
+Array = NDArray[np.float64]
+
+_TURN = 2.0 * math.pi
+_PIECES = 12  # panels of a turn at least
+_SAMPLES = 256
+_ROUNDING = 1e-14  # of forces that cancel, as a share of their sizes
+_NOTHING = 1e-12
+"""Share of what the cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
+_TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE = range(6)
+
+
+class Member(NamedTuple):
+    """A cylinder as a machine of its own. lead: of its crank angle over the shaft's, rad. bank: rad. place: m."""
+
+    mechanism: Mechanism
+    lead: float
+    bank: float
+    place: float
+
+
+@dataclass(frozen=True)
+class WholeCurves:
+    """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, axes as those of zero bank.
+
+    torque: of the drive, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
+    shaft, N m, on the frame. couple_x, couple_y: rocking couple, N m. torques: (k, n), of each cylinder.
+    """
+
+    crank_angle: Array
+    torque: Array
+    force_x: Array
+    force_y: Array
+    moment: Array
+    couple_x: Array
+    couple_y: Array
+    torques: Array
+
+
+@dataclass(frozen=True)
+class WholeCycle:
+    """Numbers of all cylinders together over a turn; SI.
+
+    least, greatest: torque. fluctuation: RMS deviation of the torque from its mean. energy_change: range of the
+    integral of torque minus mean, J, which a flywheel takes up. shaking_force, shaking_moment, couple: greatest sizes.
+    """
+
+    least: Extreme
+    greatest: Extreme
+    mean: float
+    rms: float
+    fluctuation: float
+    energy_change: float
+    shaking_force: Extreme
+    rms_shaking_force: float
+    shaking_moment: Extreme
+    rms_shaking_moment: float
+    couple: Extreme
+
+    @property
+    def peak(self) -> Extreme:
+        """The torque of greatest size."""
+        return max(self.greatest, self.least, key=lambda extreme: abs(extreme.value))
+
+
+def members(mechanism: Mechanism) -> tuple[Member, ...]:
+    """Return the cylinders of a machine, each as a machine of its own. Raises `InputError` without an arrangement."""
+    arrangement = mechanism.arrangement
+    if arrangement is None:
+        raise InputError(
+            "several cylinders need to be stated; got none; add to the job for example "
+            '[mechanism] cylinders = { phases = ["0 deg", "180 deg"] }'
+        )
+    found = []
+    x, y = mechanism.gravity
+    for k in range(len(arrangement.phases)):
+        bank = arrangement.bank(k)
+        c, s = math.cos(bank), math.sin(bank)
+        turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
+        alone = replace(mechanism, arrangement=None, gravity=turned)
+        found.append(Member(alone, arrangement.lead(k), bank, arrangement.place(k)))
+    return tuple(found)
+
+
+def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> WholeCurves:
+    """Return the curves of all cylinders together at crank angles (n,) of the shaft, rad; raises as `cycle` does."""
+    theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
+    for member in members(mechanism):
+        at = theta + member.lead
+        torques.append(cycle(member.mechanism, linkage, at).torque)
+        own = shaking_curves(member.mechanism, linkage, at)
+        c, s = math.cos(member.bank), math.sin(member.bank)
+        x, y = c * own.force_x - s * own.force_y, s * own.force_x + c * own.force_y
+        sums += np.stack([x, y, own.moment, -member.place * y, member.place * x])
+        force = np.hypot(x, y)
+        couple = abs(member.place) * force
+        sizes += np.stack([force, force, np.abs(own.moment), couple, couple])
+    sums[np.abs(sums) <= _ROUNDING * sizes] = 0.0
+    force_x, force_y, moment, couple_x, couple_y = sums
+    torque = np.sum(torques, axis=0)
+    return WholeCurves(theta, torque, force_x, force_y, moment, couple_x, couple_y, np.stack(torques))
+
+
+def whole_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the crank angles of the shaft, rad in [0, 2 pi), where a torque may jump or turn sharply."""
+    found = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
+    return np.unique(np.mod(np.concatenate(found), _TURN))
+
+
+def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
+    """Return the numbers of all cylinders together; raises as `cycle` and `breakpoints` do."""
+    linkage = single(mechanism, linkage)
+    cuts = whole_breakpoints(mechanism, linkage)
+    ends = np.unique(np.concatenate([cuts, cuts[:1] + _TURN, cuts[0] + _TURN / _PIECES * np.arange(1, _PIECES)]))
+    sizes = _sizes(mechanism, linkage)
+    found = panels_of(lambda theta: _followed(whole_curves(mechanism, linkage, theta)), ends, sizes)
+    least, greatest = (_real(extreme, sizes[_TORQUE]) for extreme in found.extremes(_TORQUE))
+    moment = max(found.extremes(_MOMENT), key=lambda extreme: abs(extreme.value))
+    mean = found.mean(_TORQUE)
+    return WholeCycle(
+        least=least,
+        greatest=greatest,
+        mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
+        rms=math.sqrt(found.mean_square(_TORQUE)),
+        fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
+        energy_change=found.swing(_TORQUE),
+        shaking_force=_root(found, _FORCE, sizes),
+        rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE))),
+        shaking_moment=_real(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT]),
+        rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT)),
+        couple=_root(found, _COUPLE, sizes),
+    )
+
+
+def _followed(curves: WholeCurves) -> Array:
+    x, y = curves.force_x, curves.force_y
+    couple = curves.couple_x**2 + curves.couple_y**2
+    return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple])
+
+
+def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the sizes of the curves that are followed, if the cylinders did not cancel."""
+    theta = np.linspace(0.0, _TURN, _SAMPLES, endpoint=False)
+    sizes = np.zeros(6)
+    for member in members(mechanism):
+        own = shaking_curves(member.mechanism, linkage, theta)
+        force = np.hypot(own.force_x, own.force_y).max()
+        torque = np.abs(cycle(member.mechanism, linkage, theta).torque).max()
+        sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place)])
+    sizes[[_FORCE, _COUPLE]] **= 2
+    return sizes
+
+
+def _real(extreme: Extreme, size: float) -> Extreme:
+    """Return an extreme; none where cylinders cancel but for rounding."""
+    if not abs(extreme.value) > _NOTHING * size:
+        return Extreme(0.0, math.nan)
+    return Extreme(extreme.value, extreme.angle % _TURN)
+
+
+def _root(found: Panels, curve: int, sizes: Array) -> Extreme:
+    """Return the greatest size of a force whose square is followed."""
+    greatest = found.extremes(curve)[1]
+    return _real(Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]))

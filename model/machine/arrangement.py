@@ -1,0 +1,94 @@
+"""Several identical cylinders on one crankshaft: angles between their cranks, bank angles, places along the shaft.
+
+Cylinder k has its crank at the angle theta + phase_k and its slider line turned by bank_k about the shaft, both
+counter-clockwise. So it stands as a single machine does at the crank angle theta + phase_k - bank_k, drawn turned by
+bank_k. Crank, counterweight, rod, slider, loads and friction are those of each cylinder.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..checks import keep_tuples, require_all_finite
+from ..errors import InputError
+
+MOST = 24
+_SAME = 1e-9  # rad
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arrangement:
+    """Identical cylinders on one crankshaft.
+
+    phases: angle of each crank from the shaft's zero, counter-clockwise, rad. banks: angle of each slider line from
+    +x, counter-clockwise, rad; all zero where left out. places: of the cylinders along the shaft, m, towards the viewer
+    to whom counter-clockwise is as it says; all in one plane where left out.
+    """
+
+    phases: tuple[float, ...]
+    banks: tuple[float, ...] = ()
+    places: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        keep_tuples(self, "phases", "banks", "places")
+        for name in ("phases", "banks", "places"):
+            require_all_finite(f"{name} of cylinders", getattr(self, name))
+        count = len(self.phases)
+        if not 1 <= count <= MOST:
+            raise InputError(f"cylinders must be 1 to {MOST}; got {count} phases; give a phase for each cylinder")
+        for name in ("banks", "places"):
+            got = len(getattr(self, name))
+            if got not in (0, count):
+                raise InputError(
+                    f"{name} of cylinders must be as many as their phases; got {got} {name} and {count} phases; "
+                    f"give one for each cylinder, or leave out {name}"
+                )
+        for k in range(count):
+            for i in range(k):
+                self._require_apart(i, k)
+
+    def _require_apart(self, i: int, k: int) -> None:
+        """Refuse two cylinders that stand alike at one place."""
+        angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
+        if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
+            own = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
+            raise InputError(
+                f"cylinders at one place must differ in phase or bank; got {math.degrees(self.phases[i]):.6g} deg for "
+                f"cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{own}; change one of "
+                "them, or give the places of all along the shaft"
+            )
+
+    def bank(self, k: int) -> float:
+        """Return the bank angle of cylinder k, rad."""
+        return self.banks[k] if self.banks else 0.0
+
+    def place(self, k: int) -> float:
+        """Return the place of cylinder k along the shaft, m."""
+        return self.places[k] if self.places else 0.0
+
+    def lead(self, k: int) -> float:
+        """Return how far the crank angle of cylinder k, from its own slider line, is ahead of the shaft's, rad."""
+        return self.phases[k] - self.bank(k)
+
+    @property
+    def text(self) -> str:
+        """The cylinders in a few words."""
+        lists = [f"{len(self.phases)} cylinders at {_degrees(self.phases)} deg"]
+        lists += [f"banks {_degrees(self.banks)} deg"] if self.banks else []
+        lists += [f"at {', '.join(f'{1e3 * at:.6g}' for at in self.places)} mm along the shaft"] if self.places else []
+        return ", ".join(lists)
+
+
+def _degrees(angles: tuple[float, ...]) -> str:
+    return ", ".join(f"{math.degrees(angle):.6g}" for angle in angles)
+
+
+def require_one_cylinder(arrangement: Arrangement | None, what: str) -> None:
+    """Refuse several cylinders where an analysis is of one; what: its subject."""
+    if arrangement is not None and len(arrangement.phases) > 1:
+        raise InputError(
+            f"{what} takes a machine of one cylinder; got {arrangement.text}; leave out cylinders for that of one, or "
+            "see analyse --show cylinders"
+        )

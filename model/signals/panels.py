@@ -1,0 +1,122 @@
+"""Curves over the crank angle as polynomials on panels: means, extremes and integrals to rounding.
+
+On every panel each curve is its polynomial of degree 15 through the nodes of Gauss and Legendre. Panels are halved
+until the last coefficients have died out. Extremes are at ends of panels, by their one-sided limits, or where the
+derivative of the polynomial is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Curves = Callable[[Array], Array]
+
+_DEGREE = 15
+_TAIL = 3  # coefficients that tell whether a panel is resolved ...
+_RESOLVED = 1e-12  # ... and what is left of them then, of the curve's size
+_DEEPEST = 24  # halvings of a panel
+_MOST = 20_000  # panels: beyond it what is left is the rounding of the curves
+_THIN = 1e-12  # rad
+_NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
+_FIT = (np.arange(_DEGREE + 1) + 0.5)[:, None] * (_WEIGHTS[:, None] * legendre.legvander(_NODES, _DEGREE)).T
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """An extreme value of a curve and the crank angle where it is, rad."""
+
+    value: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Curves on p panels. low, width: (p,), rad. coefficients: (p, 16, m), of Legendre polynomials."""
+
+    low: Array
+    width: Array
+    coefficients: Array
+
+    def mean(self, curve: int) -> float:
+        """Return the mean over the crank angle."""
+        return float(np.sum(self.width * self.coefficients[:, 0, curve]) / np.sum(self.width))
+
+    def mean_square(self, curve: int, less: float = 0.0) -> float:
+        """Return the mean of the square of the curve minus a number."""
+        c = self.coefficients[:, :, curve].copy()
+        c[:, 0] -= less
+        squares = np.sum(c * c / (2.0 * np.arange(_DEGREE + 1) + 1.0), axis=1)
+        return float(np.sum(self.width * squares) / np.sum(self.width))
+
+    def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
+        """Return the least and the greatest value."""
+        return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
+
+    def swing(self, curve: int) -> float:
+        """Return the range of the integral of the curve minus its mean: of a torque, J."""
+        c = self.coefficients[:, :, curve].copy()
+        c[:, 0] -= self.mean(curve)
+        own = np.array([legendre.legint(row, lbnd=-1) for row in c]) * (0.5 * self.width)[:, None]
+        starts = np.concatenate([[0.0], np.cumsum(own.sum(axis=1))])
+        found = [*starts]
+        for start, row, integral in zip(starts, c, own, strict=False):
+            found += [start + legendre.legval(x, integral) for x in _roots(row)]
+        return float(max(found) - min(found))
+
+    def _greatest(self, coefficients: Array, sign: float) -> Extreme:
+        c = sign * coefficients
+        x = np.concatenate([[-1.0], _NODES, [1.0]])
+        samples = legendre.legval(x, c.T)  # (p, 18)
+        top, spread = samples.max(axis=1), np.ptp(samples, axis=1)
+        panel, place = np.unravel_index(int(np.argmax(samples)), samples.shape)
+        best, at, where = float(samples[panel, place]), float(x[place]), int(panel)
+        for i in np.flatnonzero(top + spread >= best):
+            stationary = _roots(legendre.legder(c[i]))
+            values = legendre.legval(stationary, c[i])
+            if len(values) and values.max() > best:
+                best, at, where = float(values.max()), float(stationary[np.argmax(values)]), int(i)
+        return Extreme(sign * best, float(self.low[where] + 0.5 * (1.0 + at) * self.width[where]))
+
+
+def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
+    """Return curves (m,) on panels between ascending ends, rad.
+
+    curves: of crank angles (n,), (m, n), smooth between the ends. sizes: (m,), against which what is left counts.
+    """
+    low, width = ends[:-1], np.diff(ends)
+    low, width = low[width > _THIN], width[width > _THIN]
+    kept: list[tuple[Array, Array, Array]] = []
+    total = 0
+    for depth in range(_DEEPEST + 1):
+        angles = low[:, None] + 0.5 * width[:, None] * (1.0 + _NODES)
+        values = curves(angles.ravel()).reshape(-1, *angles.shape)
+        found = np.einsum("ki,mpi->pkm", _FIT, values)
+        rough = np.any(np.abs(found[:, -_TAIL:]) > _RESOLVED * sizes, axis=(1, 2))
+        if depth == _DEEPEST or total + 2 * len(low) > _MOST:
+            rough[:] = False
+        total += len(low)
+        kept.append((low[~rough], width[~rough], found[~rough]))
+        if not rough.any():
+            break
+        half = 0.5 * width[rough]
+        low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
+    lows, widths, coefficients = (np.concatenate(part) for part in zip(*kept, strict=True))
+    order = np.argsort(lows, kind="stable")
+    return Panels(lows[order], widths[order], coefficients[order])
+
+
+def _roots(coefficients: Array) -> Array:
+    """Return the real roots within the panel."""
+    size = np.abs(coefficients).max()
+    if not size > 0.0:
+        return np.zeros(0)
+    kept = legendre.legtrim(coefficients, 1e-15 * size)
+    roots = legendre.legroots(kept) if len(kept) > 1 else np.zeros(0)
+    roots = roots[np.abs(roots.imag) < 1e-6].real
+    return np.asarray(roots[np.abs(roots) <= 1.0])

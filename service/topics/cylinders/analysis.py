@@ -1,0 +1,117 @@
+"""Several cylinders on one crankshaft: torque, shaking force, moment and rocking couple of the whole; each cylinder."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from ....model.cycle.several import members, whole_breakpoints, whole_curves, whole_cycle
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.signals.panels import Extreme
+from ....model.signals.signals import Signal
+from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
+from ...text import tables as text
+from ..peaks import peak
+
+_FORCES = {
+    "peak_torque_Nm": Signal.TORQUE,
+    "peak_crank_pin_force_N": Signal.CRANK_PIN_FORCE,
+    "peak_slider_pin_force_N": Signal.SLIDER_PIN_FORCE,
+    "peak_guide_force_N": Signal.GUIDE_FORCE,
+}
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return torque and shaking of all cylinders together, and the peaks of each. None: an angle of what is zero.
+
+    Raises `InputError` for a machine without stated cylinders.
+    """
+    each = []
+    for member in members(mechanism):
+        phase = math.degrees(member.lead + member.bank)
+        own = {"phase_deg": phase, "bank_deg": math.degrees(member.bank), "place_mm": 1e3 * member.place}
+        each.append(own | {key: peak(member.mechanism, kind, linkage).value for key, kind in _FORCES.items()})
+    whole = whole_cycle(mechanism, linkage)
+    return {
+        "cylinders": each,
+        **_with_angle("peak_torque", "Nm", Extreme(abs(whole.peak.value), whole.peak.angle)),
+        **_with_angle("least_torque", "Nm", whole.least),
+        **_with_angle("greatest_torque", "Nm", whole.greatest),
+        "mean_torque_Nm": whole.mean,
+        "rms_torque_Nm": whole.rms,
+        "torque_fluctuation_Nm": whole.fluctuation,
+        "energy_change_J": whole.energy_change,
+        **_with_angle("peak_shaking_force", "N", whole.shaking_force),
+        "rms_shaking_force_N": whole.rms_shaking_force,
+        **_with_angle("peak_shaking_moment", "Nm", whole.shaking_moment),
+        "rms_shaking_moment_Nm": whole.rms_shaking_moment,
+        **_with_angle("peak_rocking_couple", "Nm", whole.couple),
+        "peak_shaking_force_of_one_N": peak(mechanism, Signal.SHAKING_FORCE, linkage).value,
+        "peak_shaking_moment_of_one_Nm": peak(mechanism, Signal.SHAKING_MOMENT, linkage).value,
+    }
+
+
+def _with_angle(name: str, unit: str, extreme: Extreme) -> dict[str, Any]:
+    at = None if math.isnan(extreme.angle) else math.degrees(extreme.angle)
+    return {f"{name}_{unit}": extreme.value, f"{name}_angle_deg": at}
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    one = numbers["cylinders"][0]["peak_torque_Nm"]
+    lines: list[text.Line] = []
+    for key, unit, remark in (
+        ("peak_torque", "N m", f"{one:.6g} of the first alone"),
+        ("least_torque", "N m", ""),
+        ("greatest_torque", "N m", ""),
+        ("mean_torque", "N m", ""),
+        ("rms_torque", "N m", ""),
+        ("torque_fluctuation", "N m", "RMS deviation from the mean"),
+        ("energy_change", "J", "range of the integral of torque minus mean, for a flywheel"),
+        ("peak_shaking_force", "N", f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone"),
+        ("rms_shaking_force", "N", ""),
+        ("peak_shaking_moment", "N m", f"{numbers['peak_shaking_moment_of_one_Nm']:.6g} of one alone"),
+        ("rms_shaking_moment", "N m", ""),
+        ("peak_rocking_couple", "N m", "about the shaft's zero, from the places of the cylinders"),
+    ):
+        at = numbers.get(f"{key}_angle_deg")
+        remarks = [f"at {at:.2f} deg"] if at is not None else []
+        words = key.replace("_", " ").replace("rms", "RMS")
+        said = ", ".join([*remarks, remark] if remark else remarks)
+        lines.append((words, numbers[f"{key}_{unit.replace(' ', '')}"], unit, said))
+    text.show_lines(console, f"{len(numbers['cylinders'])} cylinders on one crankshaft, together", lines)
+    heads = (
+        ">phase, deg",
+        ">bank, deg",
+        ">place, mm",
+        ">peak torque, N m",
+        ">crank pin, N",
+        ">slider pin, N",
+        ">guide, N",
+    )
+    rows = text.table(*heads)
+    for own in numbers["cylinders"]:
+        rows.add_row(*(f"{value:.6g}" for value in own.values()))
+    text.print_table(console, rows)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return torque, shaking force and shaking moment of the whole over a turn, with the torque of each cylinder."""
+    theta = turn(whole_breakpoints(mechanism, linkage))
+    degrees, now = np.degrees(theta), whole_curves(mechanism, linkage, theta)
+    each = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(now.torques)]
+    together = Line("together", degrees, now.torque)
+    forces = [Line("along x", degrees, now.force_x), Line("along y", degrees, now.force_y, 1)]
+    panels = [
+        over_turn("drive torque, N m", *each, together),
+        over_turn("shaking force, N", *forces),
+        over_turn("shaking moment about the shaft, N m", Line("together", degrees, now.moment)),
+    ]
+    if mechanism.arrangement is not None and mechanism.arrangement.places:
+        couple = [Line("about x", degrees, now.couple_x), Line("about y", degrees, now.couple_y, 1)]
+        panels.append(over_turn("rocking couple, N m", *couple))
+    return Sheet("Cylinders on one crankshaft", "", tuple(panels), width=6.4, height=2.25, stacked=True)
