@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from ..machine.derived import derived
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
+from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
@@ -126,11 +127,20 @@ def cycle(
 
 def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
     """Return the curves of one linkage, which need not turn fully but closes at all of the crank angles (n,)."""
+    if cycle_turns(mechanism) > 1:
+        return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = Watch(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
     _curves(_block(mechanism, linkage, loads), loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
+
+
+def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
+    """Return the curves of a cycle of two turns, each angle from the machine of its own turn."""
+    turn = half_at(mechanism, *linkage.dead_centre_angles, angles)
+    parts = [curves_of(half, linkage, angles, speeds, accelerations) for half in halves(mechanism)]
+    return Cycle(*(np.where(turn == 0, *(getattr(part, field.name) for part in parts)) for field in fields(Cycle)))
 
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
@@ -141,6 +151,7 @@ def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
 
 def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) of one fully turning linkage at which a load has kinks or jumps."""
+    require_one_turn(mechanism, "a swing")
     loads = load_structure(mechanism)
     block, out = _block(mechanism, linkage, loads), np.empty(room_for(loads))
     block[_SPEED] = 0.0  # valves open in both senses of rotation
@@ -171,9 +182,13 @@ def _breakpoints(block: Table, loads: Loads, watch: Watch, out: Row, rubbing: bo
 def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) in [0, 2 pi), rad, of possible jumps and kinks in torque and forces.
 
-    At least one; in between every curve is smooth. Raises `InputError` where friction locks the linkage.
+    At least one; in between every curve is smooth. Those of a cycle of two turns are in [0, 4 pi). Raises `InputError`
+    where friction locks the linkage.
     """
     linkage = single(mechanism, linkage)
+    if cycle_turns(mechanism) > 1:
+        found = np.concatenate([breakpoints(half, linkage) for half in halves(mechanism)])
+        return np.unique(np.concatenate([found, found + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])

@@ -24,6 +24,7 @@ from ..dynamics.segments import crowded, crowding, uncrowded
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
+from ..machine.two_turns import TURN, cycle_turns
 from ..signals.averages import average
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
@@ -65,7 +66,7 @@ class Energies:
 
 
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
-    """Return the energies of one turn of one linkage.
+    """Return the energies of one turn of one linkage, of a cycle of two turns their mean.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
     """
@@ -97,8 +98,10 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
         )
         return found
 
-    edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + 2.0 * np.pi)]
-    given, useful, guide, pivot, crank_pin, slider_pin, throughput = _integral(rates, np.array(edges))
+    turns = cycle_turns(mechanism)
+    edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
+    whole = _integral(rates, np.array(edges))
+    given, useful, guide, pivot, crank_pin, slider_pin, throughput = (energy / turns for energy in whole)
     inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
     stored = turn * 2.0 * np.pi * mechanism.acceleration * float(inertia)
     return Energies(given, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)

@@ -26,6 +26,7 @@ from ..machine.loads.cylinder import Cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
+from ..machine.two_turns import one_turn
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def gas_cycle(
 ) -> tuple[Array, Array | None]:
     """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
     designs = turning(designs)
-    raw, loads = fullest_inputs(mechanism)
+    raw, loads = fullest_inputs(one_turn(mechanism))
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
     values = np.asarray(of(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)

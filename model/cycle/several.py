@@ -19,13 +19,13 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
+from ..machine.two_turns import TURN, cycle_turns
 from ..signals.panels import Extreme, Panels, panels_of
 from .cycle import breakpoints, cycle
 from .shaking import shaking_curves
 
 Array = NDArray[np.float64]
 
-_TURN = 2.0 * math.pi
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 256
 _ROUNDING = 1e-14  # of forces that cancel, as a share of their sizes
@@ -127,19 +127,21 @@ def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 
 
 def whole_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the crank angles of the shaft, rad in [0, 2 pi), where a torque may jump or turn sharply."""
+    """Return the crank angles of the shaft, rad from 0, where a torque may jump or turn sharply."""
     found = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
-    return np.unique(np.mod(np.concatenate(found), _TURN))
+    return np.unique(np.mod(np.concatenate(found), cycle_turns(mechanism) * TURN))
 
 
 def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
     """Return the numbers of all cylinders together; raises as `cycle` and `breakpoints` do."""
     linkage = single(mechanism, linkage)
     cuts = whole_breakpoints(mechanism, linkage)
-    ends = np.unique(np.concatenate([cuts, cuts[:1] + _TURN, cuts[0] + _TURN / _PIECES * np.arange(1, _PIECES)]))
+    period = cycle_turns(mechanism) * TURN
+    pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
+    ends = np.unique(np.concatenate([cuts, pieces]))
     sizes = _sizes(mechanism, linkage)
     found = panels_of(lambda theta: _followed(whole_curves(mechanism, linkage, theta)), ends, sizes)
-    least, greatest = (_real(extreme, sizes[_TORQUE]) for extreme in found.extremes(_TORQUE))
+    least, greatest = (_real(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
     moment = max(found.extremes(_MOMENT), key=lambda extreme: abs(extreme.value))
     mean = found.mean(_TORQUE)
     return WholeCycle(
@@ -149,11 +151,11 @@ def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
         rms=math.sqrt(found.mean_square(_TORQUE)),
         fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
         energy_change=found.swing(_TORQUE),
-        shaking_force=_root(found, _FORCE, sizes),
+        shaking_force=_root(found, _FORCE, sizes, period),
         rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE))),
-        shaking_moment=_real(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT]),
+        shaking_moment=_real(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
         rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT)),
-        couple=_root(found, _COUPLE, sizes),
+        couple=_root(found, _COUPLE, sizes, period),
     )
 
 
@@ -165,7 +167,7 @@ def _followed(curves: WholeCurves) -> Array:
 
 def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the sizes of the curves that are followed, if the cylinders did not cancel."""
-    theta = np.linspace(0.0, _TURN, _SAMPLES, endpoint=False)
+    theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     sizes = np.zeros(6)
     for member in members(mechanism):
         own = shaking_curves(member.mechanism, linkage, theta)
@@ -176,14 +178,14 @@ def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     return sizes
 
 
-def _real(extreme: Extreme, size: float) -> Extreme:
+def _real(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme; none where cylinders cancel but for rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
-    return Extreme(extreme.value, extreme.angle % _TURN)
+    return Extreme(extreme.value, extreme.angle % period)
 
 
-def _root(found: Panels, curve: int, sizes: Array) -> Extreme:
+def _root(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:
     """Return the greatest size of a force whose square is followed."""
     greatest = found.extremes(curve)[1]
-    return _real(Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]))
+    return _real(Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period)

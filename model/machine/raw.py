@@ -19,6 +19,7 @@ from .links import Bar, Link
 from .loads.registry import code_of
 from .mechanism import Mechanism
 from .remembered import remembered
+from .two_turns import require_one_turn
 
 Raw = IntEnum(
     "Raw",
@@ -116,7 +117,8 @@ def _link_numbers(link: Link) -> tuple[float, ...]:
 
 
 def load_structure(mechanism: Mechanism) -> Loads:
-    """Return kinds, datums and tables of a mechanism's loads."""
+    """Return kinds, datums and tables of a mechanism's loads. Raises `InputError` for a cycle of two turns."""
+    require_one_turn(mechanism, "this analysis")
     at: list[float] = []
     force: list[float] = []
     start = [0]

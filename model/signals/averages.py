@@ -34,7 +34,9 @@ from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
+from ..machine.two_turns import cycle_turns, halves
 from .signals import Signal, signal
+from .two_turns import averaged
 from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
@@ -241,6 +243,9 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     work over a turn.
     """
     designs = turning(designs)
+    if kind.needs_forces and cycle_turns(mechanism) > 1:
+        first, second = (average(half, kind, designs, gradients=gradients) for half in halves(mechanism))
+        return Averages(*averaged(first, second))
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
     raw, loads = inputs_of(mechanism, kind)

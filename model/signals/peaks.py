@@ -37,7 +37,9 @@ from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
+from ..machine.two_turns import cycle_turns, halves
 from .signals import Signal, design_motion, signal
+from .two_turns import highest
 from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
@@ -61,7 +63,7 @@ class Peaks:
     """Local peaks of n designs, highest first.
 
     values: (n, k), SI, -inf beyond the last peak; where friction locks the design one peak of +inf, at no angle (NaN).
-    angles: (n, k), crank angles in [0, 2 pi), rad.
+    angles: (n, k), crank angles in [0, 2 pi), rad; in [0, 4 pi) for a cycle of two turns.
     gradients: (n, k, v), by the design variables; None unless asked for.
     """
 
@@ -336,6 +338,12 @@ def find_peaks(
     window of the mechanism's tolerances. kept: peaks returned a design. angles: samples a turn.
     """
     designs = turning(designs)
+    if kind.needs_forces and cycle_turns(mechanism) > 1:
+        first, second = (
+            find_peaks(half, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
+            for half in halves(mechanism)
+        )
+        return Peaks(*highest(mechanism, designs, first, second))
     n = len(designs)
     values, where = np.empty((n, kept)), np.empty((n, kept))
     raw, loads = inputs_of(mechanism, kind)

@@ -28,6 +28,7 @@ from ..machine.mechanism import Clearances, Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.remembered import remembered
+from ..machine.two_turns import one_turn
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .signals import Signal, design_motion, signal
@@ -325,7 +326,7 @@ def screen(
     n, signals = len(designs), len(kinds)
     values, where = np.empty((signals, n)), np.empty((signals, n if places else 0))
     standing = np.empty(n if still else 0)
-    raw, loads = fullest_inputs(mechanism)
+    raw, loads = fullest_inputs(one_turn(mechanism))
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))

@@ -11,6 +11,7 @@ from ..dynamics.segments import Watch
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
 from ..machine.remembered import remembered
+from ..machine.two_turns import one_turn
 from .signals import Signal
 
 Array = NDArray[np.float64]
@@ -30,9 +31,9 @@ def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Wa
 
 def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
-    raw, loads = fullest_inputs(mechanism)
     if kind.needs_forces:
-        return raw, loads
+        return fullest_inputs(mechanism)
+    raw, _ = fullest_inputs(one_turn(mechanism))
     return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], _no_loads()
 
 

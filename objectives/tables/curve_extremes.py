@@ -22,6 +22,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ..kinds import Face
 from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
@@ -54,7 +55,7 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 
 @dataclass(frozen=True)
 class Extreme:
-    """An extreme value of a curve, SI, with its crank angle, rad in [0, 2 pi), and slider position, m.
+    """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
     Of several equal ones it is that of one of them. Angle and position are NaN for a curve that is constant; all three
     are NaN for one that friction leaves undetermined at some crank angle.
@@ -94,7 +95,8 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     pieces = _pieces(mechanism, linkage)
     samples = [values(piece) for piece in pieces]
     sizes = _sizes(first, samples)
-    least, greatest = (_greatest(values, pieces, samples, sizes, sign) for sign in (-1.0, 1.0))
+    period = cycle_turns(mechanism) * _TURN
+    least, greatest = (_greatest(values, pieces, samples, sizes, sign, period) for sign in (-1.0, 1.0))
     found = []
     for row, curve in enumerate(first):
         ends = []
@@ -139,7 +141,7 @@ def undefined_because(name: str, mechanism: Mechanism) -> str:
 
 
 def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return crank angles (k,) in [0, 2 pi), rad, in ascending order, between which every curve is smooth.
+    """Return crank angles (k,) of a cycle from 0, rad, in ascending order, between which every curve is smooth.
 
     Where friction locks one linkage, they are those without friction: forces are then undetermined anyway.
     """
@@ -147,7 +149,9 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
     locks = not float(locking_margin(mechanism.friction, dimensions)[0][0]) > 0.0
     cuts = breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage)
     ends = [float(angle) for angle in linkage.dead_centre_angles]
-    return np.unique(np.mod(np.concatenate([cuts, ends, [0.5 * math.pi, 1.5 * math.pi]]), _TURN))
+    fixed = np.mod([*ends, 0.5 * math.pi, 1.5 * math.pi], _TURN)
+    every = [cuts, *(fixed + turn * _TURN for turn in range(cycle_turns(mechanism)))]
+    return np.unique(np.mod(np.concatenate(every), cycle_turns(mechanism) * _TURN))
 
 
 def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
@@ -155,7 +159,7 @@ def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     cuts = cuts_of(mechanism, linkage)
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []
-    for start, end in zip(cuts, [*cuts[1:], cuts[0] + _TURN], strict=True):
+    for start, end in zip(cuts, [*cuts[1:], cuts[0] + cycle_turns(mechanism) * _TURN], strict=True):
         if end - start < 8.0 * _INSET:
             continue  # cuts that are the same but for rounding
         low, high = crowded(start, kappa), crowded(end, kappa)
@@ -176,7 +180,12 @@ def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
 
 
 def _greatest(
-    values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, sign: float
+    values: Callable[[Array], Array],
+    pieces: list[Array],
+    samples: list[Array],
+    sizes: Array,
+    sign: float,
+    period: float,
 ) -> list[tuple[float, float]]:
     """Return value and crank angle of each curve's greatest value (sign 1) or least value (sign -1)."""
     found, rows, left, right, owner = [], [], [], [], []
@@ -201,7 +210,7 @@ def _greatest(
         best = inside[np.argmax(tops[inside])]
         if tops[best] > found[row][0] + _EQUAL * sizes[row, 0]:
             found[row] = (float(tops[best]), float(angles[best]))
-        found[row] = (sign * found[row][0] + 0.0, found[row][1] % _TURN)
+        found[row] = (sign * found[row][0] + 0.0, found[row][1] % period)
     return found
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import require_one_turn
 from ..kinds import Face
 from ..quantity import Array
 from .curve_extremes import defined_curves, golden
@@ -73,6 +74,7 @@ def deviations(
     crank_angle: (n,), rad, in any order and over any number of turns. measured: (n,) by the name of a curve of
     `defined_curves`, SI; NaN where nothing was measured, not everywhere. Raises what `defined_curves` raises.
     """
+    require_one_turn(mechanism, "the comparison with measured curves")
     theta = np.mod(crank_angle, _TURN)
     computed = {curve.name: curve for curve in defined_curves(mechanism, linkage, theta)}
     nodes = np.linspace(0.0, _TURN, _NODES + 1)

@@ -19,6 +19,7 @@ import numpy as np
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ..front.stationarity import Array
@@ -85,7 +86,8 @@ class Whip:
 def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
     """Return the joints' loads on crank and rod; pin forces to machine precision, the others sampled."""
     cuts = breakpoints(mechanism, linkage)
-    angles = np.concatenate([np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES), cuts - _ASIDE, cuts + _ASIDE])
+    even = np.arange(_ANGLES * cycle_turns(mechanism)) * (2.0 * np.pi / _ANGLES)
+    angles = np.concatenate([even, cuts - _ASIDE, cuts + _ASIDE])
     curves = cycle(mechanism, linkage, angles)
     motion = linkage.at(angles)
     pin = np.stack([curves.crank_pin_x, curves.crank_pin_y])  # of the crank on the rod

@@ -48,13 +48,15 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) ->
 
 
 def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric", *, machine: bool = True) -> str:
-    """Return a row for each of 360 crank angles, a column for each curve of `cycle_curves`; empty where not defined.
+    """Return a row for each degree of a cycle, a column for each curve of `cycle_curves`; empty where not defined.
 
     machine: whether masses, loads and tolerances are known; else only the motion is given.
     """
+    from ...model.machine.two_turns import cycle_turns
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
-    curves = cycle_curves(mechanism, linkage, even_angles(_ANGLES))
+    turns = cycle_turns(mechanism)
+    curves = cycle_curves(mechanism, linkage, turns * even_angles(turns * _ANGLES))
     columns = {
         curve.field: (curve.shown.factor * curve.values).tolist()
         for curve in curves

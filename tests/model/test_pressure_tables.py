@@ -135,7 +135,10 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
         ({"pressures": ["8 bar", "-0.2 bar", "1 bar"]}, 'pressures.*must be zero or more; got "-0.2 bar"'),
         ({"bore": "0 mm"}, "bore: must be positive"),
         ({"piston_rod": "100 mm"}, "thinner than the bore; got 100 mm"),
-        ({"pressure_angles": ["0 deg", "40 deg", "720 deg"]}, "span less than 360 deg; got 720 deg"),
+        (
+            {"pressure_angles": ["0 deg", "40 deg", "720 deg"]},
+            "less than 360 deg; got 720 deg; for a cycle of two turns",
+        ),
         ({"pressure_angles": ["0 deg", "40 deg", "30 deg"]}, "must increase; got"),
         ({"pressures": ["1 bar", "2 bar"]}, "got 2 pressures at 3 points"),
     ],
@@ -150,7 +153,7 @@ def test_a_wrong_table_of_pressures_is_refused_at_its_key(wrong: dict[str, Any],
     [
         ((0.0, 180.0, 360.0), (5.0, 1.0, 5.0), "leave out the last point, which repeats the first"),
         ((0.0, 180.0, 360.0), (5.0, 1.0, 1.0), "does not close"),
-        ((0.0, 180.0, 720.0), (5.0, 1.0, 5.0), "more than a turn"),
+        ((0.0, 180.0, 720.0), (5.0, 1.0, 5.0), "for a cycle of two turns give cycle"),
     ],
 )
 def test_tables_of_a_turn_and_more_are_refused_with_what_they_need(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,9 +14,11 @@ from ...errors import InputError
 from .cylinder import PRESSURES, Head, piston_forces
 from .load import (
     ANGLE_DATUM,
+    CYCLE,
     DURING,
     FORCES,
     AngleDatum,
+    CycleAngle,
     During,
     Enters,
     Entry,
@@ -28,21 +30,25 @@ from .load import (
 )
 
 _ROUNDING = 1e-9  # rad
+_TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)
 class AngleTable(Load):
     """A force tabulated over crank angle, interpolated linearly and periodically.
 
-    angles: increasing, rad, spanning less than one turn (the first point follows the last one a turn later).
+    angles: increasing, rad, spanning less than the cycle (the first point follows the last one a cycle later).
     forces: N, positive outward. during: the force acts in these strokes. datum: what the angles are counted from: zero,
-    counter-clockwise, or a dead centre, in the sense in which the crank turns.
+    counter-clockwise, or a dead centre, in the sense in which the crank turns. cycle: one turn or two. turn: 0, or the
+    one of the two turns that the load is of (`two_turns`).
     """
 
     angles: tuple[float, ...]
     forces: tuple[float, ...]
     during: During = "cycle"
     datum: AngleDatum = "zero crank angle"
+    cycle: CycleAngle = "360 deg"
+    turn: int = 0
 
     enters: ClassVar = Enters.ANGLE_TABLE
 
@@ -51,31 +57,55 @@ class AngleTable(Load):
         require_table("angles", self.angles, self.forces)
         require_word("during", self.during, During)
         require_word("datum", self.datum, AngleDatum)
+        require_word("cycle", self.cycle, CycleAngle)
         span = self.angles[-1] - self.angles[0]
-        if span >= 2.0 * math.pi:
+        if span >= self._period:
             raise InputError(
-                f"angles of a periodic table must span less than 360 deg; got {math.degrees(span):.6g} deg; "
+                f"angles of a periodic table must span less than {self.cycle}; got {math.degrees(span):.6g} deg; "
                 + self._instead(span)
             )
 
     def _instead(self, span: float) -> str:
-        """Return the remedy for a table of a turn or more."""
-        if span > 2.0 * math.pi + _ROUNDING:
-            return "a cycle of more than a turn, such as that of four strokes, is not covered; give one turn"
+        """Return the remedy for a table of a cycle or more."""
+        if span > self._period + _ROUNDING:
+            more = self.cycle == "720 deg" or span > 2.0 * _TURN + _ROUNDING
+            return "give two turns at most" if more else 'for a cycle of two turns give cycle = "720 deg"'
         if self.forces[0] == self.forces[-1]:
             return "leave out the last point, which repeats the first"
         return (
-            "its last point is the first one a turn later, with another value, so that the table does not close; "
-            "correct one of the two and leave out the last"
+            f"its last point is the first one {self.cycle} later, with another value, {self.forces[-1]:.6g} N after "
+            f"{self.forces[0]:.6g} N, so that the table does not close; correct one of the two and leave out the last"
         )
+
+    @property
+    def _period(self) -> float:
+        return 2.0 * _TURN if self.cycle == "720 deg" else _TURN
+
+    @property
+    def cycle_turns(self) -> int:
+        """Two for a cycle of 720 deg, unless the table is of one of its turns."""
+        return 2 if self.cycle == "720 deg" and not self.turn else 1
+
+    def on_turn(self, turn: int) -> Load:
+        """Return the table of turn 1 or 2 alone, which need not close; itself where every turn is the same."""
+        return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return factors of one in the strokes in which the force acts."""
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return angles and forces, closed: the first knot comes again one turn later."""
-        return (*self.angles, self.angles[0] + 2.0 * math.pi), (*self.forces, self.forces[0])
+        """Return angles and forces, closed: the first knot comes again a cycle later. Of one turn both its ends."""
+        if self.turn:
+            begin = _TURN * (self.turn - 1)
+            inside = np.mod(np.subtract(self.angles, begin), self._period)
+            kept = np.sort(inside[(inside > _ROUNDING) & (inside < _TURN - _ROUNDING)])
+            at = np.concatenate([[0.0], kept, [_TURN]])
+            return at.tolist(), self._force(at + begin).tolist()
+        return (*self.angles, self.angles[0] + self._period), (*self.forces, self.forces[0])
+
+    def _force(self, angle: Any) -> Any:
+        return np.interp(angle, self.angles, self.forces, period=self._period)
 
     @property
     def turns(self) -> bool:
@@ -84,7 +114,8 @@ class AngleTable(Load):
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return one, unless the force is the same all over the cycle."""
-        constant = set(self.forces) == {0.0} or (self.during == "cycle" and len(set(self.forces)) == 1)
+        forces = set(self.knots()[1])
+        constant = forces == {0.0} or (self.during == "cycle" and len(forces) == 1)
         return {} if constant else {AngleTable: (1.0,)}
 
     def stroke_work(self, passage: Passage) -> Any:
@@ -96,24 +127,33 @@ class AngleTable(Load):
             step = angle[:, 1:2] - angle[:, :1]
             starts = (self.datum == "inner dead centre") == passage.outward
             angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
-        return passage.work(np.interp(angle, self.angles, self.forces, period=2.0 * math.pi))
+        if self.cycle_turns > 1:  # of a turn, the mean of both
+            return 0.5 * passage.work(self._force(angle) + self._force(angle + _TURN))
+        return passage.work(self._force(angle))
 
     @property
     def text(self) -> str:
         """The size of the table."""
         datum = f" from the {self.datum}" if self.turns else ""
-        return f"table of {len(self.angles)} crank angles{datum}, {self.during}"
+        cycle = f", cycle of {self.cycle}" if self.cycle_turns > 1 else ""
+        return f"table of {len(self.angles)} crank angles{datum}{cycle}, {self.during}"
 
 
 def _built(
-    crank_angles: tuple[float, ...], forces: tuple[float, ...], measured_from: AngleDatum, during: During
+    crank_angles: tuple[float, ...],
+    forces: tuple[float, ...],
+    measured_from: AngleDatum,
+    cycle: CycleAngle,
+    during: During,
 ) -> AngleTable:
-    return AngleTable(angles=crank_angles, forces=forces, datum=measured_from, during=during)
+    return AngleTable(angles=crank_angles, forces=forces, datum=measured_from, cycle=cycle, during=during)
 
 
-def _of_pressures(pressure_angles: tuple[float, ...], head: Head, during: During, **pressures: Any) -> AngleTable:
+def _of_pressures(
+    pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
+) -> AngleTable:
     forces = piston_forces(pressure_angles, head=head, **pressures)
-    return AngleTable(angles=pressure_angles, forces=forces, datum=head, during=during)
+    return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during)
 
 
 AngleTable.tables = (
@@ -126,13 +166,14 @@ AngleTable.tables = (
             Entry(
                 "crank_angles",
                 "Angle",
-                "crank angles, increasing, spanning less than 360 deg",
+                "crank angles, increasing, spanning less than the cycle",
                 ["0 deg", "90 deg"],
                 several=True,
                 increasing=True,
             ),
             FORCES,
             ANGLE_DATUM,
+            CYCLE,
             DURING,
         ),
         {"crank_angles": ["0 deg", "180 deg"], "forces": ["0 N", "-100 N"]},
@@ -148,12 +189,13 @@ AngleTable.tables = (
                 "pressure_angles",
                 "Angle",
                 "crank angles from the dead centre at the head, in the sense of rotation, increasing, spanning less "
-                "than 360 deg",
+                "than the cycle",
                 ["0 deg", "90 deg"],
                 several=True,
                 increasing=True,
             ),
             *PRESSURES,
+            CYCLE,
             DURING,
         ),
         {"pressure_angles": ["0 deg", "180 deg"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},

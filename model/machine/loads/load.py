@@ -20,6 +20,7 @@ from ...errors import InputError
 
 Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
 AngleDatum = Literal["zero crank angle", "inner dead centre", "outer dead centre"]
+CycleAngle = Literal["360 deg", "720 deg"]
 During = Literal["cycle", "outward stroke", "inward stroke"]
 Formula = Callable[[Any, Any, Any, Any, Any], Any]
 
@@ -120,6 +121,15 @@ class Load:
         return False
 
     @property
+    def cycle_turns(self) -> int:
+        """Turns of the crank after which the load repeats."""
+        return 1
+
+    def on_turn(self, turn: int) -> Load:
+        """Return the load of turn 1 or 2 of a cycle of two alone."""
+        return self
+
+    @property
     def by_position(self) -> bool:
         """Whether the force is the same wherever the slider is at the same place."""
         return False
@@ -184,6 +194,13 @@ ANGLE_DATUM = Entry(
     "what the crank angles are counted from: zero, counter-clockwise, or a dead centre, in the sense of rotation",
     "outer dead centre",
     default="zero crank angle",
+)
+CYCLE = Entry(
+    "cycle",
+    get_args(CycleAngle),
+    "after which the table repeats; 720 deg for four strokes",
+    "720 deg",
+    default="360 deg",
 )
 FORCES = Entry(
     "forces",

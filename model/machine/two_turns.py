@@ -1,0 +1,84 @@
+"""A cycle of two turns as two machines of one turn each.
+
+The first has the loads of the first turn, the second those of the second: a table of 720 deg is cut at 0 and 360 deg,
+counted from its datum. Everything else repeats with every turn. So the
+greatest value over the cycle is the greater of the two halves', a mean is the mean of theirs, and both are exact. At
+the cuts a half jumps by what it does not close; the other half has the same jump the other way.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * math.pi
+_last: tuple[Mechanism | None, tuple[Mechanism, ...]] = (None, ())
+
+
+def cycle_turns(mechanism: Mechanism) -> int:
+    """Return how many turns of the crank make a cycle: 2 where a load has a cycle of two."""
+    return max((load.cycle_turns for load in mechanism.loads), default=1)
+
+
+def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
+    """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums.
+
+    A search asks for the same machine thousands of times: the last answer is kept.
+    """
+    global _last
+    before, found = _last
+    if before is not mechanism:
+        _datum(mechanism)
+        found = tuple(
+            replace(mechanism, loads=tuple(load.on_turn(turn) for load in mechanism.loads)) for turn in (1, 2)
+        )
+        _last = mechanism, found
+    return found
+
+
+def one_turn(mechanism: Mechanism) -> Mechanism:
+    """Return the machine of the first turn: for what does not depend on the loads that differ between turns."""
+    return halves(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
+
+
+def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> NDArray[np.int64]:
+    """Return the place of the half, 0 or 1, at crank angles, rad, for dead centres inner and outer; broadcasts."""
+    datum = _datum(mechanism)
+    way = 1.0 if datum == "zero crank angle" else mechanism.direction
+    start = np.mod({"zero crank angle": 0.0, "inner dead centre": inner, "outer dead centre": outer}[datum], TURN)
+    start = np.where(start < TURN, start, 0.0)  # rounding of a tiny negative angle
+    return np.asarray(np.mod(np.floor(way * (crank_angle - start) / TURN), 2.0), dtype=np.int64)
+
+
+def in_cycle(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
+    """Return crank angles moved by whole turns into [0, 4 pi), rad, and there into a half."""
+    angle = np.mod(crank_angle, TURN)
+    return np.where(half_at(mechanism, inner, outer, angle) == half, angle, angle + TURN)
+
+
+def _datum(mechanism: Mechanism) -> str:
+    datums = {getattr(load, "datum", "zero crank angle") for load in mechanism.loads if load.cycle_turns > 1}
+    if len(datums) != 1:
+        raise InputError(
+            "loads with a cycle of 720 deg must count from one datum; got "
+            f"{' and '.join(sorted(datums)) or 'none'}; move the angles of one of them"
+        )
+    return datums.pop()
+
+
+def require_one_turn(mechanism: Mechanism, what: str) -> None:
+    """Refuse a cycle of two turns where an analysis is of one; what: its subject."""
+    if cycle_turns(mechanism) > 1:
+        raise InputError(
+            f"{what} takes a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "
+            "for one turn"
+        )

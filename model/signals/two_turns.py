@@ -1,0 +1,72 @@
+"""Peaks and averages over a cycle of two turns from those of its two halves."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics import geometry
+from ..machine.mechanism import Mechanism
+from ..machine.two_turns import in_cycle
+
+Array = NDArray[np.float64]
+
+
+class _Peaks(Protocol):
+    @property
+    def values(self) -> Array: ...
+    @property
+    def angles(self) -> Array: ...
+    @property
+    def gradients(self) -> Array | None: ...
+
+
+class _Averages(Protocol):
+    @property
+    def mean(self) -> Array: ...
+    @property
+    def rms(self) -> Array: ...
+    @property
+    def mean_gradients(self) -> Array | None: ...
+    @property
+    def rms_gradients(self) -> Array | None: ...
+
+
+def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
+    """Return values, angles and gradients of the highest peaks of both turns, as many as each has."""
+    kept = first.values.shape[1]
+    values = np.concatenate([first.values, second.values], axis=1)
+    order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
+    angles = np.concatenate(
+        [_angles(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))], axis=1
+    )
+    gradients = None
+    if first.gradients is not None and second.gradients is not None:
+        both = np.concatenate([first.gradients, second.gradients], axis=1)
+        gradients = np.take_along_axis(both, order[:, :, None], axis=1)
+    return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), gradients
+
+
+def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array, Array | None, Array | None]:
+    """Return mean, root mean square and their gradients over both turns."""
+    mean, square = 0.5 * (first.mean + second.mean), 0.5 * (first.rms**2 + second.rms**2)
+    rms = np.sqrt(square)
+    slopes = (first.mean_gradients, second.mean_gradients, first.rms_gradients, second.rms_gradients)
+    if any(slope is None for slope in slopes):
+        return mean, rms, None, None
+    of_mean, of_other_mean, of_rms, of_other_rms = (np.asarray(slope) for slope in slopes)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        moved = 0.5 * (first.rms[:, None] * of_rms + second.rms[:, None] * of_other_rms) / rms[:, None]
+    return mean, rms, 0.5 * (of_mean + of_other_mean), np.where(rms[:, None] > 0.0, moved, 0.0)
+
+
+def _angles(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:
+    """Return the crank angles in the two turns of peaks of a half (n, k), rad; NaN stays."""
+    dimensions = designs[:, :3].T[:, :, None]
+    inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)
+    if mechanism.branch == "crossed":
+        inner, outer = np.pi - inner, np.pi - outer
+    known = np.isfinite(angles)
+    return np.where(known, in_cycle(mechanism, inner, outer, np.where(known, angles, 0.0), half), angles)
