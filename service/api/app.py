@@ -26,6 +26,7 @@ from . import (
     measured,
     preview,
     quantities,
+    rounded,
     schema,
     swing,
 )
@@ -50,6 +51,7 @@ _PARTS = (
     analysis,
     inverse,
     measured,
+    rounded,
     swing,
     design_files,
     figures,

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, JobError, ServiceError
+from ...objectives.kinds import System
 from ..runs.result import Result, Row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
@@ -264,6 +265,18 @@ class Client:
 
         text = csv if isinstance(csv, str) and "\n" in csv else text_of(Path(csv))
         found: Record = self._post(f"jobs/{number}/designs/{design}/measured", {"csv": text})["measured"]
+        return found
+
+    def rounded(
+        self, number: int, design: int, to: str | Collection[str], *, count: int = 5, units: System = "metric"
+    ) -> Record:
+        """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
+
+        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"].
+        """
+        body = {"to": [to] if isinstance(to, str) else list(to), "count": count}
+        path = f"jobs/{number}/designs/{design}/rounded?units={units}"
+        found: Record = self._post(path, body)["rounded"]
         return found
 
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:

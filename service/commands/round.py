@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
-import re
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.columns import DIMENSIONS, find_column, key_in, metric_key, split_unit
+from ..designs.columns import find_column, key_in, split_unit
 from ..designs.picking_options import require_alone
-from ..designs.shown_units import record_in
+from ..designs.rounding import rounded_record, rounded_record_in, steps_of
 from ..runs.result import json_text
 from ..runs.stored_runs import problem_of
-from ..text.options import Json, Run, Runs, Units, value_option
+from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give, say, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
@@ -24,10 +21,6 @@ from .run_choice import run_of
 
 if TYPE_CHECKING:
     from ...optimise.front.rounded import Rounded
-    from ...optimise.problem.problem import Problem
-
-_FRACTION = re.compile(r"\s*([+-]?\d+)\s*/\s*(\d+)\s*([A-Za-z].*)")
-_EXAMPLE = '--to "0.5 mm" or --to "rod=1 mm"'
 
 
 def round(
@@ -56,92 +49,16 @@ def round(
     require_alone(number, result, run, others=False)
     problem = problem_of(folder, result)
     front = front_of(problem, result)
-    steps = _steps(to, front.part(number - 1))
+    steps = steps_of(to, front.part(number - 1), key="--to")
     with waiting("rounding"):
         found = front.rounded(number - 1, steps, count=count)
-        record = {"run": str(folder), "number": number} | _record(found)
+        record = {"run": str(folder), "number": number} | rounded_record(found)
     if json:
-        give(json_text(_in(units, record, found)))
+        give(json_text(rounded_record_in(units, record, found)))
     elif len(found):
         _show(f"{result.name}: design {number}", record, found, units)
     if not found.met:
         end_without_design(found.message)
-
-
-def _steps(to: list[str], part: Problem) -> dict[str, float]:
-    """Return the steps by name, SI; one without a name is that of every length without its own."""
-    from ...model.machine.numbers import unit_of
-    from ...objectives.kinds import LENGTH
-    from ...objectives.tables.varying_column import varying_column
-    from ...optimise.job.units import kind_of
-
-    kinds = dict.fromkeys(DIMENSIONS, LENGTH)
-    names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
-    for item in part.mechanism.varying:
-        column = varying_column(item)[0]
-        kinds[item.name] = kind_of(unit_of(item.paths[0]))
-        names |= {item.name: item.name, column: item.name, split_unit(column)[0]: item.name}
-    found: dict[str, float] = {}
-    for text in to:
-        name, equals, value = (piece.strip() for piece in text.rpartition("="))
-        name = metric_key(name)
-        if equals and name not in names:
-            raise InputError(f"--to is for {', '.join(kinds)}; got {name!r}; name one of them, like {_EXAMPLE}")
-        key = names[name] if equals else ""
-        if key in found:
-            raise InputError(f"--to gives each step once; got {key or 'that of all lengths'} twice; leave out one")
-        found[key] = _step(value, kinds[key] if key else LENGTH)
-    every = found.pop("", None)
-    return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
-
-
-def _step(text: str, kind: Any) -> float:
-    """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in"."""
-    fraction = _FRACTION.fullmatch(text)
-    if fraction is not None and int(fraction[2]):
-        with contextlib.suppress(InputError):  # told below, with the text as it is
-            return value_option("--to", f"{fraction[1]} {fraction[3]}", kind, sign="positive") / int(fraction[2])
-    return value_option("--to", text, kind, sign="positive")
-
-
-def _record(found: Rounded) -> dict[str, Any]:
-    """Return the answer as JSON has it, metric."""
-    part = found.problem
-    given: dict[str, Any] = {column: factor * value for (column, factor), value in _sized(found, found.given)}
-    for wanted, value in zip(part.objectives, found.before.tolist(), strict=True):
-        of = part.quantity(wanted.quantity)
-        given[of.field] = value * of.unit.factor
-    rows = [
-        {name: values[row].item() for name, values in found.columns.items()}
-        | {"tightest": found.tightest(row), "missed": found.missed(row)}
-        for row in range(len(found))
-    ]
-    return {
-        "met": found.met,
-        "message": found.message,
-        "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
-        "within_steps": found.reach,
-        "judged": found.judged,
-        "kept": found.kept,
-        "given": given,
-        "designs": rows,
-        "notes": list(found.notes),
-    }
-
-
-def _in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
-    """Return the answer in a system of units, its round numbers as they are written there."""
-    from ...optimise.front.rounded import written
-
-    told: dict[str, Any] = record_in(record, units)
-    keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
-    for row in (told["steps"], *told["designs"]):
-        row.update({key: written(row[key]) for key in keys})
-    return told
-
-
-def _sized(found: Rounded, design: Any) -> list[tuple[tuple[str, float], float]]:
-    return list(zip(found.names.values(), design.tolist(), strict=True))
 
 
 def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> None:

@@ -14,6 +14,7 @@ from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
 
 if TYPE_CHECKING:
+    from ...objectives.kinds import Kind
     from .row_formulas import RowFormula
 
 _TOLERANCE = 1e-8
@@ -100,6 +101,18 @@ def plain_number(text: str) -> float | None:
         return float(text)
     except ValueError:
         return None
+
+
+def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
+    """Return a value in SI. Raises `InputError` that begins with the key; a unit is always needed."""
+    from ...optimise.job.units import shown, to_si
+
+    if plain_number(text) is not None:
+        raise InputError(f'{key} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"')
+    try:
+        return to_si(text, kind, sign=sign, plain=False)
+    except InputError as error:
+        raise InputError(f"{key} {error}") from None
 
 
 def _number(text: str, column: Column, value: str) -> float:

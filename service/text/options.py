@@ -15,7 +15,7 @@ import typer
 from ...model.errors import InputError
 from ...model.extras import required
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
-from ..designs.selection import plain_number
+from ..designs.selection import value_of
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -139,13 +139,4 @@ def speed_option(text: str) -> float:
 
 def value_option(option: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
     """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
-    from ...optimise.job.units import shown, to_si
-
-    if plain_number(text) is not None:
-        raise InputError(
-            f'{option} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"'
-        )
-    try:
-        return to_si(text, kind, sign=sign, plain=False)
-    except InputError as error:
-        raise InputError(f"{option} {error}") from None
+    return value_of(option, text, kind, sign=sign)

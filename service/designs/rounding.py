@@ -1,0 +1,99 @@
+"""Rounded neighbours of a design: the steps as people write them, the answer as JSON has it."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from ...objectives.kinds import Kind, System
+from .columns import DIMENSIONS, key_in, metric_key, split_unit
+from .selection import value_of
+from .shown_units import record_in
+
+if TYPE_CHECKING:
+    from ...optimise.front.rounded import Rounded
+    from ...optimise.problem.problem import Problem
+
+_FRACTION = re.compile(r"\s*([+-]?\d+)\s*/\s*(\d+)\s*([A-Za-z].*)")
+_EXAMPLE = '"0.5 mm" or "rod=1 mm"'
+
+
+def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
+    """Return the steps by name, SI, of texts such as "0.5 mm", for all lengths, and "rod=1 mm".
+
+    key: what gives them, for messages. Raises `InputError`.
+    """
+    from ...model.machine.numbers import unit_of
+    from ...objectives.kinds import LENGTH
+    from ...objectives.tables.varying_column import varying_column
+    from ...optimise.job.units import kind_of
+
+    kinds = dict.fromkeys(DIMENSIONS, LENGTH)
+    names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
+    for item in part.mechanism.varying:
+        column = varying_column(item)[0]
+        kinds[item.name] = kind_of(unit_of(item.paths[0]))
+        names |= {item.name: item.name, column: item.name, split_unit(column)[0]: item.name}
+    found: dict[str, float] = {}
+    for text in to:
+        name, equals, value = (piece.strip() for piece in text.rpartition("="))
+        name = metric_key(name)
+        if equals and name not in names:
+            raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_EXAMPLE}")
+        one = names[name] if equals else ""
+        if one in found:
+            raise InputError(f"{key} gives each step once; got {one or 'that of all lengths'} twice; leave out one")
+        found[one] = _step(value, kinds[one] if one else LENGTH, key)
+    every = found.pop("", None)
+    return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
+
+
+def _step(text: str, kind: Kind, key: str) -> float:
+    """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in"."""
+    fraction = _FRACTION.fullmatch(text)
+    if fraction is not None and int(fraction[2]):
+        with contextlib.suppress(InputError):  # told below, with the text as it is
+            return value_of(key, f"{fraction[1]} {fraction[3]}", kind, sign="positive") / int(fraction[2])
+    return value_of(key, text, kind, sign="positive")
+
+
+def rounded_record(found: Rounded) -> dict[str, Any]:
+    """Return the answer as JSON has it, metric."""
+    part = found.problem
+    given: dict[str, Any] = {
+        column: factor * value
+        for (column, factor), value in zip(found.names.values(), found.given.tolist(), strict=True)
+    }
+    for wanted, value in zip(part.objectives, found.before.tolist(), strict=True):
+        of = part.quantity(wanted.quantity)
+        given[of.field] = value * of.unit.factor
+    rows = [
+        {name: values[row].item() for name, values in found.columns.items()}
+        | {"tightest": found.tightest(row), "missed": found.missed(row)}
+        for row in range(len(found))
+    ]
+    return {
+        "met": found.met,
+        "message": found.message,
+        "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
+        "within_steps": found.reach,
+        "judged": found.judged,
+        "kept": found.kept,
+        "given": given,
+        "designs": rows,
+        "notes": list(found.notes),
+    }
+
+
+def rounded_record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
+    """Return the answer in a system of units, its round numbers as they are written there."""
+    from ...optimise.front.rounded import written
+
+    told: dict[str, Any] = record_in(record, units)
+    keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
+    for row in (told["steps"], *told["designs"]):
+        row.update({key: written(row[key]) for key in keys})
+    return told
