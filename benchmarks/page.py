@@ -2,7 +2,8 @@
 
 First view: from the address of the run to the drawn explorer, in a browser that has seen nothing yet, of a service that
 has read the front before; and of one that has not. Brush: from a movement on an axis to the end of the frame that shows
-it in lines and scatter; the table follows. It begins half a second after a first view: no hand is there sooner.
+it in lines and scatter; the table follows. Hover: from a movement over the lines to the end of the frame that shows the
+linkage of another design. A brush begins half a second after a first view: no hand is there sooner.
 """
 
 from __future__ import annotations
@@ -53,6 +54,29 @@ _BRUSH = """async (steps) => {
   send("pointerup", box.top + 20);
   return times;
 }"""
+# Moves the pointer down between two axes; a step ends after the frame that shows the linkage of another design.
+_HOVER = """async (steps) => {
+  const canvas = [...document.querySelectorAll(".lines canvas")].at(-1);
+  const box = canvas.getBoundingClientRect();
+  const title = document.querySelector(".linkage h2");
+  const painted = () => new Promise((done) => requestAnimationFrame(() => {
+    const channel = new MessageChannel();
+    channel.port1.onmessage = done;
+    channel.port2.postMessage(0);
+  }));
+  const times = [];
+  await new Promise((done) => setTimeout(done, 500));
+  for (let step = 1; step <= steps; step += 1) {
+    await new Promise((done) => setTimeout(done, 30));
+    const before = title.textContent;
+    const begin = performance.now();
+    const [clientX, clientY] = [box.left + box.width * 2 / 7, box.top + box.height * (0.2 + 0.6 * step / steps)];
+    canvas.dispatchEvent(new PointerEvent("pointermove", {clientX, clientY, bubbles: true}));
+    await painted();
+    if (title.textContent !== before) times.push(performance.now() - begin);
+  }
+  return times;
+}"""
 # What came from the service beside its data, compressed as it was, bytes.
 _WEIGHT = """() => [...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")]
   .filter(({name}) => !name.includes("/api/")).reduce((sum, {encodedBodySize}) => sum + encodedBodySize, 0)"""
@@ -67,7 +91,7 @@ _FIRST = """async () => {
 
 def measure() -> list[Row]:
     """Return first views and brushes, ms, and the weight of the page, kB."""
-    cold, warm, brushes, weights = [], [], [], []
+    cold, warm, brushes, hovers, weights = [], [], [], [], []
     with tempfile.TemporaryDirectory() as place, chromium() as browser:
         file = Path(place) / "store.db"
         with Store(file) as store:
@@ -79,6 +103,7 @@ def measure() -> list[Row]:
                 taken, page = _first_view(browser, view)
                 warm.append(taken)
                 weights.append(page.evaluate(_WEIGHT) / 1000.0)
+                hovers += page.evaluate(_HOVER, 20)
                 brushes += page.evaluate(_BRUSH, 20)
                 page.context.close()
     return [
@@ -86,6 +111,7 @@ def measure() -> list[Row]:
         Row(f"first view of {DESIGNS} designs, ms", warm, at_most=MOST_FIRST, worst=True),
         Row("a brush, median, ms", brushes, at_most=MOST_BRUSH),
         Row("a brush, 95th percentile, ms", [quantiles(brushes, n=20)[-1]], at_most=MOST_BRUSH),
+        Row("hover to linkage, 95th percentile, ms", [quantiles(hovers, n=20)[-1]], at_most=MOST_BRUSH),
         Row("page without data, compressed, kB", weights, at_most=MOST_WEIGHT),
     ]
 

@@ -250,7 +250,6 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.move(*middle)
-    expect(page.locator(".tip")).to_contain_text("Design")
     page.mouse.down()
     page.mouse.move(middle[0] + 80, middle[1] + 60, steps=4)
     page.mouse.up()
@@ -260,11 +259,43 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     kept = sum(low <= row["crank_mm"] <= high and under <= row["rod_mm"] <= over for row in rows)  # type: ignore[operator]
     assert 0 < kept < COUNT
     expect(page.get_by_text(f"{kept:,} of 10,000 designs chosen")).to_be_visible()
+    before = page.locator(".linkage h2").inner_text()
     page.mouse.move(middle[0] + 40, middle[1] + 30)
-    expect(page.locator(".tip")).to_contain_text("Design")
-    design = page.locator(".tip strong").inner_text().removeprefix("Design ")
+    expect(page.locator(".linkage h2")).not_to_have_text(before)
+    (design,) = re.findall(r"^Design (\d+)", page.locator(".linkage h2").inner_text())
     page.mouse.click(middle[0] + 40, middle[1] + 30)
     expect(page).to_have_url(re.compile(rf"#/jobs/1/designs/{design}$"))
+
+
+def test_the_linkage_of_what_is_pointed_at_is_drawn_at_one_scale_and_moves(open_page: Open, solved: Solved) -> None:
+    rows = solved.result.designs
+    page = open_page(solved.store, view_of(solved))
+    title = page.locator(".linkage h2")
+    crank = page.locator(".linkage circle.path")
+    expect(title).to_have_text(re.compile(r"^Design \d+"))  # at rest the knee
+    way = page.locator(".linkage .link.crank").locator("..")
+    at_rest = way.get_attribute("transform")
+    page.wait_for_timeout(100)
+    assert way.get_attribute("transform") == at_rest
+    radii = []
+    for number in (1, len(rows)):
+        page.locator("table.designs tbody tr").nth(number - 1).hover()
+        expect(title).to_have_text(re.compile(rf"^Design {number}\b"))
+        radii.append(float(crank.get_attribute("r") or "nan"))
+    expect(way).not_to_have_attribute("transform", at_rest or "")
+    cranks = [float(rows[index]["crank_mm"] or 0.0) for index in (0, -1)]
+    assert radii[1] / radii[0] == pytest.approx(cranks[1] / cranks[0], rel=1e-9)
+    expect(page.locator(".linkage dl")).to_contain_text(f"{cranks[1]:.4g} mm")
+    assert page.locator(".worth .small-linkage").count() == page.locator(".worth .marks li").count() > 1
+
+    x, top, _ = axis(page, 3, 5)  # the best time ratio is that of the first design
+    page.mouse.move(x + 30, top - 11)
+    page.mouse.move(x, top)
+    expect(title).to_have_text(re.compile(r"^Design 1\b"))
+    page.get_by_role("link", name="3", exact=True).focus()
+    expect(title).to_have_text(re.compile(r"^Design 3\b"))
+    page.locator(".linkage a", has_text="Open").click()
+    expect(page).to_have_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
 
 
 def test_ten_thousand_designs_are_limited_together_and_right(open_page: Open, large: tuple[Store, list[Row]]) -> None:

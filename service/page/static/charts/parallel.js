@@ -3,6 +3,7 @@
 import { inShown } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
+import { line, nearestLine } from "./lines.js";
 import { layers, rgb } from "./paint.js";
 import { colours, scale } from "./scale.js";
 
@@ -15,6 +16,9 @@ import { colours, scale } from "./scale.js";
  * @property {() => { key: string, flipped: boolean }[]} axes
  * @property {() => Page.Mark[]} marks
  * @property {(key: string, limit: Page.Limit | null) => void} limit
+ * @property {(row: number | null) => void} point
+ * @property {(row: number) => void} open
+ * @property {(row: number) => void} select
  *
  * @typedef {object} View
  * @property {number} width
@@ -47,6 +51,7 @@ export function parallel(chart) {
   let view; // nothing until it is drawn first
   /** @type {{ axis: number, from: number, span: number[] | null, moved: boolean } | null} */
   let dragged = null;
+  let pressed = false; // between the axes, where a click opens a design
 
   /** Lay out: where the axes are, and where every design is on them. */
   function lay() {
@@ -192,11 +197,20 @@ export function parallel(chart) {
     return { axis, x, y };
   }
 
+  /** Return the design whose line passes nearest, a chosen one, or null. @param {MouseEvent} event */
+  function under(event) {
+    const box = stack.top.getBoundingClientRect();
+    return nearestLine(view, chart.limits.mask, event.clientX - box.left, event.clientY - box.top);
+  }
+
   /** @param {PointerEvent} event */
   function begin(event) {
     if (!view || event.button !== 0) return;
     const { axis, y } = axisAt(event);
-    if (axis < 0) return;
+    if (axis < 0) {
+      pressed = true;
+      return;
+    }
     event.preventDefault();
     stack.top.setPointerCapture(event.pointerId);
     const limit = chart.limits.of.get(view.axes[axis].key);
@@ -211,7 +225,9 @@ export function parallel(chart) {
   function move(event) {
     if (!view) return;
     if (!dragged) {
-      stack.top.style.cursor = axisAt(event).axis >= 0 ? "ns-resize" : "default";
+      const row = under(event);
+      stack.top.style.cursor = axisAt(event).axis >= 0 ? "ns-resize" : row === null ? "default" : "pointer";
+      chart.point(row);
       return;
     }
     const pending = axisAt(event).y;
@@ -236,8 +252,11 @@ export function parallel(chart) {
     chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= high - step ? null : tidy(second) });
   }
 
-  const end = () => {
-    dragged = null;
+  /** @param {PointerEvent} event */
+  const end = (event) => {
+    const row = pressed && event.type === "pointerup" && axisAt(event).axis < 0 ? under(event) : null;
+    [dragged, pressed] = [null, false];
+    if (row !== null) (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
   };
   /** @param {MouseEvent} event */
   const clear = (event) => {
@@ -249,6 +268,10 @@ export function parallel(chart) {
   stack.top.addEventListener("pointerup", end);
   stack.top.addEventListener("pointercancel", end);
   stack.top.addEventListener("dblclick", clear);
+  stack.top.addEventListener("pointerleave", () => {
+    pressed = false;
+    if (!dragged) chart.point(null);
+  });
 
   return {
     place,
@@ -262,20 +285,6 @@ export function parallel(chart) {
       drawOver();
     },
   };
-}
-
-/** @param {Page.Canvas} context @param {number} row @param {number} axes @param {number[]} across @param {Int16Array} heights */
-function line(context, row, axes, across, heights) {
-  context.beginPath();
-  let down = false;
-  for (let axis = 0; axis < axes; axis += 1) {
-    const y = heights[row * axes + axis];
-    if (y < 0) down = false;
-    else if (down) context.lineTo(across[axis], y);
-    else context.moveTo(across[axis], y);
-    down = y >= 0;
-  }
-  context.stroke();
 }
 
 /** Return how much colour one of so many lines has. @param {number} count */

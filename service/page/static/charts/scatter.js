@@ -252,7 +252,5 @@ export function scatter(chart) {
     },
     /** Return the colours of the legend, low to high. */
     colours: () => view.shades.colours,
-    /** Return where a design is, in pixels of the page within the place. @param {number} row */
-    where: (row) => (view ? { x: view.across[row], y: view.up[row] } : null),
   };
 }

@@ -8,7 +8,7 @@ import { drawing } from "../mechanism/drawing.js";
 import { lengthsOf } from "./loading.js";
 import { around, frameOf } from "../mechanism/frame.js";
 
-/** @import { turning as turningOf } from "./turning.js" */
+/** @import { turning as turningOf } from "../mechanism/turning.js" */
 
 const EVERY = 100; // ms between two readouts while it moves
 /** @type {Record<string, number>} */

@@ -12,6 +12,8 @@ import { chooser } from "./chooser.js";
 import { choicesFrom, queryOf, toggled } from "./choices.js";
 import { FrontData } from "./data.js";
 import { Limits } from "./limits.js";
+import { linkagePanel } from "./linkage_panel.js";
+import { LENGTHS, linkages } from "./linkages.js";
 import { marksPanel } from "./marks.js";
 import { scatterPanel } from "./scatter_panel.js";
 import { selectedBar } from "./selected.js";
@@ -40,9 +42,9 @@ export async function explore(place, { job, front, values, query, signal }) {
   if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, signal });
 }
 
-/** Return the columns that are shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
+/** Return the columns that are drawn, shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
 function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
-  const keys = [...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
+  const keys = [...LENGTHS, ...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
   return keys.filter((key) => key !== "");
 }
 
@@ -60,6 +62,8 @@ export class Explorer {
     /** @type {number | null} */
     this.pointed = null;
     /** @type {number | null} */
+    this.focused = null;
+    /** @type {number | null} */
     this.picked = null; // by weights
     /** @type {What | null} */
     this.waiting = null;
@@ -71,11 +75,13 @@ export class Explorer {
     this.settling = undefined;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.tabling = undefined;
+    this.linkages = linkages(data);
     this.count = h("p", { class: "count", role: "status" });
     this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
     this.fields = axisFields(this);
     this.lines = parallel({
       data, limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
+      point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
     });
     this.dots = scatter({
       data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"),
@@ -89,16 +95,18 @@ export class Explorer {
     this.scatterPanel = scatterPanel(this, this.dots);
     this.table = designTable(this);
     this.marksPanel = marksPanel(this);
+    this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
     const columns = data.columns;
     place.replaceChildren(
-      h("section", { class: "panel", "aria-labelledby": "lines-title" },
+      h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
+      h("section", { class: "panel all-designs", "aria-labelledby": "lines-title" },
         h("div", { class: "row spread" }, h("h2", { id: "lines-title" }, "All designs"), this.count,
           h("div", { class: "row" }, this.clearing, chooser("Axes", columns, () => chosen.axes.map(({ key }) => key), (keys) => this.chooseAxes(keys)))),
         h("p", { class: "quiet hint" }, "Drag along an axis to keep a part of it; double click to let go. The fields below do the same."),
         h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
-      h("div", { class: "explorer-columns" }, this.scatterPanel.place, this.marksPanel.place),
-      h("section", { class: "panel", "aria-labelledby": "table-title" },
+      this.scatterPanel.place,
+      h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
         h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
         this.table.place));
@@ -107,6 +115,7 @@ export class Explorer {
     sizes.observe(place);
     this.signal.addEventListener("abort", () => {
       sizes.disconnect();
+      this.linkagePanel.close();
       clearTimeout(this.settling);
       clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
@@ -183,12 +192,12 @@ export class Explorer {
     if (what !== "table") {
       this.lines.draw(what);
       this.dots.draw(what);
-      this.scatterPanel.point();
     }
     if (what === "all") this.scatterPanel.legend();
     if (what === "marks") this.table.mark();
     else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
+    this.linkagePanel.draw(what);
     this.selected.draw();
   }
 
@@ -215,7 +224,7 @@ export class Explorer {
     else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
     if (this.picked !== null) found.push({ row: this.picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
     for (const number of this.chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
-    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5 });
+    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${this.pointed + 1}` : "" });
     return found;
   }
 
@@ -233,11 +242,18 @@ export class Explorer {
     return names;
   }
 
-  /** @param {number | null} row */
+  /** Point at a design; null: at the one that has the focus, if any. @param {number | null} row */
   point(row) {
-    if (row === this.pointed) return;
-    this.pointed = row;
+    const pointed = row ?? this.focused;
+    if (pointed === this.pointed) return;
+    this.pointed = pointed;
     this.update("marks");
+  }
+
+  /** Note which design has the focus, and point at it. @param {number | null} row */
+  focus(row) {
+    this.focused = row;
+    this.point(row);
   }
 
   /** @param {number} row */

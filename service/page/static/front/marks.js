@@ -4,6 +4,7 @@ import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, withUnit } from "../lib/numbers.js";
+import { smallLinkage } from "../mechanism/small.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -18,7 +19,7 @@ export function marksPanel(explorer) {
   const sliders = data.objectives.map((objective, index) => slider(objective, index));
   const off = h("button", { type: "button", onclick: () => weigh(null) }, "Without weights");
   const several = data.objectives.length > 1;
-  const place = h("section", { class: "panel", "aria-labelledby": "marks-title" },
+  const place = h("section", { class: "panel worth", "aria-labelledby": "marks-title" },
     h("h2", { id: "marks-title" }, "Worth a look"),
     front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)),
     list,
@@ -85,7 +86,9 @@ export function marksPanel(explorer) {
   function item(row, name) {
     const of = data.objectives.map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4)).join(" · ");
     return h("li", { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
-      h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.point(row), onblur: () => explorer.point(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of));
+      smallLinkage(explorer.linkages.of(row), explorer.linkages.frame()),
+      h("div", {},
+        h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.focus(row), onblur: () => explorer.focus(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of)));
   }
 
   /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */

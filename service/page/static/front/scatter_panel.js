@@ -1,7 +1,7 @@
-/** The scatter with what it shows: which quantities, the legend of its colours, the design that is pointed at. */
+/** The scatter with what it shows: which quantities, the legend of its colours. */
 
 import { fill, h } from "../lib/dom.js";
-import { ends, withUnit } from "../lib/numbers.js";
+import { ends } from "../lib/numbers.js";
 import { headed } from "./columns.js";
 
 /**
@@ -10,7 +10,7 @@ import { headed } from "./columns.js";
  */
 
 /**
- * Return {place, draw(), legend(), point()} around the scatter of an explorer.
+ * Return {place, draw(), legend()} around the scatter of an explorer.
  * @param {Explorer} explorer @param {ReturnType<typeof scatter>} dots
  */
 export function scatterPanel(explorer, dots) {
@@ -25,11 +25,10 @@ export function scatterPanel(explorer, dots) {
     h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
-  const tip = h("div", { class: "tip panel", hidden: true });
-  const place = h("section", { class: "panel", "aria-labelledby": "scatter-title" },
+  const place = h("section", { class: "panel trade-off", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
     h("div", { class: "row picks" }, picks.map(({ node }) => node), drag),
-    h("div", { class: "dots" }, dots.place, tip),
+    h("div", { class: "dots" }, dots.place),
     key,
     h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
 
@@ -61,21 +60,5 @@ export function scatterPanel(explorer, dots) {
     fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
   }
 
-  /** Say which design is pointed at. */
-  function point() {
-    const row = explorer.pointed;
-    tip.hidden = row === null;
-    if (row === null) return;
-    const shown = [...new Set([chosen.x, chosen.y, chosen.colour, ...data.objectives.map(({ column }) => column)])].filter((one) => one && data.has(one));
-    fill(tip, h("strong", {}, `Design ${row + 1}`), h("dl", {}, shown.map((one) => {
-      const column = data.column(one);
-      return [h("dt", {}, column.title), h("dd", { class: "number" }, withUnit(data.cell(one, row), column.unit))];
-    })));
-    const at = dots.where(row) ?? { x: 0, y: 0 };
-    const left = at.x > dots.place.clientWidth / 2;
-    tip.style.left = left ? "auto" : `${at.x + 14}px`;
-    tip.style.right = left ? `${dots.place.clientWidth - at.x + 14}px` : "auto";
-    tip.style.top = `${Math.max(0, at.y - 20)}px`;
-  }
-  return { place, draw, legend, point };
+  return { place, draw, legend };
 }

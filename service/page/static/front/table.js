@@ -77,7 +77,7 @@ export function designTable(explorer) {
     return h("tr", { "data-row": row, onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
       h("td", {}, h("input", { type: "checkbox", "data-act": `select-${row}`, checked: chosen.selected.includes(number), "aria-label": `Select design ${number}`, onchange: () => explorer.select(row) })),
       h("td", {},
-        h("a", { href: explorer.hrefOf(row), "data-act": `open-${row}`, onfocus: () => explorer.point(row), onblur: () => explorer.point(null) }, `${number}`),
+        h("a", { href: explorer.hrefOf(row), "data-act": `open-${row}`, onfocus: () => explorer.focus(row), onblur: () => explorer.focus(null) }, `${number}`),
         (names.get(row) ?? []).map((name) => h("span", { class: "mark-name" }, name))),
       columns.map((key) => {
         const value = data.cell(key, row);

@@ -9,7 +9,7 @@ import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
@@ -19,7 +19,8 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - show(linkage, motion, options): draw {crank_mm, rod_mm, offset_mm}; motion: curves {crank_angle_deg, slider_position_mm} over a
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
- *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves).
+ *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
+ *   small (low, and without the offset in words).
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
@@ -44,10 +45,10 @@ export function drawing(place, { label }) {
     if (!shown || width < 60) return;
     const { linkage, motion, options } = shown;
     const own = frameOf(linkage, motion);
-    view = fitted(options.frame ?? own, width);
+    view = fitted(options.frame ?? own, width, options.small);
     for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
-    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1 }));
+    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1, written: !options.small }));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({ linkage, view, block: own.block, link });
     parts.forces.size(motion, view, options.largest_force);

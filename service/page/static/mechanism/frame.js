@@ -9,6 +9,7 @@ import { extremes } from "../charts/cycle.js";
 
 const MARGIN = 26; // pixels, for what stands beside the mechanism
 const HEIGHTS = [170, 430];
+const LOW = 96; // least height of a small drawing
 
 /**
  * Return the inner and outer end of the slider's way, each {angle, value}; whoever draws a mechanism has one that turns.
@@ -24,13 +25,21 @@ export function reachOf(motion) {
  * Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider.
  * @param {Page.Lengths} linkage @param {Api.Curves} motion @returns {Frame}
  */
-export function frameOf({ crank_mm: r, offset_mm: e }, motion) {
+export function frameOf(linkage, motion) {
   const { low, high } = reachOf(motion);
-  const far = Math.max(Math.abs(low.value), Math.abs(high.value));
+  return frameWithin(linkage, low.value, high.value);
+}
+
+/**
+ * Return the same of a mechanism whose slider goes from one position to another, mm.
+ * @param {Page.Lengths} linkage @param {number} inner @param {number} outer @returns {Frame}
+ */
+export function frameWithin({ crank_mm: r, offset_mm: e }, inner, outer) {
+  const far = Math.max(Math.abs(inner), Math.abs(outer));
   const block = Math.max(0.16 * (r + Math.max(r, Math.abs(e))), 0.05 * (far + r));
   return {
-    left: Math.min(-r, low.value - 1.3 * block) - 0.3 * block,
-    right: Math.max(r, high.value + 1.3 * block),
+    left: Math.min(-r, inner - 1.3 * block) - 0.3 * block,
+    right: Math.max(r, outer + 1.3 * block),
     low: Math.min(-r, e - 0.9 * block),
     high: Math.max(r, e + 0.9 * block),
     block,
@@ -39,25 +48,25 @@ export function frameOf({ crank_mm: r, offset_mm: e }, motion) {
 
 /** Return the frame that holds all of these; mechanisms drawn in one frame have one scale. @param {Frame[]} frames @returns {Frame} */
 export function around(frames) {
-  /** @param {keyof Frame} name */
-  const all = (name) => frames.map((frame) => frame[name]);
-  return {
-    left: Math.min(...all("left")),
-    right: Math.max(...all("right")),
-    low: Math.min(...all("low")),
-    high: Math.max(...all("high")),
-    block: Math.max(...all("block")),
-  };
+  // Not by Math.min(...): of 100,000 frames and more its arguments are too many.
+  return frames.reduce((all, one) => ({
+    left: Math.min(all.left, one.left),
+    right: Math.max(all.right, one.right),
+    low: Math.min(all.low, one.low),
+    high: Math.max(all.high, one.high),
+    block: Math.max(all.block, one.block),
+  }));
 }
 
 /**
- * Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre.
- * @param {Frame} frame @param {number} width
+ * Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre; small: whether it
+ * may be low.
+ * @param {Frame} frame @param {number} width @param {boolean} small
  */
-export function fitted(frame, width) {
+export function fitted(frame, width, small = false) {
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
   const across = (width - 2 * MARGIN) / wide;
-  const height = Math.round(Math.min(Math.max(across * tall + 2 * MARGIN, HEIGHTS[0]), HEIGHTS[1]));
+  const height = Math.round(Math.min(Math.max(across * tall + 2 * MARGIN, small ? LOW : HEIGHTS[0]), HEIGHTS[1]));
   const unit = Math.min(across, (height - 2 * MARGIN) / tall);
   const left = (width - unit * wide) / 2;
   const top = (height - unit * tall) / 2;

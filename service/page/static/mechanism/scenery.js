@@ -11,10 +11,11 @@ const PITCH = 9; // pixels between the strokes of a hatching
 
 /**
  * Return the parts that stand still, as SVG elements.
- * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels.
- * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number }} given
+ * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels; written: whether
+ * the offset stands there in words.
+ * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number, written: boolean }} given
  */
-export function scenery({ linkage, centres, view, block, link, direction }) {
+export function scenery({ linkage, centres, view, block, link, direction, written }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const ends = centres.map((centre) => centre.position);
@@ -30,7 +31,7 @@ export function scenery({ linkage, centres, view, block, link, direction }) {
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
     rotation(view, r, direction),
-    offset(view, e, reach[0] + 20),
+    offset(view, e, reach[0] + 20, written),
     bearing(x(0), y(0), link),
   ];
 }
@@ -72,8 +73,8 @@ function rotation(view, r, direction) {
   return svg("path", { class: "rotation", d: `${arc}M${wing(0.4)}L${end}L${wing(-0.4)}` });
 }
 
-/** @param {View} view @param {number} e @param {number} x */
-function offset(view, e, x) {
+/** @param {View} view @param {number} e @param {number} x @param {boolean} written */
+function offset(view, e, x, written) {
   const [from, to] = [view.y(0), view.y(e)];
   if (Math.abs(to - from) < 16) return null;
   const tip = Math.sign(to - from) * 6;
@@ -83,7 +84,7 @@ function offset(view, e, x) {
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
     // Beside the line, not over it to the right: there the crank passes.
-    view.width < 330 ? null : svg("text", { transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`, "text-anchor": "middle" }, `offset ${withUnit(e, "mm", 4)}`),
+    !written || view.width < 330 ? null : svg("text", { transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`, "text-anchor": "middle" }, `offset ${withUnit(e, "mm", 4)}`),
   );
 }
 

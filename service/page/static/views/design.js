@@ -11,7 +11,7 @@ import { takeAway } from "../design/take_away.js";
 import { topics } from "../design/topics.js";
 import { top } from "../design/top.js";
 import { tradeOffs } from "../design/trade_offs.js";
-import { turning } from "../design/turning.js";
+import { turning } from "../mechanism/turning.js";
 import { wayBack } from "../design/way_back.js";
 import { whatIf } from "../design/what_if.js";
 import { keep } from "../lib/address.js";

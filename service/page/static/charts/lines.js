@@ -1,0 +1,43 @@
+/** Lines of designs over parallel axes: drawn one by one, and found under the pointer. */
+
+const BESIDE = 8; // pixels up or down from a line within which it is pointed at
+
+/**
+ * Draw the line of a design. across, heights: of the axes, and of all designs on them in pixels, below 0 where a design has no value.
+ * @param {Page.Canvas} context @param {number} row @param {number} axes @param {number[]} across @param {Int16Array} heights
+ */
+export function line(context, row, axes, across, heights) {
+  context.beginPath();
+  let down = false;
+  for (let axis = 0; axis < axes; axis += 1) {
+    const y = heights[row * axes + axis];
+    if (y < 0) down = false;
+    else if (down) context.lineTo(across[axis], y);
+    else context.moveTo(across[axis], y);
+    down = y >= 0;
+  }
+  context.stroke();
+}
+
+/**
+ * Return the design that `mask` has and whose line passes nearest above or below a place, null where none is near.
+ * @param {{ across: number[], heights: Int16Array }} view @param {Uint8Array} mask @param {number} x @param {number} y
+ */
+export function nearestLine({ across, heights }, mask, x, y) {
+  const count = across.length;
+  const after = across.findIndex((at) => at >= x);
+  const right = after < 0 ? count - 1 : after; // beyond the ends it is the end that counts
+  const left = after <= 0 ? right : right - 1;
+  const share = right === left ? 0 : (x - across[left]) / (across[right] - across[left]);
+  /** @type {number | null} */
+  let nearest = null;
+  let least = BESIDE;
+  for (let row = 0; row < mask.length; row += 1) {
+    if (!mask[row]) continue;
+    const [from, to] = [heights[row * count + left], heights[row * count + right]];
+    if (from < 0 || to < 0) continue; // no line is drawn there
+    const distance = Math.abs(from + share * (to - from) - y);
+    if (distance < least) [nearest, least] = [row, distance];
+  }
+  return nearest;
+}

@@ -1,0 +1,79 @@
+/** The linkage of the design that is pointed at, beside the charts: at one scale for all designs, moving while somebody points. */
+
+import { get } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { withUnit } from "../lib/numbers.js";
+import { drawing } from "../mechanism/drawing.js";
+import { motionOf } from "../mechanism/motion.js";
+import { turning } from "../mechanism/turning.js";
+import { LENGTHS } from "./linkages.js";
+
+/** @import { Explorer } from "./explorer.js" */
+
+const START = 60; // deg: here all links are apart
+
+/** Return {place, draw(what), close()} of the linkage of an explorer. @param {Explorer} explorer */
+export function linkagePanel(explorer) {
+  const { data, front } = explorer;
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const title = h("h2", { id: "linkage-title" });
+  const way = h("a", { class: "button primary" });
+  const picture = h("div", { class: "linkage-picture" });
+  const numbers = h("dl", { class: "terms" });
+  const place = h("section", { class: "panel linkage", "aria-labelledby": "linkage-title" }, h("div", { class: "row spread" }, title, way), picture, numbers);
+  const drawn = drawing(picture, { label: "" });
+  /** @type {ReturnType<typeof turning> | null} */
+  let motion = null; // once the service said which way the crank turns
+  /** @type {number | null} */
+  let shown = null;
+  let asked = false;
+  let within = false; // whether the pointer or the focus is in the panel itself
+  for (const [name, inside] of /** @type {const} */ ([["pointerenter", true], ["focusin", true], ["pointerleave", false], ["focusout", false]])) {
+    place.addEventListener(name, () => {
+      within = inside;
+      move();
+    });
+  }
+
+  /** Ask once for the speed of the crank; without an answer it turns counter-clockwise. */
+  async function ask() {
+    asked = true;
+    const rpm = await get(`jobs/${explorer.job.id}/designs/1/requirements`, {}, explorer.signal).then(({ speed_rpm }) => speed_rpm ?? 0, () => 0);
+    if (explorer.signal.aborted) return;
+    motion = turning(rpm, explorer.signal);
+    motion.set(START);
+    motion.listen(({ angle, settled }) => drawn.turn(angle, settled));
+    draw("all");
+  }
+
+  /** It moves while somebody points at a design, or at the panel. */
+  function move() {
+    const wanted = !still && (within || explorer.pointed !== null);
+    if (wanted && !asked) ask();
+    if (!motion || wanted === motion.playing) return;
+    if (wanted) motion.play();
+    else motion.pause();
+  }
+
+  /** @param {string} what */
+  function draw(what) {
+    const row = explorer.pointed ?? shown ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
+    if (row !== shown || what === "all") {
+      shown = row;
+      const linkage = explorer.linkages.of(row);
+      const names = explorer.names().get(row) ?? [];
+      fill(title, `Design ${row + 1}`, names.length > 0 && h("span", { class: "quiet" }, ` ${names.join(", ")}`));
+      fill(way, "Open", h("span", { class: "hidden" }, " the design of the picture"));
+      way.href = explorer.hrefOf(row);
+      drawn.node.setAttribute("aria-label", `Linkage of design ${row + 1}`);
+      drawn.show(linkage, motionOf(linkage), { frame: explorer.linkages.frame(), direction: motion?.direction ?? 0, small: true });
+      if (!motion) drawn.turn(START);
+      fill(numbers, [...data.objectives.map(({ column }) => column), ...LENGTHS].filter((key) => data.has(key)).map((key) => {
+        const { title: words, unit } = data.column(key);
+        return h("div", { class: LENGTHS.includes(key) ? "length" : null }, h("dt", {}, words), h("dd", { class: "number" }, withUnit(data.cell(key, row), unit, 4)));
+      }));
+    }
+    move();
+  }
+  return { place, draw, close: () => drawn.close() };
+}
