@@ -24,7 +24,7 @@ from .problem.problem import Problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
 from .search.checkpoints import Cancelled, Checkpoints, Record
-from .search.elimination import Sheet, sheets
+from .search.elimination import sheets
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
 from .search.mirror import once
@@ -143,11 +143,4 @@ def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> N
         sheet = evaluator.sheet
         own = dimensions[np.sign(dimensions[:, 2]) != -sheet.sign]
         if len(own):
-            archive.screen(index, evaluator, _coordinates(sheet, own))
-
-
-def _coordinates(sheet: Sheet, dimensions: Array) -> Array:
-    sizes = np.concatenate([np.abs(dimensions[:, :3]), dimensions[:, 3:]], axis=1)
-    columns = [sizes[:, sheet.names.index(name)] for name in sheet.free]
-    u = np.stack(columns, axis=1) if columns else np.zeros((len(dimensions), 0))
-    return np.clip((u - sheet.lower) / np.where(sheet.upper > sheet.lower, sheet.upper - sheet.lower, 1.0), 0.0, 1.0)
+            archive.screen(index, evaluator, sheet.coordinates(own))

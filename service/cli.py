@@ -49,6 +49,7 @@ _COMMANDS = (
         "compare",
         "like",
         "round",
+        "wish",
     ),
     *("check", "schema", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),

@@ -14,6 +14,7 @@ Solve it
     ParetoFront          designs as a table, picks, trade-offs
     Priority             one step of a pick by priorities
     like                 the design nearest to one of a front that meets further requirements
+    wish                 the optimal design that comes nearest to wished values of the objectives
 
 Evaluate designs
     evaluate             quantities of many designs of a machine, with derivatives (`Problem.evaluate` of a problem)
@@ -68,6 +69,7 @@ __all__ = [
     "solve",
     "standard_form",
     "torch_function",
+    "wish",
 ]
 
 if TYPE_CHECKING:
@@ -91,6 +93,7 @@ if TYPE_CHECKING:
     from slidercrank.optimise.problem.requirements import Constraint, Objective
     from slidercrank.optimise.questions.like import like_design as like
     from slidercrank.optimise.questions.quantities import quantities
+    from slidercrank.optimise.questions.wish import wish
     from slidercrank.optimise.solve import solve
 
     __version__: str
@@ -117,6 +120,7 @@ else:
         "optimise.problem.requirements": ("Constraint", "Objective"),
         "optimise.questions.like": ("like",),
         "optimise.questions.quantities": ("quantities",),
+        "optimise.questions.wish": ("wish",),
         "optimise.solve": ("solve",),
     }
     _INSIDE = {"like": "like_design"}  # where a name is another one inside

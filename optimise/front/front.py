@@ -151,7 +151,7 @@ class ParetoFront:
 
         `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
         """
-        columns = {self._column(name): weight for name, weight in weights.items()}
+        columns = {self.column_of(name): weight for name, weight in weights.items()}
         shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
         return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
@@ -162,7 +162,7 @@ class ParetoFront:
         a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
-        given = [(self._column(item.quantity), item.absolute, item.share) for item in order]
+        given = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
         return lexicographic(self.values, given, size=self._sizes)
 
     @property
@@ -170,7 +170,8 @@ class ParetoFront:
         """The targets, SI, 0 without: what distances from them are rounded against."""
         return [abs(objective.target or 0.0) for objective in self.objectives]
 
-    def _column(self, name: str) -> int:
+    def column_of(self, name: str) -> int:
+        """Return the column of an objective in `values`. Raises `InputError` for a name of none."""
         names = [objective.quantity for objective in self.objectives]
         plain = ["".join(item.split()) for item in names]  # a formula is the same with other spaces
         if "".join(str(name).split()) not in plain:
@@ -183,7 +184,7 @@ class ParetoFront:
         best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
         `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. Raises `InputError` when none qualifies.
         """
-        objective = self._column(best)
+        objective = self.column_of(best)
         keep = np.ones(len(self), dtype=bool)
         for column, (least, greatest) in bounds.items():
             if column not in self.columns:

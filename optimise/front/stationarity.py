@@ -42,7 +42,9 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     return residual, convex, pushing * size / lengths
 
 
-def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) -> tuple[float, Array, Array]:
+def strict_multipliers(
+    goals: Array, owner: NDArray[np.int64], active: Array, *, exactly: bool = False
+) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,) and mu (q,) where every objective must carry weight.
 
     The optimality conditions of Benson's problem, least sum of objectives with none made worse:
@@ -50,18 +52,20 @@ def strict_multipliers(goals: Array, owner: NDArray[np.int64], active: Array) ->
         min | sum_p lambda_p g_p + sum_j mu_j a_j |   with the weights lambda of each objective's pieces adding to >= 1.
 
     A design that only a zero weight makes stationary (two objectives oppose each other, a third could still be had for
-    nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound.
+    nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
+    the weights of each objective add to 1, the conditions of the least sum with none held.
     """
     names = np.unique(owner)
     p, q, m = len(goals), len(active), len(names)
     size, lengths = _sizes(goals, active)
     k = goals.shape[1]
-    matrix = np.zeros((k + m, p + q + m))
+    matrix = np.zeros((k + m, p + q + (0 if exactly else m)))
     matrix[:k, :p] = goals.T / size
     matrix[:k, p : p + q] = (active / lengths[:, None]).T
     for row, name in enumerate(names):
         matrix[k + row, :p] = _STIFF * (owner == name)
-        matrix[k + row, p + q + row] = -_STIFF
+        if not exactly:
+            matrix[k + row, p + q + row] = -_STIFF
     target = np.zeros(k + m)
     target[k:] = _STIFF
     solution = nonnegative_least_squares(matrix, target)

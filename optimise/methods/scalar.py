@@ -24,6 +24,8 @@ from ..front.stationarity import Array
 from ..search.evaluation import Evaluator
 from ..search.pieces import Rows, alone, greatest
 
+SUM = 1e-4
+"""rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
 _ABSENT = -1.0  # value of a row that a design does not have: fulfilled, without slope
 _OUT = 10.0  # violation of a point where no linkage turns fully, so that a line search turns back
 _CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points nearer than this keep their place for sure

@@ -25,10 +25,8 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .local import by_slsqp, keep, samples, spent
 from .registry import Method
-from .scalar import Form, Programme
+from .scalar import SUM, Form, Programme
 
-_SUM = 1e-4
-"""rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
 _FIRST = 0.5  # problems of the first round a delivered design: many have the same optimum
 _MORE = 3.0  # optima wanted a delivered design: the best are chosen
 _ROUNDS = 6  # of aiming at gaps
@@ -63,9 +61,9 @@ def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) 
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
         ceilings = cells[[bool((edge <= row + _SLACK).all(axis=1).any()) for row in cells]]
         parts += max(1, parts // 4)
-    only = Form.single(m, 0, rho=_SUM)
-    forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), _SUM) for row in ceilings]
-    return front.solve(forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), _SUM))
+    only = Form.single(m, 0, rho=SUM)
+    forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), SUM) for row in ceilings]
+    return front.solve(forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), SUM))
 
 
 def chebyshev(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -82,7 +80,7 @@ def chebyshev(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archiv
 
     def along(direction: Array) -> Form:
         direction = np.maximum(direction, _SLIVER)
-        return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, _SUM)
+        return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, SUM)
 
     return front.solve([along(direction) for direction in simplex(m, _first(problem))], along)
 
@@ -109,7 +107,7 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     none = np.full(m, np.inf)
 
     def through(point: Array) -> Form:
-        return Form(normal.min() / normal, point, none, _SUM)
+        return Form(normal.min() / normal, point, none, SUM)
 
     return front.solve([through(share @ payoff) for share in shares], through)
 
@@ -249,7 +247,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     for column in range(m):
         best = np.full(m, np.inf)
         for row in begun.leading(column, _STARTS):
-            values = shared.optimum(Form.single(m, column, rho=_SUM), int(begun.sheet[row]), begun.u[row])
+            values = shared.optimum(Form.single(m, column, rho=SUM), int(begun.sheet[row]), begun.u[row])
             if values is not None and values[column] < best[column]:
                 best = values
         if not np.isfinite(best).all():

@@ -102,6 +102,16 @@ class Sheet:
             offset = np.where(offset == 0.0, offset - ZERO, offset)
         return np.stack([known["crank"], known["rod"], offset, *(known[name] for name in self.names[3:])], axis=1)
 
+    def coordinates(self, designs: Array) -> Array:
+        """Return the points (n, k) of the unit box with the free unknowns of designs (n, 3 + v).
+
+        What lies outside of its range comes to the end of it. A design that fulfils what is eliminated is given back.
+        """
+        sizes = np.concatenate([np.abs(designs[:, :3]), designs[:, 3:]], axis=1)
+        columns = [sizes[:, self.names.index(name)] for name in self.free]
+        u = np.stack(columns, axis=1) if columns else np.zeros((len(designs), 0))
+        return np.clip((u - self.lower) / np.where(self.upper > self.lower, self.upper - self.lower, 1.0), 0.0, 1.0)
+
     def jacobian(self, u: Array) -> Array:
         """Return the derivatives (n, 3 + v, k) of the designs by the unit-box coordinates, by complex step."""
         n, k = u.shape

@@ -35,6 +35,7 @@ _STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a ro
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
 _HEAVIEST = 1e8  # largest penalty of a violation
+_PASSES = 5  # at a step where only the sum counts: a small gain along a kink is worth no way off it
 _SHORTEST = 1e-13  # radius at which a design's polish ends
 _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 
@@ -58,14 +59,15 @@ def polish(
     *,
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
+    hold: bool = True,
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
     scale: range of each objective over the front. chosen: improve these objectives only (all by default). iterations:
-    None only moves designs that violate constraints onto them, the shortest way. A design that was feasible once is
-    feasible in the end.
+    None only moves designs that violate constraints onto them, the shortest way. hold: False lets an objective become
+    worse where the sum gains. A design that was feasible once is feasible in the end.
     """
-    batch = _Batch(evaluator, start, scale, chosen)
+    batch = _Batch(evaluator, start, scale, chosen, hold)
     if iterations != 0:
         batch.restore()
     for _ in range(iterations or 0):
@@ -77,9 +79,11 @@ def polish(
 class _Batch:
     """Designs under polish: where they stand, their rows, and which still move."""
 
-    def __init__(self, evaluator: Evaluates, start: Array, scale: Array, chosen: tuple[int, ...] | None) -> None:
+    def __init__(
+        self, evaluator: Evaluates, start: Array, scale: Array, chosen: tuple[int, ...] | None, hold: bool
+    ) -> None:
         self.evaluator = evaluator
-        self.scale = scale
+        self.scale, self.hold = scale, hold
         self.chosen = tuple(range(len(scale))) if chosen is None else chosen
         self.u = np.clip(start, 0.0, 1.0)
         self.goals, self.limits = self._evaluate(self.u)
@@ -166,7 +170,7 @@ class _Batch:
         goals, limits = alone(self.goals, row), alone(self.limits, row)
         pieces = active_pieces(goals, self.chosen, within=_TIGHT)
         edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], within=_TIGHT)])
-        return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges)[0]
+        return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold)[0]
 
     def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
@@ -192,6 +196,7 @@ class _Batch:
             chosen=chosen,
             tops=self.held[row],
             violation=self.weight[row],
+            hold=self.hold,
         )
 
     def _hessians(self, rows: NDArray[np.int64], drafts: list[Step]) -> Array:
@@ -225,7 +230,8 @@ class _Batch:
         self.moved[rows] = False
         pending = np.arange(len(rows))
         steps = steps.copy()
-        for corrected in (False, True)[: 1 + correct]:
+        passes = (2 if self.hold else _PASSES) if correct else 1
+        for left in range(passes, 0, -1):
             at = rows[pending]
             trial = np.clip(self.u[at] + steps[pending], 0.0, 1.0)
             valid = self.evaluator.valid(trial)
@@ -234,7 +240,7 @@ class _Batch:
             after = greatest(goals, m)[:, columns]
             loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
             worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
-            merit = (after - before[at] + LOSS * loss).sum(axis=1) + self.weight[at] * worse
+            merit = (after - before[at] + (LOSS * loss if self.hold else 0.0)).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
             # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
             accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))
@@ -245,7 +251,7 @@ class _Batch:
                 if distance[i] > 0.5 * self.radius[row]:
                     self.radius[row] = min(0.5, 2.0 * self.radius[row])
                 self.stalls[row] = self.stalls[row] + 1 if merit[i] > -_STALLED else 0
-            if correct and not corrected:
+            if left > 1:
                 for i in np.flatnonzero(~accepted & valid).tolist():
                     steps[pending[i]] = self._corrected(
                         int(at[i]), steps[pending[i]], alone(goals, i), alone(limits, i), chosen

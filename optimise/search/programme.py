@@ -9,7 +9,7 @@ With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient
 where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
 has room for rounding, so that a gain too small to show is not weighed as a loss. v and w are exact penalties: where an
 objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution.
-Without objectives the step is the shortest one that fulfils the constraints.
+Without objectives the step is the shortest one that fulfils the constraints. Where only the sum counts, v is left out.
 """
 
 from __future__ import annotations
@@ -55,10 +55,12 @@ def solve_step(
     chosen: tuple[int, ...],
     tops: Array,
     violation: float,
+    hold: bool = True,
 ) -> Step:
     """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
 
     hessian: B, positive definite. chosen: objectives to improve. tops: (m,), F of every objective. violation: C.
+    hold: whether the loss of each objective is penalised, besides the sum.
 
     With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
     its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
@@ -68,25 +70,26 @@ def solve_step(
     low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
     pieces = [np.flatnonzero((goals.owner == owner) & (goals.values > tops[owner] - _REACH)) for owner in chosen]
     near = np.flatnonzero(np.isfinite(limits.values))
-    counts = [*map(len, pieces), count, count, len(near), 1, k, k]
+    holding = count if hold else 0
+    counts = [*map(len, pieces), holding, holding, len(near), 1, k, k]
     ends = [0, *accumulate(counts)]
     *goal_rows, losing, gaining, limiting, violating, above, below = map(slice, ends[:-1], ends[1:])
-    size = k + 2 * count + 1
+    size = k + count + holding + 1
     rows, bounds = np.zeros((ends[-1], size)), np.zeros(ends[-1])  # a z <= b for z = (d, t, v, w)
-    one, edge = np.eye(count), np.eye(k)
+    one, edge = np.eye(holding), np.eye(k)
     for place, (owner, columns, part) in enumerate(zip(chosen, pieces, goal_rows, strict=True)):
         bounds[part] = tops[owner] - goals.values[columns]
         rows[part, :k] = goals.gradients[columns]
         rows[part, k + place] = -1.0
     bounds[losing] = ROUNDING
-    rows[losing, k : k + count] = one
+    rows[losing, k : k + holding] = one
     rows[losing, k + count : -1] = rows[gaining, k + count : -1] = -one
     bounds[limiting] = -limits.values[near]
     rows[limiting, :k] = limits.gradients[near]
     rows[limiting, -1] = rows[violating, -1] = -1.0
     bounds[above], bounds[below] = high, -low
     rows[above, :k], rows[below, :k] = edge, -edge
-    weights = np.concatenate([np.ones(count), np.full(count, LOSS), [violation]])
+    weights = np.concatenate([np.ones(count), np.full(holding, LOSS), [violation]])
     move, dual = _least_distance(rows, bounds, hessian, weights)
     held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
@@ -96,7 +99,8 @@ def solve_step(
         edge[held[above] & (high < radius)],
         edge[held[below] & (low > -radius)],
     ]
-    for loses, columns, part in zip(held[losing].tolist(), pieces, goal_rows, strict=True):
+    losers = held[losing].tolist() if hold else [False] * count
+    for loses, columns, part in zip(losers, pieces, goal_rows, strict=True):
         goal_weight[columns] = dual[part]
         tied = goals.gradients[columns[held[part]]]
         normals.append(tied[1:] - tied[:1])

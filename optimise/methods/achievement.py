@@ -1,0 +1,54 @@
+"""A form as objectives of the polish: least weighted distance from a reference, plus a little of the sum.
+
+The polish takes objectives that are the greatest of smooth pieces, and with `hold=False` lowers their sum. So a `Form`
+of m objectives becomes 1 + m of them: first max_i w_i (f_i - z_i), whose pieces are those of all weighted objectives,
+then rho f_i each. Ceilings join the constraints. Kinks stay what they are: nothing is smoothed, no variable is added.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..front.stationarity import Array
+from ..search.evaluation import Evaluator
+from ..search.pieces import Rows
+from .scalar import Form
+
+_APART = 100.0  # between the labels of two objectives' pieces, so that no peak is taken for one of another curve
+
+
+class Achievement:
+    """A form on one sheet, as `polish.Evaluates`. ideal, span: (m,), what objectives are scaled by."""
+
+    def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
+        self.evaluator, self.form = evaluator, form
+        self.ideal, self.span = ideal, span
+
+    def valid(self, u: Array) -> NDArray[np.bool_]:
+        """Return which points give a linkage that turns fully."""
+        return self.evaluator.valid(u)
+
+    def exact(self, u: Array) -> tuple[Rows, Rows]:
+        """Return the rows of the form's 1 + m objectives and those of constraints and ceilings."""
+        goals, limits = self.evaluator.exact(u)
+        owner, form = goals.owner, self.form
+        values = (goals.values - self.ideal[owner]) / self.span[owner]
+        slopes = goals.gradients / self.span[owner][:, None]
+        labels = goals.labels + _APART * owner
+        used, capped = form.weights[owner] > 0.0, np.isfinite(form.ceilings[owner])
+        weights, own = form.weights[owner[used]], owner[used]
+        aims = Rows(
+            np.concatenate([weights * (values[:, used] - form.reference[own]), form.rho * values], axis=1),
+            np.concatenate([weights[:, None] * slopes[:, used], form.rho * slopes], axis=1),
+            np.concatenate([labels[:, used], labels], axis=1),
+            np.concatenate([np.zeros_like(own), 1 + owner]),
+        )
+        under, first = owner[capped], 1 + int(limits.owner.max(initial=-1))
+        held = Rows(
+            np.concatenate([limits.values, values[:, capped] - form.ceilings[under]], axis=1),
+            np.concatenate([limits.gradients, slopes[:, capped]], axis=1),
+            np.concatenate([limits.labels, labels[:, capped]], axis=1),
+            np.concatenate([limits.owner, first + under]),
+        )
+        return aims, held

@@ -1,0 +1,207 @@
+"""A design by wishing: the Pareto-optimal one that comes nearest to wished values, solved anew.
+
+Objectives f_i are as they are minimised, divided by their range over the front, from its ideal z* on. Values z_i that
+are wished, and classes, see `wishes`, make an augmented achievement scalarising function,
+
+    min over designs   max( f_i - z_i  where a value is wished,   f_i - z*_i  where it is to improve ) + rho sum_i f_i
+    subject to   f_i <= the design's  where it is to improve or to keep,   f_i <= the value that it may worsen to,
+
+and all requirements of the problem (A. P. Wierzbicki, "The use of reference objectives in multiobjective optimization",
+Lecture Notes in Economics and Mathematical Systems 177, 1980; Miettinen and Mäkelä, see `wishes`). Below zero the
+design is better than wished in everything; otherwise all that binds gives way by the same share of its range. A little
+of the sum, rho, makes every minimiser Pareto-optimal, whether the wish can be had or not.
+
+It is solved by the polish, on every sheet of the problem - sign of the offset, choices - from the designs of the front
+that are nearest to the wish and apart. On sheets that are not theirs the same lengths are tried. Where they do not all
+end in one optimum more designs are tried. The answer is never worse than the best design of the front, and exact within
+its valley; that no other valley is deeper rests on the starts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ..front.front import ParetoFront
+from ..front.rounding import ranges_or_sizes
+from ..front.stationarity import Array
+from ..methods.achievement import Achievement
+from ..methods.registry import require_gradients
+from ..methods.scalar import SUM, Form
+from ..problem.violation import FEASIBLE
+from ..search.assemble import assemble, empty
+from ..search.candidates import Candidates, Finished
+from ..search.elimination import sheets
+from ..search.evaluation import Evaluator
+from ..search.mirror import once
+from ..search.polish import polish
+from ..search.sampling import apart
+from ..search.search import BANDS, Run
+from .wished import Wished, outcomes_of
+from .wishes import Wish, aimed, read_wishes
+
+_NEAREST, _MORE = 3, 6  # starts on a sheet, and those tried where the first end in different optima
+_SHEETS = 12  # that are tried, the best ones
+_WORSE = 0.5  # of the ranges: a sheet whose best start is worse than the best of all by more is left out
+_DIFFER = 1e-9  # of the ranges: optima that are not one
+_OUTSIDE = 10.0  # what a start counts for that lies above a ceiling, or outside the requirements
+
+
+class Wishes:
+    """The starts for wishes on a front, made once for many of them.
+
+    Raises `InputError` for a front without designs or of one objective, and for a quantity without gradient.
+    """
+
+    def __init__(self, front: ParetoFront) -> None:
+        if len(front.objectives) < 2:
+            raise InputError(
+                f"a wish is for several objectives; got one, {front.objectives[0].quantity}; its best design is the "
+                "front"
+            )
+        if not len(front):
+            raise InputError(f"a wish needs the designs of a front; got none: {front.message}")
+        require_gradients(front.problem, "a wish")
+        self.front = front
+        self.ideal = front.values.min(axis=0)
+        sizes = [abs(objective.target or 0.0) for objective in front.objectives]
+        self.span = ranges_or_sizes(front.values, self.ideal, sizes)
+        self._sheets = once(front.problem, sheets(front.problem))
+        self._starts = self._known()
+
+    def wish(self, given: Mapping[str, object], *, row: int | None = None) -> Wished:
+        """Return the design that comes nearest to wishes, see `wish`."""
+        front = self.front
+        if row is not None:
+            front.part(row)  # refuses what is no row
+            row = int(row) % len(front)
+        wishes = read_wishes(front, given, row)
+        form, aims = self._form(wishes, row)
+        evaluators = self._evaluators()
+        best = self._solve(form, evaluators)
+        run = Run(front.problem, 1)
+        if best is None:
+            message = self._why_none(wishes)
+            nothing = empty(front.problem, evaluators, run, "infeasible", message)
+            return Wished(found=nothing, row=row, wishes=wishes, value=np.nan, outcomes=(), message=message)
+        index, u, value = best
+        finished = Finished.none(self.span)
+        finished.add(index, polish(evaluators[index], u[None], self.span, iterations=0))
+        found = assemble(front.problem, evaluators, finished, run)
+        outcomes = outcomes_of(front, wishes, aims, row, found)
+        return Wished(found=found, row=row, wishes=wishes, value=value, outcomes=outcomes)
+
+    def _evaluators(self) -> list[Evaluator]:
+        return [Evaluator(self.front.problem, sheet) for sheet in self._sheets]
+
+    def _known(self) -> Candidates:
+        """Return the designs of the front on their sheets, and their numbers on all others."""
+        front, parts = self.front, []
+        variants = np.array(front.variants or np.zeros(len(front)), dtype=np.int64)
+        for index, evaluator in enumerate(self._evaluators()):
+            sheet = evaluator.sheet
+            own = (variants == sheet.variant) & (np.sign(front.dimensions[:, 2]) != -sheet.sign)
+            u = sheet.coordinates(front.dimensions)
+            if own.any():
+                met = np.ones(int(own.sum()), np.bool_)
+                parts.append(Candidates(np.full(len(met), index), u[own], front.values[own], met))
+            other = np.unique(u[~own], axis=0)
+            if len(other):
+                _, values, violation = evaluator.screen(other, band=BANDS[-1])
+                some = np.isfinite(values).all(axis=1) & evaluator.valid(other)
+                rest = (np.full(int(some.sum()), index), other[some], values[some], violation[some] <= FEASIBLE)
+                parts.append(Candidates(*rest))
+        return parts[0].join(*parts[1:])
+
+    def _form(self, wishes: Sequence[Wish], row: int | None) -> tuple[Form, list[float | None]]:
+        """Return the achievement function, and the values of wishes as objectives are minimised, SI."""
+        m = len(wishes)
+        weights, reference, ceilings = np.zeros(m), np.zeros(m), np.full(m, np.inf)
+        own = None if row is None else self._scaled(self.front.values[row])
+        aims: list[float | None] = [None] * m
+        for column, wish in enumerate(wishes):
+            if wish.value is not None:
+                aims[column] = aim = aimed(self.front, column, wish)
+                scaled = (aim - self.ideal[column]) / self.span[column]
+                if wish.kind == "value":
+                    weights[column], reference[column] = 1.0, scaled
+                else:
+                    ceilings[column] = scaled
+            elif wish.kind != "free" and own is not None:
+                ceilings[column] = own[column]
+                weights[column] = float(wish.kind == "improve")
+        return Form(weights, reference, ceilings, SUM), aims
+
+    def _scaled(self, values: Array) -> Array:
+        return np.asarray((values - self.ideal) / self.span)
+
+    def _solve(self, form: Form, evaluators: list[Evaluator]) -> tuple[int, Array, float] | None:
+        """Return sheet, point (k,) and value of the form at its minimiser; None where no start leads to a design."""
+        scaled = self._scaled(self._starts.values)
+        over = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
+        free = replace(form, ceilings=np.full(len(form.weights), np.inf))
+        worth = free.value(scaled) + _OUTSIDE * (over + ~self._starts.met)
+        sheet, tried = self._starts.sheet, np.zeros(len(worth), np.bool_)
+        ends: list[tuple[float, int, Array]] = []
+        chosen = self._promising(worth)
+        for count in (_NEAREST, _MORE):
+            for index in chosen:
+                own = np.flatnonzero((sheet == index) & ~tried)
+                rows = own[apart(worth[own], self._starts.u[own], sheet[own], count)]
+                tried[rows] = True
+                ends += self._ends(form, evaluators[index], index, rows)
+            values = sorted(value for value, _, _ in ends)
+            if values and (len(values) < 2 or values[-1] - values[0] <= _DIFFER):
+                break
+            best = {index for value, index, _ in ends if value <= values[0] + _DIFFER} if values else set(chosen)
+            chosen = [index for index in chosen if index in best]
+        if not ends:
+            return None
+        value, index, u = min(ends, key=lambda end: end[0])
+        return index, u, value
+
+    def _promising(self, worth: Array) -> list[int]:
+        """Return the sheets to try, the best first."""
+        found = {index: float(worth[self._starts.sheet == index].min()) for index in set(self._starts.sheet.tolist())}
+        order = sorted(found, key=lambda index: (found[index], index))
+        return [index for index in order if found[index] <= found[order[0]] + _WORSE][:_SHEETS]
+
+    def _ends(
+        self, form: Form, evaluator: Evaluator, index: int, rows: NDArray[np.int64]
+    ) -> list[tuple[float, int, Array]]:
+        """Return where the starts on a sheet end, with the form's value there; none that is not feasible."""
+        if not len(rows):
+            return []
+        start = self._starts.u[rows][:, : evaluator.dimension]
+        seen = Achievement(evaluator, form, self.ideal, self.span)
+        found = polish(seen, start, np.ones(1 + len(self.span)), hold=False)
+        good = (found.violation <= FEASIBLE) & np.isfinite(found.values).all(axis=1)
+        return [(float(found.values[at].sum()), index, found.u[at]) for at in np.flatnonzero(good).tolist()]
+
+    def _why_none(self, wishes: Sequence[Wish]) -> str:
+        """Return in words that no design stays within what is allowed, and what the front has."""
+        told = []
+        for column, wish in enumerate(wishes):
+            if wish.kind == "limit":
+                of = self.front.problem.quantity(self.front.objectives[column].quantity)
+                best = self.front.columns[of.field][int(np.argmin(self.front.values[:, column]))]
+                allowed = f"{(wish.value or 0.0) * of.unit.factor:.4g} {of.unit.symbol}".rstrip()
+                told.append(f"{of.title} {allowed} or better, where the front has {best:.4g}")
+        return f"no design was found with {' and '.join(told)}; allow more"
+
+
+def wish(front: ParetoFront, wishes: Mapping[str, object], *, row: int | None = None) -> Wished:
+    """Return the Pareto-optimal design that comes nearest to wished values of the objectives of a front, solved anew.
+
+    wishes: by objective, a value, "110 N m" or a number in SI, which is no bound; or a class: "improve" on a design of
+    the front, "keep" at least what it has, "may worsen to 120 N m", a bound, or "free", as is what is not named. row:
+    of the design that classes speak of.
+
+    `wish(front, {"peak_torque": "110 N m", "transmission_angle": "45 deg"})`. For many wishes on one front `Wishes`
+    is quicker. Raises `InputError` for wishes that contradict themselves, a front without designs or of one objective.
+    """
+    return Wishes(front).wish(wishes, row=row)

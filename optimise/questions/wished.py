@@ -1,0 +1,161 @@
+"""The answer to a wish: the design, and in words what was wished and what is reached for each objective."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from ...objectives.kinds import System, shown_in
+from ...objectives.quantity import Quantity
+from ..front.front import ParetoFront
+from ..problem.requirements import Objective
+from .wishes import Kind, Wish
+
+_ROUNDING = 1e-9
+"""Of an objective's range: differences that are none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """One objective of the design that a wish led to.
+
+    objective: it. quantity: its quantity. kind: of the wish. wished, reached, before: the value that was wished or is
+    allowed, that of the design found, and that of the design from which classes were told, SI; None where there is
+    none. short: by how much the design found is worse than wished or allowed, in the objective as it is minimised, SI;
+    below zero where it is better; None without such a value. changed: by how much it is worse than before. range_: of
+    the objective over the front.
+    """
+
+    objective: Objective
+    quantity: Quantity
+    kind: Kind
+    wished: float | None
+    reached: float
+    before: float | None
+    short: float | None
+    changed: float | None
+    range_: float
+
+    @property
+    def met(self) -> bool:
+        """Whether the design found has what was wished, or stays within what is allowed."""
+        return self.short is None or self.short <= _ROUNDING * self.range_
+
+    @property
+    def gained(self) -> bool:
+        """Whether the design found is better than the one before."""
+        return self.changed is not None and self.changed < -_ROUNDING * self.range_
+
+    def text(self, system: System = "metric") -> str:
+        """Return wish and outcome in words: "peak torque 109.2 N m of 110 N m wished"."""
+        own = f"{self.quantity.title} {self._value(self.reached, system)}"
+        if self.kind == "value":
+            return own + self._against_wish(system)
+        if self.kind == "limit":
+            return f"{own}, at {self._worst} {self._value(cast(float, self.wished), system)} allowed"
+        if self.kind == "free" and self.changed is None:
+            return f"{own}, free"
+        free = ", free" if self.kind == "free" else ""
+        changed = cast(float, self.changed)
+        if abs(changed) <= _ROUNDING * self.range_:
+            return f"{own}, as before{free}"
+        return f"{own}, {self._amount(changed, system)} {'worse' if changed > 0.0 else 'better'} than before{free}"
+
+    @property
+    def _worst(self) -> str:
+        return {"minimise": "most", "maximise": "least", "target": "worst"}[self.objective.sense]
+
+    def _against_wish(self, system: System) -> str:
+        short, wished = cast(float, self.short), self._value(cast(float, self.wished), system)
+        if abs(short) <= _ROUNDING * self.range_:
+            return ", as wished" if self.objective.sense != "target" else f", as near to its target as {wished} wished"
+        amount = self._amount(short, system)
+        if self.objective.sense == "target":
+            target = self._value(cast(float, self.objective.target), system)
+            far = f"{amount} {'farther from' if short > 0.0 else 'nearer to'} its target of {target} than"
+            return f", {far} the {wished} wished"
+        if short < 0.0:
+            return f", {amount} better than the {wished} wished"
+        return f" of {wished} wished: it must give way by {amount}"
+
+    def _value(self, value: float, system: System) -> str:
+        unit, factor = shown_in(self.quantity.unit.symbol, system)
+        return f"{value * self.quantity.unit.factor * factor:.4g} {unit}".rstrip()
+
+    def _amount(self, value: float, system: System) -> str:
+        unit, factor = shown_in(self.quantity.unit.symbol, system)
+        return f"{abs(value) * self.quantity.unit.factor * factor:.3g} {unit}".rstrip()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wished:
+    """The answer to wishes for the objectives of a front.
+
+    found: the design, as a front of its own, with all columns of a front's table, its stationarity residual and
+    trade-off rates; empty where no design stays within what is allowed. row: of the design from which classes were
+    told. wishes: for each objective. value: of the achievement function that `wish` explains, at the design; NaN
+    without one. outcomes: of each objective; none without a design. message: why there is no design, or empty.
+    """
+
+    found: ParetoFront
+    row: int | None
+    wishes: tuple[Wish, ...]
+    value: float
+    outcomes: tuple[Outcome, ...]
+    message: str = ""
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def __repr__(self) -> str:
+        return f"Wished({self.found.problem.name!r}: {'; '.join(self.sentences())})"
+
+    @property
+    def possible(self) -> bool:
+        """Whether the design has everything that was wished."""
+        return bool(self.outcomes) and all(outcome.met for outcome in self.outcomes)
+
+    def sentences(self, system: System = "metric") -> list[str]:
+        """Return in words whether the wish can be had, then wish and outcome of each objective."""
+        if not self.outcomes:
+            return [self.message]
+        return [self._head(), *(outcome.text(system) for outcome in self.outcomes)]
+
+    def _head(self) -> str:
+        wished = [outcome for outcome in self.outcomes if outcome.kind == "value"]
+        if not wished:
+            if any(outcome.kind == "improve" and outcome.gained for outcome in self.outcomes):
+                return "what is to improve does so as far as the rest allows"
+            return "nothing improves while the rest keeps what it is to keep"
+        if not self.possible:
+            one = "no design has what is wished" if len(wished) == 1 else "no design has all that is wished"
+            return f"{one}; this one comes nearest"
+        if all(cast(float, outcome.short) < -_ROUNDING * outcome.range_ for outcome in wished):
+            return "the wish can be had, and better" + (" in all of it" if len(wished) > 1 else "")
+        return "the wish can be had"
+
+
+def outcomes_of(
+    front: ParetoFront, wishes: Sequence[Wish], aims: Sequence[float | None], row: int | None, found: ParetoFront
+) -> tuple[Outcome, ...]:
+    """Return the outcome of each objective.
+
+    aims: the values of wishes as objectives are minimised, SI. found: the design, as a front of its own.
+    """
+    return tuple(
+        Outcome(
+            objective=objective,
+            quantity=(of := front.problem.quantity(objective.quantity)),
+            kind=wishes[column].kind,
+            wished=wishes[column].value,
+            reached=float(found.columns[of.field][0]) / of.unit.factor,
+            before=None if row is None else float(front.columns[of.field][row]) / of.unit.factor,
+            short=None if (aim := aims[column]) is None else float(found.values[0, column] - aim),
+            changed=None if row is None else float(found.values[0, column] - front.values[row, column]),
+            range_=float(np.ptp(front.values[:, column])) or float(abs(found.values[0, column])),
+        )
+        for column, objective in enumerate(front.objectives)
+    )

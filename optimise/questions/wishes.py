@@ -1,0 +1,125 @@
+"""Wishes for the objectives of a front: values, or classes relative to one of its designs.
+
+A value is wished, "110 N m", and no bound: the design comes as near as can be. The classes are those of NIMBUS
+(K. Miettinen and M. M. Mäkelä, "Synchronous approach in interactive multiobjective optimization", Eur. J. Oper. Res.
+170(3), 2006): an objective is to improve on the design, to keep at least what the design has, may worsen to a value,
+or is free, as is what is not named.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ...model.errors import InputError
+from ..front.front import ParetoFront
+from ..job.units import shown, to_si
+from ..problem.violation import minimised
+
+Kind = Literal["value", "improve", "keep", "limit", "free"]
+_LIMIT = re.compile(r"(?:may\s+)?worsen\s+to\s+(.+)", re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?[0-9.]+(e[-+]?[0-9]+)?", re.IGNORECASE)
+_VALUE = tuple("+-.0123456789")  # how one begins
+_WORDS = 'a value such as "{example}", "improve", "keep", "may worsen to {example}" or "free"'
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A wish for one objective. value: of its quantity, SI, that is wished or that it may worsen to; else None."""
+
+    kind: Kind
+    value: float | None = None
+
+
+FREE = Wish("free")
+
+
+def read_wishes(front: ParetoFront, given: Mapping[str, object], row: int | None) -> tuple[Wish, ...]:
+    """Return the wish for every objective, in their order.
+
+    given: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: of the
+    design that improve, keep and worsen speak of. Raises `InputError` for an unknown objective, a value of another
+    unit, what wishes nothing, and what contradicts itself.
+    """
+    if not isinstance(given, Mapping):
+        raise InputError(f"wishes come by objective; got {given!r}; write them like {{'peak_torque': '110 N m'}}")
+    found = dict.fromkeys(range(len(front.objectives)), FREE)
+    for name, text in given.items():
+        column = _column(front, name)
+        if found[column] is not FREE:
+            raise InputError(f"one wish for each objective; got two for {front.objectives[column].quantity}")
+        wish = _read(front, column, text)
+        found[column] = Wish("free") if wish.kind == "free" else wish
+    wishes = tuple(found.values())
+    _require_sense(front, wishes, row)
+    return wishes
+
+
+def _column(front: ParetoFront, name: object) -> int:
+    try:
+        return front.column_of(str(name))
+    except InputError:
+        names = ", ".join(objective.quantity for objective in front.objectives)
+        raise InputError(f"a wish is for one of the objectives {names}; got {name!r}; name one of them") from None
+
+
+def _read(front: ParetoFront, column: int, given: object) -> Wish:
+    of = front.problem.quantity(front.objectives[column].quantity)
+    text = " ".join(given.split()) if isinstance(given, str) else ""
+    for word in ("improve", "keep", "free"):
+        if text.lower() == word:
+            return Wish(word)
+    limit = _LIMIT.fullmatch(text)
+    kind, value = of.kind, limit[1] if limit else given
+    if kind.unit and isinstance(value, str) and _NUMBER.fullmatch(value.strip()):
+        raise InputError(
+            f"the wish for {of.name} must be {kind.name} with its unit; got {shown(value)}; write it like "
+            f'"{kind.example}"'
+        )
+    try:
+        value = to_si(value, kind, plain=not isinstance(given, str))
+    except InputError as error:
+        words = "" if text[:1] in _VALUE else f"; a wish is {_WORDS.format(example=kind.example)}"
+        raise InputError(f"the wish for {of.name} {error}{words}") from None
+    return Wish("limit" if limit else "value", value)
+
+
+def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None) -> None:
+    """Refuse wishes that wish nothing, or that no design can have by what they say alone."""
+    kinds = [wish.kind for wish in wishes]
+    names = [objective.quantity for objective in front.objectives]
+    if "value" not in kinds and "improve" not in kinds:
+        raise InputError(
+            f"nothing is wished; give one of {', '.join(names)} a value, or let it improve on a design of the front"
+        )
+    relative = [name for name, kind in zip(names, kinds, strict=True) if kind in ("improve", "keep")]
+    if row is None:
+        if relative:
+            raise InputError(
+                f"{relative[0]} is to improve or to keep what a design has; got no design; name one of the front"
+            )
+        return
+    if len(relative) == len(names):
+        raise InputError(
+            f"design {row + 1} is Pareto-optimal: none improves while all others keep; got improve or keep for "
+            "every objective; let one be free, or worsen to a value"
+        )
+    for column, wish in enumerate(wishes):
+        of = front.problem.quantity(names[column])
+        own = front.values[row, column]
+        if wish.kind == "limit" and aimed(front, column, wish) < own - 1e-9 * abs(own):
+            raise InputError(
+                f"{names[column]} may worsen to a value worse than that of design {row + 1}; got "
+                f"{wish.value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()  # type: ignore[operator]
+                + ", which is better; write the value alone to wish for it"
+            )
+
+
+def aimed(front: ParetoFront, column: int, wish: Wish) -> float:
+    """Return a wish's value as the objective is minimised, SI: negated, or the distance from a target."""
+    assert wish.value is not None
+    return float(minimised(front.objectives[column], np.array([wish.value]))[0])

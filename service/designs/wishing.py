@@ -1,0 +1,38 @@
+"""Answers to wishes as JSON has them, in a system of units."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...objectives.kinds import System, shown_in
+from ..runs.result import finite, rows_of
+from .shown_units import row_in
+
+if TYPE_CHECKING:
+    from ...optimise.questions.wished import Outcome, Wished
+
+
+def wished_record(answer: Wished, units: System = "metric") -> dict[str, Any]:
+    """Return the answer to a wish as JSON has it.
+
+    possible: whether everything wished is reached. sentences: the answer in words. achievement: value of the
+    achievement function. objectives: of each, wish and outcome, in its unit. design: the row of a front's table, null
+    where no design stays within what is allowed.
+    """
+    rows = rows_of(answer.found.columns) if len(answer) else []
+    return {
+        "number": None if answer.row is None else answer.row + 1,
+        "possible": answer.possible,
+        "sentences": answer.sentences(units),
+        "achievement": finite(answer.value),
+        "objectives": [_outcome(outcome, units) for outcome in answer.outcomes],
+        "design": finite(row_in(rows[0], units)) if rows else None,
+    }
+
+
+def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
+    of = outcome.quantity
+    unit, factor = shown_in(of.unit.symbol, units)
+    numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}
+    told = {name: None if value is None else value * of.unit.factor * factor for name, value in numbers.items()}
+    return {"quantity": of.name, "title": of.title, "unit": unit, "wish": outcome.kind, "met": outcome.met, **told}
