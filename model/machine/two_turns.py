@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .mechanism import Mechanism
+from .remembered import remembered
 
 Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
-_last: tuple[Mechanism | None, tuple[Mechanism, ...]] = (None, ())
 
 
 def cycle_turns(mechanism: Mechanism) -> int:
@@ -29,20 +29,11 @@ def cycle_turns(mechanism: Mechanism) -> int:
     return max((load.cycle_turns for load in mechanism.loads), default=1)
 
 
+@remembered
 def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
-    """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums.
-
-    A search asks for the same machine thousands of times: the last answer is kept.
-    """
-    global _last
-    before, found = _last
-    if before is not mechanism:
-        _datum(mechanism)
-        found = tuple(
-            replace(mechanism, loads=tuple(load.on_turn(turn) for load in mechanism.loads)) for turn in (1, 2)
-        )
-        _last = mechanism, found
-    return found
+    """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
+    _datum(mechanism)
+    return tuple(replace(mechanism, loads=tuple(load.on_turn(turn) for load in mechanism.loads)) for turn in (1, 2))
 
 
 def one_turn(mechanism: Mechanism) -> Mechanism:
