@@ -114,6 +114,7 @@ WRONG = [
     ("least transmission angle, at least", "95", "lies between 0 and 90 deg"),
     ("of the crank angle", "x", "must be an angle"),
     ("designs", "1.5", "must be a whole number"),
+    ("crank, to", "2*(75", "is not closed"),
 ]
 
 
@@ -132,6 +133,14 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
         expect(status(page)).to_have_text("One thing to correct.")
         field.fill(before)
         expect(field, label).not_to_have_attribute("aria-invalid", "true")
+    for label, typed, number, said in (
+        ("rod, from", "3 in + 5 mm", "81.2", '"3 in + 5 mm" = 81.2 mm'),
+        ("rod, to", "1,500", "1500", '"1,500" is read as 1500 mm; write 1.500 if you mean that.'),
+    ):
+        page.get_by_label(label, exact=True).fill(typed)
+        page.get_by_label(label, exact=True).blur()
+        expect(page.get_by_label(label, exact=True)).to_have_value(number)
+        expect(page.get_by_role("status").filter(has_text=said)).to_be_visible()
     page.get_by_label("slider mass", exact=True).fill("heavy")
     expect(status(page)).to_have_text("One thing to correct.")
     start(page)

@@ -4,7 +4,8 @@ import { h } from "../lib/dom.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
-import { convert, join, split, unitsOf, usual } from "./units.js";
+import { ordered, taken } from "./typed_field.js";
+import { convert, split, unitsOf, usual } from "./units.js";
 
 /** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
 const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list };
@@ -32,7 +33,7 @@ export function quantity(form, path, { kind, percent = false, label, why, wide }
   const { number, unit } = split(form.at(path), kind);
   const input = numberInput(idOf(path, "c"), number);
   const select = kind ? unitSelect(label, kind, unit, percent, idOf(path, "u")) : null;
-  const write = () => form.put(path, join(input.value, select?.value ?? ""));
+  const write = () => form.put(path, taken(input, { kind, percent, select }));
   input.addEventListener("input", write);
   select?.addEventListener("change", () => {
     changeUnit(select, [input], kind);
@@ -68,7 +69,9 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
     input.classList.add("short");
     if (fallback !== undefined && fallback !== null) input.placeholder = String(fallback);
   }
-  input.addEventListener("input", () => form.put(path, control === "text" ? input.value || undefined : number(input.value)));
+  const write = () => form.put(path, input instanceof HTMLTextAreaElement || control === "text" ? input.value || undefined : number(input));
+  input.addEventListener("input", write);
+  if (input instanceof HTMLInputElement && control !== "text") input.addEventListener("change", () => ordered(input));
   return field(form, path, label, [input], why, { wide });
 }
 
@@ -89,7 +92,7 @@ export function list(form, path, { label, why, example }) {
  * @param {string} id @param {string} value @param {string | null} label
  */
 export function numberInput(id, value, label = null) {
-  return h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "short number", id, value, "aria-label": label });
+  return h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "short number", id, value, "aria-label": label, onchange: (event) => ordered(event.currentTarget) });
 }
 
 /**
@@ -113,9 +116,8 @@ export function changeUnit(select, inputs, kind) {
   select.dataset.from = select.value;
 }
 
-/** Return what a job holds for a typed number: a number if it is one. @param {string} text */
-export function number(text) {
-  const typed = text.trim().replaceAll("−", "-");
-  if (typed === "") return undefined;
-  return Number.isFinite(Number(typed)) ? Number(typed) : typed;
+/** Return what a job holds for a number without a unit: a number if it is one. @param {HTMLInputElement} input */
+export function number(input) {
+  const typed = taken(input);
+  return typed !== undefined && Number.isFinite(Number(typed)) ? Number(typed) : typed;
 }

@@ -12,6 +12,7 @@ import { idOf, written } from "./path.js";
 export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
   const id = idOf(path, "c");
   controls[0].id ||= id;
+  const understood = h("p", { class: "understood", role: "status", hidden: true });
   const error = h("p", { class: "error", id: `${id}-error`, hidden: true });
   const explained = explanation(`${id}-why`, label, why);
   const node = h(
@@ -19,6 +20,7 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
     { class: wide ? "field wide" : "field" },
     h("div", { class: "field-label" }, labelled ? h("label", { for: controls[0].id }, label) : h("span", {}, label), explained?.button),
     h("div", { class: "field-controls" }, controls),
+    understood,
     explained?.text,
     error,
   );
@@ -63,8 +65,10 @@ export function showWrong(fields, wrong) {
   return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
 }
 
-/** @param {Form.Field} one @param {string[]} sentences */
-function say(one, sentences) {
+/** Say what is wrong with a field; of what cannot be read, that instead of what it leads to. @param {Form.Field} one @param {string[]} found */
+function say(one, found) {
+  const unread = one.controls.flatMap(({ dataset }) => dataset.wrong ?? []);
+  const sentences = unread.length ? unread : found;
   const bad = sentences.length > 0;
   one.error.hidden = !bad;
   one.error.textContent = sentences.map(capital).join(" ");

@@ -4,7 +4,8 @@ import { h } from "../lib/dom.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { explanation, field } from "./field.js";
 import { at, idOf } from "./path.js";
-import { join, kindOf, split } from "./units.js";
+import { taken } from "./typed_field.js";
+import { kindOf, split } from "./units.js";
 
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
 
@@ -42,7 +43,7 @@ function wanted(form, path, quantity, kind, given) {
   const { number: value, unit } = split(target === "" ? undefined : target, kind);
   const input = numberInput(idOf(path, "t"), value, `${quantity.title}: value to come near to`);
   const units = kind ? unitSelect(quantity.title, kind, unit, false, idOf(path, "u")) : null;
-  const write = () => form.put(path, { target: (units ? join(input.value, units.value) : number(input.value)) ?? "" });
+  const write = () => form.put(path, { target: (units ? taken(input, { kind, select: units }) : number(input)) ?? "" });
   input.addEventListener("input", write);
   units?.addEventListener("change", () => {
     changeUnit(units, [input], kind);

@@ -4,6 +4,7 @@ import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf } from "./path.js";
+import { taken } from "./typed_field.js";
 import { convert, join, split } from "./units.js";
 
 const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["choices", "one of"]];
@@ -28,7 +29,7 @@ export function range(form, path, { label, why }) {
   const typed = () => (mode === "choices" ? inputs[0].value.split(",") : inputs.map((one) => one.value));
   /** @param {string} to */
   const write = (to = mode) => {
-    const values = typed().map((text) => join(text, units.value));
+    const values = mode === "choices" ? typed().map((text) => join(text, units.value)) : inputs.map((one) => taken(one, { kind: "length", select: units }));
     const first = values.find((one) => one !== undefined);
     if (to === "range") form.put(path, first === undefined ? undefined : [values[0] ?? "", values.at(-1) ?? ""]);
     else if (to === "fixed") form.put(path, first);

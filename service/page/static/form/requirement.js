@@ -4,7 +4,8 @@ import { h } from "../lib/dom.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { convert, join, kindOf, split } from "./units.js";
+import { taken } from "./typed_field.js";
+import { convert, kindOf, split } from "./units.js";
 
 const MODES = [["any", "any"], ["equals", "exactly"], ["min", "at least"], ["max", "at most"], ["between", "between"]];
 /** @type {Record<string, string[]>} */
@@ -34,8 +35,9 @@ export function requirement(form, quantity, { label = quantity.title, place = ["
     /** @type {Record<string, unknown>} */
     const bounds = {};
     names.forEach((key, place) => {
-      const typed = inputs[Math.min(place, inputs.length - 1)]?.value ?? "";
-      bounds[key] = (kind ? join(typed, units?.value ?? unit) : number(typed)) ?? ""; // the service says that it is missing
+      const input = inputs[Math.min(place, inputs.length - 1)];
+      const typed = input && (kind ? taken(input, { kind, select: units }) : number(input));
+      bounds[key] = typed ?? ""; // the service says that it is missing
     });
     form.put(path, names.length ? bounds : undefined);
   };

@@ -13,7 +13,7 @@ export function solving(form) {
     const given = form.submission[key];
     const input = numberInput(idOf(path, "c"), given === undefined ? "" : String(typeof given === "number" ? given / factor : given));
     input.addEventListener("input", () => {
-      const typed = number(input.value);
+      const typed = number(input);
       form.submit(key, typeof typed === "number" ? typed * factor : typed);
     });
     return field(form, path, label, [input], why);

@@ -4,7 +4,8 @@ import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
-import { join, split } from "./units.js";
+import { taken } from "./typed_field.js";
+import { split } from "./units.js";
 
 const PATH = ["mechanism", "speed"];
 
@@ -25,7 +26,8 @@ export function speed(form) {
       way.value = "-"; // as typed, so that nothing is turned round twice
       input.value = typed.slice(1);
     }
-    form.put(PATH, input.value.trim() === "" ? undefined : join(way.value + input.value.trim(), units.value));
+    const found = taken(input, { kind: "angular speed", select: units });
+    form.put(PATH, found && way.value + found);
   };
   input.addEventListener("input", write);
   way.addEventListener("change", write);

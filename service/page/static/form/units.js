@@ -19,6 +19,11 @@ export async function readyKinds(signal) {
   USUAL = { si: Object.fromEntries(known.map(({ name, si }) => [name, si])), inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])) };
 }
 
+/** Return what one of each unit of a kind is in its SI unit; nothing for a number without a kind. @param {string | null | undefined} kind */
+export function factorsOf(kind) {
+  return KINDS[kind ?? ""] ?? {};
+}
+
 /** Return the names of all kinds. */
 export function kinds() {
   return Object.keys(KINDS);

@@ -2,6 +2,7 @@
 
 import { fill, first, h } from "../lib/dom.js";
 import { ends, fromShown, text } from "../lib/numbers.js";
+import { read } from "../lib/typed.js";
 import { headed, helpLink } from "./columns.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -106,8 +107,8 @@ export function axisFields(explorer) {
  * @param {HTMLInputElement} node @param {string} unit @returns {number | null | undefined}
  */
 function number(node, unit) {
-  const written = node.value.trim().replaceAll("−", "-").replace(",", ".");
-  const value = written === "" ? null : fromShown(Number(written), unit);
+  const found = read(node.value, { unit: "", factors: {} });
+  const value = found.empty ? null : fromShown(Number(found.number), unit);
   const fine = value === null || Number.isFinite(value);
   if (fine) node.removeAttribute("aria-invalid");
   else node.setAttribute("aria-invalid", "true");

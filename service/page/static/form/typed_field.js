@@ -1,0 +1,40 @@
+/** Fields of numbers: what was typed is read, said beside the field, and put in order when the field is left. */
+
+import { read } from "../lib/typed.js";
+import { factorsOf, join } from "./units.js";
+
+/** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null }} Measure */
+
+/**
+ * Return what a job holds for what is typed in an input: a number in the unit that the field shows, or the text as it is where
+ * only the service can say what it means; undefined for nothing. What cannot be read is said at the field.
+ * @param {HTMLInputElement} input @param {Measure} measure @returns {string | undefined}
+ */
+export function taken(input, { kind = null, percent = false, select = null } = {}) {
+  const found = read(input.value, { unit: select?.value ?? "", factors: factorsOf(kind), percent });
+  delete input.dataset.wrong;
+  if (input.value !== input.dataset.number) for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
+  if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
+  if (found.number === undefined) {
+    tell(input);
+    return found.empty ? undefined : input.value.trim();
+  }
+  if (select && found.unit !== select.value) select.value = select.dataset.from = found.unit; // to a share, or from one
+  if (found.said) [input.dataset.said, input.dataset.number] = [found.said, found.number];
+  tell(input);
+  return join(found.number, found.unit);
+}
+
+/** Put the number that was understood in place of what was typed. @param {HTMLInputElement} input */
+export function ordered(input) {
+  if (input.dataset.number !== undefined) input.value = input.dataset.number;
+}
+
+/** Say beside the field how its numbers were read. @param {HTMLInputElement} input */
+function tell(input) {
+  const place = input.closest(".field")?.querySelector(".understood");
+  if (!(place instanceof HTMLElement)) return;
+  const said = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(({ dataset }) => dataset.said ?? []);
+  place.textContent = said.join(" · ");
+  place.hidden = said.length === 0;
+}

@@ -1,0 +1,193 @@
+/** Numbers as people type them: with a decimal comma, a unit, or as a sum: "150,5", "6 in", "2*75", "1/2 in", "3 in + 5 mm". */
+
+/**
+ * @typedef {object} Field What a field takes.
+ * @property {string} unit the one that it shows; a number without one is in it
+ * @property {Record<string, number>} factors what one of each unit is in the first; those that no number changes into are left out
+ * @property {boolean} [percent] whether a share may stand for a value
+ *
+ * @typedef {{ value: number, unit: string | null }} Part A number, with its unit once it has one.
+ * @typedef {{ number?: undefined, wrong?: undefined, empty?: true }} Nothing nothing was typed, or what only the service can read
+ * @typedef {{ number: string, unit: string, said: string | null, wrong?: undefined, empty?: undefined }} Read
+ * @typedef {{ wrong: string, number?: undefined, empty?: undefined }} Wrong
+ */
+
+const PLAIN = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?$/i;
+const MIXED = /^(\d+)\s+(\d+)\s*\/\s*(\d+)(?![\d.,])/; // one and a half, as on an inch rule: 1 1/2
+const SPACED = /^\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d])(?:[.,]\d+)?/;
+const DIGITS = /^(?:\d|[.,](?=\d))[\d.,]*(?:e[+-]?\d{1,3})?/i;
+/** Other spellings of units. @type {Record<string, string>} */
+const SPELLINGS = { '"': "in", "″": "in", inch: "in", "'": "foot", "′": "foot", ft: "foot", feet: "foot", um: "µm", "μm": "µm", "°": "deg", "1/min": "rpm" };
+
+/** What is wrong with a number, as a sentence. */
+class Unreadable extends Error {}
+
+/** A word that is no unit of the field: a formula, or a unit that only the service knows. */
+class Unknown extends Error {}
+
+/**
+ * Return what was typed into a field: {number, unit, said}, the number as text in the unit of the field, and in words how it
+ * was read unless that is plain; {wrong} with a sentence; {empty}; or {} for what only the service can read.
+ * A comma or point before exactly three digits: a comma is taken for thousands, as this page writes them, and that is said.
+ * @param {string} typed @param {Field} field @returns {Nothing | Read | Wrong}
+ */
+export function read(typed, field) {
+  const text = typed.trim().replaceAll("−", "-").replace(/^=\s*/, "");
+  if (text === "") return { empty: true };
+  if (PLAIN.test(text)) return { number: text, unit: field.unit, said: null };
+  try {
+    const parser = new Parser(text, field);
+    const { value, unit } = parser.whole();
+    if (!Number.isFinite(value)) return { wrong: `${shown(typed)} has no finite value.` };
+    const same = unit === null || unit === field.unit || !(unit in field.factors) || !(field.unit in field.factors);
+    const number = tidy(same ? value : (value * field.factors[unit]) / field.factors[field.unit]);
+    const into = same ? (unit ?? field.unit) : field.unit;
+    const result = `${number}${into ? ` ${into}` : ""}`;
+    const said = parser.doubtful ? `${shown(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.` : result === text ? null : `${shown(typed)} = ${result}`;
+    return { number, unit: into, said };
+  } catch (problem) {
+    if (problem instanceof Unreadable) return { wrong: problem.message };
+    if (problem instanceof Unknown) return {};
+    throw problem;
+  }
+}
+
+/** Reads sums of terms; a unit belongs to the product before it, so that 1/2 in is half an inch. */
+class Parser {
+  /** @param {string} text @param {Field} field */
+  constructor(text, field) {
+    this.text = text;
+    this.rest = text;
+    this.field = field;
+    this.doubtful = ""; // the other way to read a number of which there are two
+    /** @type {[string, string][]} */
+    this.spellings = spellingsOf(field);
+  }
+
+  whole() {
+    const found = this.sum();
+    if (this.rest) throw new Unreadable(this.rest[0] === ")" ? `A bracket is closed in ${shown(this.text)} that was not opened.` : `A sign such as + or * is missing before ${shown(this.rest)}.`);
+    return found;
+  }
+
+  /** @returns {Part} */
+  sum() {
+    const terms = [this.term()];
+    const signs = [1];
+    for (let sign = this.taken(/^[+-]/); sign; sign = this.taken(/^[+-]/)) {
+      signs.push(sign === "-" ? -1 : 1);
+      terms.push(this.term());
+    }
+    const last = terms[terms.length - 1].unit;
+    const bare = terms.slice(0, -1).every(({ unit }) => unit === null); // 100 + 5 mm: the unit is that of all
+    const missing = terms.find(({ unit }) => unit === null);
+    if (!bare && missing) throw new Unreadable(`A part of ${shown(this.text)} has no unit; write one behind each part, or only at the end.`);
+    if (bare) return { value: terms.reduce((all, { value }, n) => all + signs[n] * value, 0), unit: last };
+    const { unit } = terms[0];
+    const value = terms.reduce((all, one, n) => all + signs[n] * (one.unit === unit ? one.value : (one.value * this.factor(one.unit)) / this.factor(unit)), 0);
+    return { value, unit };
+  }
+
+  /** @param {string | null} unit */
+  factor(unit) {
+    const found = this.field.factors[unit ?? ""];
+    if (found === undefined) throw new Unreadable(`A share and a value cannot be added, as in ${shown(this.text)}.`);
+    return found;
+  }
+
+  /** @returns {Part} */
+  term() {
+    let found = this.measured(this.operand());
+    for (let sign = this.taken(/^[*/×·÷]/); sign; sign = this.taken(/^[*/×·÷]/)) {
+      const other = this.operand();
+      const by = sign === "/" || sign === "÷";
+      if (other.unit !== null && (found.unit !== null || by)) throw new Unreadable(`Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`);
+      if (by && other.value === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
+      found = this.measured({ value: by ? found.value / other.value : found.value * other.value, unit: found.unit ?? other.unit });
+    }
+    return found;
+  }
+
+  /** Return a part with the unit behind it, if there is one. @param {Part} part @returns {Part} */
+  measured(part) {
+    const found = this.spellings.find(([spelling]) => this.rest.startsWith(spelling) && !(/\w$/.test(spelling) && /^[\w^]/.test(this.rest.slice(spelling.length))));
+    if (!found) {
+      if (/^[^\d\s.,+\-*/×·÷()]/.test(this.rest)) throw new Unknown();
+      return part;
+    }
+    this.rest = this.rest.slice(found[0].length).trimStart();
+    if (part.unit !== null) throw new Unreadable(`${shown(this.text)} has two units in one product.`);
+    return { value: part.value, unit: found[1] };
+  }
+
+  /** @returns {Part} */
+  operand() {
+    const sign = this.taken(/^[+-]/);
+    if (sign) {
+      const { value, unit } = this.operand();
+      return { value: sign === "-" ? -value : value, unit };
+    }
+    if (this.taken(/^\(/)) {
+      const inner = this.sum();
+      if (!this.taken(/^\)/)) throw new Unreadable(`A bracket of ${shown(this.text)} is not closed.`);
+      return inner;
+    }
+    const mixed = this.matched(MIXED);
+    if (mixed) {
+      const [, whole, over, under] = mixed.map(Number);
+      if (under === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
+      return { value: whole + over / under, unit: null };
+    }
+    const digits = this.taken(SPACED) || this.taken(DIGITS);
+    if (digits) return { value: this.number(digits.replace(/[\s\u00a0\u202f]/g, "")), unit: null };
+    if (/^[^\d\s.,+\-*/×·÷()]/.test(this.rest)) throw new Unknown();
+    throw new Unreadable(this.rest ? `A number is missing before ${shown(this.rest)}.` : `A number is missing at the end of ${shown(this.text)}.`);
+  }
+
+  /** Return the number that digits with points and commas say. @param {string} digits */
+  number(digits) {
+    const [mantissa, power = "0"] = digits.split(/e/i);
+    const [commas, points] = [mantissa.split(",").length - 1, mantissa.split(".").length - 1];
+    const grouped = /^[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?$/.test(mantissa) ? "," : /^[1-9]\d{0,2}(?:\.\d{3})+(?:,\d*)?$/.test(mantissa) ? "." : "";
+    let plain = mantissa;
+    if (grouped === "," && (commas > 1 || points || !digits.match(/e/i))) {
+      if (commas === 1 && !points) this.doubtful = mantissa.replace(",", ".");
+      plain = mantissa.replaceAll(",", "");
+    } else if (grouped === "." && (points > 1 || commas)) plain = mantissa.replaceAll(".", "").replace(",", ".");
+    else if (commas + points <= 1) plain = mantissa.replace(",", ".");
+    else throw new Unreadable(`${shown(mantissa)} is no number: it has points or commas in more than one place.`);
+    return Number(`${plain}e${power}`);
+  }
+
+  /** Take what a pattern finds at the beginning of the rest, and the space behind it. @param {RegExp} pattern */
+  matched(pattern) {
+    const found = pattern.exec(this.rest);
+    if (found) this.rest = this.rest.slice(found[0].length).trimStart();
+    return found;
+  }
+
+  /** @param {RegExp} pattern */
+  taken(pattern) {
+    return this.matched(pattern)?.[0] ?? "";
+  }
+}
+
+/** Return how units of a field may be written, each with the unit, the longest first. @param {Field} field @returns {[string, string][]} */
+function spellingsOf({ factors, percent }) {
+  const units = Object.keys(factors);
+  /** @type {[string, string][]} */
+  const found = units.flatMap((unit) => [unit, unit.replaceAll(" ", ""), unit.replaceAll(" ", "·"), unit.replace("^2", "²").replace("^3", "³")].map((one) => /** @type {[string, string]} */ ([one, unit])));
+  for (const [spelling, unit] of Object.entries(SPELLINGS)) if (unit in factors) found.push([spelling, unit]);
+  if (percent) found.push(["%", "%"]);
+  return found.sort(([one], [other]) => other.length - one.length);
+}
+
+/** Return a number as text, without what rounding adds. @param {number} value */
+function tidy(value) {
+  return String(Number(value.toPrecision(12)));
+}
+
+/** Return what was typed as words of a sentence. @param {string} text */
+function shown(text) {
+  return `"${text.trim()}"`;
+}
