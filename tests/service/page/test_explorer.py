@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import tomllib
 from collections.abc import Iterator
@@ -205,6 +206,24 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     button.click()
     expect(page).to_have_url(re.compile("sort=least_transmission_angle_deg"))
     expect_designs(page, best[::-1])
+    field(page, "At least least transmission angle").fill(str(round(sorted(ratios)[3] - 1e-3, 4)))
+    field(page, "At least least transmission angle").press("Enter")
+    kept = best[4::-1]  # five of eight, the least angle first
+    expect_designs(page, kept)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download 5 chosen as CSV").click()
+    table = list(csv.DictReader(download.value.path().read_text().splitlines()))
+    assert [int(row["number"]) for row in table] == kept
+    assert [float(row["rod_mm"]) for row in table] == [solved.result.designs[number - 1]["rod_mm"] for number in kept]
+    page.locator("table.designs tbody a").first.click()  # next and previous follow the list
+    for number in kept[1:]:
+        page.get_by_label("Next design").click()
+        expect(page).to_have_url(re.compile(rf"designs/{number}$"))
+    expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {kept[-1]} of 8, 5. of the 5 in the list")
+    expect(page.get_by_label("Next design")).to_have_count(0)
+    page.locator(".back a").click()
+    expect_designs(page, kept)
+    page.get_by_role("button", name="Clear all limits").click()
     page.get_by_text("Columns", exact=True).click()
     page.get_by_role("group", name="Columns").get_by_label("status").check()
     expect(page.get_by_role("columnheader", name="status")).to_be_visible()

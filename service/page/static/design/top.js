@@ -1,5 +1,6 @@
 /** The head of the view: where it is, the designs before and after it, and what stands beside it. */
 
+import { beside as besideIn } from "../front/listed.js";
 import { left, link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 
@@ -8,9 +9,10 @@ import { h } from "../lib/dom.js";
 /** Return the head. @param {Place} place */
 export function top({ job, number, front, others }) {
   const beside = others.map((one) => one.number).join(",");
-  /** @param {number} to @param {string} words @param {string} sign */
+  const { place, count, before, after, listed } = besideIn(job, number, front.count);
+  /** @param {number | null} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
-    to >= 1 && to <= front.count
+    to !== null
       ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside: beside || null }), "aria-label": words, title: words }, sign)
       : h("span", { class: "button off", "aria-hidden": "true" }, sign);
   return h(
@@ -18,8 +20,8 @@ export function top({ job, number, front, others }) {
     { class: "design-head" },
     h("p", { class: "back" }, h("a", { href: left(["jobs", job]) }, `← ${front.name}`)),
     h("div", { class: "row" },
-      h("h1", {}, `Design ${number}`, h("span", { class: "quiet" }, ` of ${front.count}`)),
-      step(number - 1, "Previous design", "‹"), step(number + 1, "Next design", "›"), compare({ job, number, front, others })),
+      h("h1", {}, `Design ${number}`, h("span", { class: "quiet" }, ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`)),
+      step(before, "Previous design", "‹"), step(after, "Next design", "›"), compare({ job, number, front, others })),
   );
 }
 

@@ -2,6 +2,7 @@
 
 import { address, get, post, Problem, sentenceOf } from "../lib/api.js";
 import { h } from "../lib/dom.js";
+import { download } from "../lib/download.js";
 import { say, sayProblem } from "../lib/notices.js";
 
 const WAIT = 300; // ms after the last letter until the text is taken into the form
@@ -99,13 +100,6 @@ async function toml(job) {
   const response = await fetch(address("toml"), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
   if (!response.ok) throw new Problem(response.status, (await response.json()).detail);
   return response.text();
-}
-
-/** @param {string} content @param {string} type @param {string} name */
-function download(content, type, name) {
-  const link = h("a", { href: URL.createObjectURL(new Blob([content], { type })), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 /** @param {unknown} name */

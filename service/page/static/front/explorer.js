@@ -12,9 +12,11 @@ import { chooser } from "./chooser.js";
 import { choicesFrom, queryOf, toggled } from "./choices.js";
 import { FrontData } from "./data.js";
 import { Limits } from "./limits.js";
+import { keepListed } from "./listed.js";
 import { linkagePanel } from "./linkage_panel.js";
 import { LENGTHS, linkages } from "./linkages.js";
 import { marksPanel } from "./marks.js";
+import { saving } from "./saving.js";
 import { scatterPanel } from "./scatter_panel.js";
 import { selectedBar } from "./selected.js";
 import { designTable } from "./table.js";
@@ -78,6 +80,7 @@ export class Explorer {
     this.linkages = linkages(data);
     this.count = h("p", { class: "count", role: "status" });
     this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
+    this.saving = saving(this);
     this.fields = axisFields(this);
     this.lines = parallel({
       data, limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
@@ -107,15 +110,17 @@ export class Explorer {
         h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
       this.scatterPanel.place,
       h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
-        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
+        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place, this.saving.node,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
         this.table.place));
     const again = () => this.update("all");
+    place.addEventListener("click", ({ target }) => target instanceof Element && target.closest("a") && this.keepAddress());
     const sizes = new ResizeObserver(() => this.width !== place.clientWidth && again());
     sizes.observe(place);
     this.signal.addEventListener("abort", () => {
       sizes.disconnect();
       this.linkagePanel.close();
+      keepListed(job.id, limits.open && !chosen.sort ? null : this.table.numbers());
       clearTimeout(this.settling);
       clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
@@ -171,8 +176,14 @@ export class Explorer {
       this.waiting = null;
       if (waiting) this.draw(waiting);
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => keep(queryOf(this.chosen, this.limits.lasso)), SETTLED);
+      this.settling = setTimeout(() => this.keepAddress(), SETTLED);
     });
+  }
+
+  /** Write what is chosen into the address, so that the way back leads here. */
+  keepAddress() {
+    clearTimeout(this.settling);
+    keep(queryOf(this.chosen, this.limits.lasso));
   }
 
   /** @param {What} what */
@@ -182,6 +193,7 @@ export class Explorer {
       const { chosen } = this.limits;
       this.count.textContent = `${grouped(chosen)} of ${grouped(this.data.count)} designs chosen`;
       this.clearing.disabled = this.limits.open;
+      this.saving.draw();
     }
     if (what === "all") {
       this.width = this.place.clientWidth;
@@ -258,7 +270,7 @@ export class Explorer {
 
   /** @param {number} row */
   open(row) {
-    keep(queryOf(this.chosen, this.limits.lasso)); // so that the way back leads here
+    this.keepAddress();
     location.hash = this.hrefOf(row);
   }
 

@@ -10,7 +10,7 @@ const PAGE = 20;
 /** @type {Record<string, number>} */
 const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 
-/** Return {place, draw()} of the table of an explorer. @param {Explorer} explorer */
+/** Return {place, draw(), mark(), numbers()} of the table of an explorer. @param {Explorer} explorer */
 export function designTable(explorer) {
   const head = h("thead");
   const body = h("tbody");
@@ -112,7 +112,10 @@ export function designTable(explorer) {
     }
   }
 
-  return { place, draw, mark };
+  /** Return the numbers of the designs in the order of the table, on all its pages. */
+  const numbers = () => Array.from(rows(), (row) => row + 1);
+
+  return { place, draw, mark, numbers };
 }
 
 /**

@@ -53,6 +53,14 @@ export function get(path, query = {}, signal = undefined) {
   return ask("GET", address(path, query), undefined, signal);
 }
 
+/** Return what is at a path as text. Throws as `get` does. @param {string} path @param {Api.Query} query @param {AbortSignal} [signal] */
+export async function getText(path, query = {}, signal = undefined) {
+  const response = await answered("GET", address(path, query), { signal });
+  const text = await response.text();
+  if (!response.ok) throw new Problem(response.status, `The service answered ${response.status}.`);
+  return text;
+}
+
 /**
  * Send JSON and return the answer. headers: further ones.
  * @template {Api.Text} Path
@@ -83,14 +91,7 @@ async function ask(method, url, body, signal, more = {}) {
   const headers = { Accept: "application/json", ...more };
   if (body !== undefined) headers["Content-Type"] ??= "application/json";
   const sent = body === undefined || typeof body === "string" ? body : JSON.stringify(body);
-  let response;
-  try {
-    response = await fetch(url, { method, signal, headers, body: sent });
-  } catch (error) {
-    if (isAbort(error)) throw error;
-    throw new Problem(0, "The service does not answer; the page goes on when it is back.");
-  }
-  if (response.status === 401) location.reload(); // the service asks for its token, and comes back to this view
+  const response = await answered(method, url, { signal, headers, body: sent });
   if (response.status === 204) return null;
   const text = await response.text();
   let answer = null;
@@ -101,4 +102,17 @@ async function ask(method, url, body, signal, more = {}) {
   }
   if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`);
   return answer;
+}
+
+/** Return a response, of whatever status. @param {string} method @param {string} url @param {RequestInit} options */
+async function answered(method, url, options) {
+  let response;
+  try {
+    response = await fetch(url, { method, ...options });
+  } catch (error) {
+    if (isAbort(error)) throw error;
+    throw new Problem(0, "The service does not answer; the page goes on when it is back.");
+  }
+  if (response.status === 401) location.reload(); // the service asks for its token, and comes back to this view
+  return response;
 }

@@ -1,0 +1,49 @@
+/** The designs that a front was left with, sorted and within the limits: the order in which they are walked through. */
+
+/** @param {string | number} job */
+const key = (job) => `listed ${job}`;
+
+/** Keep the numbers of designs in their order; null forgets them. @param {string | number} job @param {number[] | null} numbers */
+export function keepListed(job, numbers) {
+  try {
+    if (numbers === null) sessionStorage.removeItem(key(job));
+    else sessionStorage.setItem(key(job), JSON.stringify(numbers));
+  } catch {
+    // A browser that keeps nothing, or not so many: they are walked through by number.
+  }
+}
+
+/**
+ * Return where a design stands among those that were kept: {place, count, before, after}, the numbers beside it null at the ends;
+ * without a list, or outside of it, among all designs of the front.
+ * @param {string | number} job @param {number} number @param {number} all
+ */
+export function beside(job, number, all) {
+  const numbers = kept(job);
+  const place = numbers.indexOf(number);
+  if (place >= 0) return { place: place + 1, count: numbers.length, before: numbers[place - 1] ?? null, after: numbers[place + 1] ?? null, listed: true };
+  return { place: number, count: all, before: number > 1 ? number - 1 : null, after: number < all ? number + 1 : null, listed: false };
+}
+
+/** @param {string | number} job @returns {number[]} */
+function kept(job) {
+  try {
+    const found = JSON.parse(sessionStorage.getItem(key(job)) ?? "[]");
+    return Array.isArray(found) ? found : [];
+  } catch {
+    return [];
+  }
+}
+
+/**
+ * Return the lines of a table of designs, as the service exports it, that begin with some numbers, in the order of these. Throws an
+ * Error for a table that is not of that shape.
+ * @param {string} table @param {number[]} numbers
+ */
+export function linesOf(table, numbers) {
+  const [head, ...lines] = table.trimEnd().split(/\r?\n/);
+  const found = new Map(lines.map((line) => [Number.parseInt(line, 10), line]));
+  const wanted = numbers.map((number) => found.get(number));
+  if (!head.startsWith("number") || found.size !== lines.length || wanted.includes(undefined)) throw new Error("The table of the service has not one line for each design; download all of it instead.");
+  return `${[head, ...wanted].join("\n")}\n`;
+}

@@ -1,0 +1,32 @@
+/** The chosen designs as a file: with their numbers and all their quantities, in the order of the table. */
+
+import { getText } from "../lib/api.js";
+import { h } from "../lib/dom.js";
+import { download } from "../lib/download.js";
+import { sayProblem } from "../lib/notices.js";
+import { apiSystem, grouped } from "../lib/numbers.js";
+import { linesOf } from "./listed.js";
+
+/** @import { Explorer } from "./explorer.js" */
+
+/** Return {node, draw()} of the button that saves the chosen designs of an explorer. @param {Explorer} explorer */
+export function saving(explorer) {
+  const node = h("button", { type: "button", onclick: () => save().catch(sayProblem) });
+
+  async function save() {
+    node.disabled = true;
+    try {
+      const all = await getText(`jobs/${explorer.job.id}/export.csv`, { units: apiSystem() }, explorer.signal);
+      download(linesOf(all, explorer.table.numbers()), "text/csv", `${explorer.front.run}-chosen.csv`);
+    } finally {
+      draw();
+    }
+  }
+
+  function draw() {
+    const { open, chosen } = explorer.limits;
+    node.textContent = open ? "Download all as CSV" : `Download ${grouped(chosen)} chosen as CSV`;
+    node.disabled = chosen === 0;
+  }
+  return { node, draw };
+}
