@@ -24,6 +24,7 @@ from . import (
     search,
     service_rest,
     startup,
+    wishes,
 )
 from .report import Row, machine, show
 
@@ -32,6 +33,7 @@ _ALL: dict[str, tuple[str, Callable[[], Iterable[Row]]]] = {
     "public": ("Evaluation by a problem", evaluation.public),
     "search": ("Search", lambda: [row for job in ("feeder", "sieve") for row in search.compare(f"runs/{job}.toml")]),
     "methods": ("Methods: hypervolume of the designs delivered over that of the default's", methods.compare),
+    "wishes": ("Wishes on the fronts of the shipped jobs", wishes.wishes),
     "many": ("Many designs", many_designs.grows),
     "corners": ("Unusual jobs, each solved in a warm process", corners.corners),
     "commands": ("Commands", startup.commands),

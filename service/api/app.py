@@ -29,6 +29,7 @@ from . import (
     rounded,
     schema,
     swing,
+    wish,
 )
 from .events import Feed
 from .health import Metrics, Timed
@@ -53,6 +54,7 @@ _PARTS = (
     measured,
     rounded,
     swing,
+    wish,
     design_files,
     figures,
     exports,

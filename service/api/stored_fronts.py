@@ -32,6 +32,7 @@ from .throttle import Turns
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
     from ...optimise.front.stationarity import Array
+    from ...optimise.questions.wish import Wishes
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
@@ -68,6 +69,13 @@ class StoredFront:
     def front(self) -> ParetoFront:
         """The front as figures take it."""
         return front_of(self.problem, self.result)
+
+    @cached_property
+    def wishes(self) -> Wishes:
+        """The starts for wishes on the front. Raises `InputError` where nothing can be wished."""
+        from ...optimise.questions.wish import Wishes
+
+        return Wishes(self.front)
 
     @cached_property
     def minimised(self) -> Array:

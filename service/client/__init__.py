@@ -256,6 +256,14 @@ class Client:
         found: Record = self._get(f"jobs/{number}/designs/{design}/swing", asked)["swing"]
         return found
 
+    def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
+        """Return the optimal design that comes nearest to wishes, as `slidercrank wish --json` prints it.
+
+        at: by objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design: that these
+        speak of, by its number.
+        """
+        return self._post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
+
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
         """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
 

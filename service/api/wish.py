@@ -1,0 +1,83 @@
+"""Choosing by wishing: the optimal design that comes nearest to wished values, solved anew."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from ..designs.columns import find_column
+from ..designs.wishing import wished_record
+from .fronts import Cells, ColumnModel, column_model
+from .models import UnitsAsked
+from .problems import problem_responses
+from .stored_fronts import FrontDep
+from .throttle import SIMULATING
+
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+
+_NAME = Annotated[str, Field(max_length=500)]
+_TEXT = Annotated[str, Field(max_length=200)]
+
+
+class WishesGiven(BaseModel, extra="forbid", strict=True):
+    """Wishes for the objectives of a front; those that are not named are free.
+
+    at: by objective a value, "110 N m", which is no bound, or "improve", "keep", "may worsen to 120 N m" or "free".
+    design: that improve, keep and worsen speak of, by its number; null where none does.
+    """
+
+    at: dict[_NAME, _TEXT] = Field(max_length=100, examples=[{"time_ratio": "1.2", "transmission_angle": "45 deg"}])
+    design: int | None = Field(None, ge=1, le=2**31)
+
+
+class OutcomeModel(BaseModel):
+    """Wish and outcome of an objective, in its unit.
+
+    wish: its kind. wished: the value that is wished, or that it may worsen to. before: of the design that classes speak
+    of. short: by how much it is worse than wished, changed: than before; below 0 where it is better. met: whether it
+    is as wished, or within what is allowed. A number that does not apply is null.
+    """
+
+    quantity: str = Field(examples=["transmission_angle"])
+    title: str = Field(examples=["least transmission angle"])
+    unit: str = Field(examples=["deg"])
+    wish: Literal["value", "improve", "keep", "limit", "free"]
+    met: bool
+    wished: float | None = Field(examples=[45.0])
+    reached: float = Field(examples=[42.9])
+    before: float | None = Field(examples=[None])
+    short: float | None = Field(examples=[2.1])
+    changed: float | None = Field(examples=[None])
+
+
+class WishedModel(BaseModel):
+    """The design that comes nearest to wishes.
+
+    number: of the design that classes speak of. possible: whether everything wished is reached. sentences: the answer
+    in words. achievement: value of the achievement function. objectives: none without a design. design: as a row of the
+    front, with its stationarity residual; null where no design stays within what may worsen.
+    """
+
+    job: int = Field(examples=[7])
+    number: int | None = Field(examples=[None])
+    possible: bool
+    sentences: list[str] = Field(examples=[["no design has all that is wished; this one comes nearest"]])
+    achievement: float | None = Field(examples=[0.031])
+    objectives: list[OutcomeModel]
+    columns: list[ColumnModel]
+    design: Cells | None = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1.2}])
+
+
+@router.post("/jobs/{number}/wish")
+def make_wish(found: FrontDep, given: WishesGiven, units: UnitsAsked = "metric") -> WishedModel:
+    """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked."""
+    if given.design is not None:
+        found.row(given.design)
+    with SIMULATING.turn():
+        answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
+        record: dict[str, Any] = wished_record(answer, units)
+    keys = list(record["design"] or ())
+    columns = [column_model(find_column(key, keys)) for key in keys]
+    return WishedModel(job=found.job.id, columns=columns, **record)
