@@ -18,10 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
+from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.panels import Extreme, Panels, panels_of
 from .cycle import breakpoints, cycle
+from .pace import pace, pace_knots
 from .shaking import shaking_curves
 
 Array = NDArray[np.float64]
@@ -101,7 +103,7 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
         bank = arrangement.bank(k)
         c, s = math.cos(bank), math.sin(bank)
         turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
-        alone = replace(mechanism, arrangement=None, gravity=turned)
+        alone = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
         found.append(Member(alone, arrangement.lead(k), bank, arrangement.place(k)))
     return tuple(found)
 
@@ -109,11 +111,12 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
 def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> WholeCurves:
     """Return the curves of all cylinders together at crank angles (n,) of the shaft, rad; raises as `cycle` does."""
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    speed, acceleration = pace(mechanism, theta)
     torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
     for member in members(mechanism):
         at = theta + member.lead
-        torques.append(cycle(member.mechanism, linkage, at).torque)
-        own = shaking_curves(member.mechanism, linkage, at)
+        torques.append(cycle(member.mechanism, linkage, at, speed=speed, acceleration=acceleration).torque)
+        own = shaking_curves(member.mechanism, linkage, at, speed=speed, acceleration=acceleration)
         c, s = math.cos(member.bank), math.sin(member.bank)
         x, y = c * own.force_x - s * own.force_y, s * own.force_x + c * own.force_y
         sums += np.stack([x, y, own.moment, -member.place * y, member.place * x])
@@ -129,6 +132,7 @@ def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 def whole_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles of the shaft, rad from 0, where a torque may jump or turn sharply."""
     found = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
+    found += [pace_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
     return np.unique(np.mod(np.concatenate(found), cycle_turns(mechanism) * TURN))
 
 
@@ -170,9 +174,9 @@ def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     sizes = np.zeros(6)
     for member in members(mechanism):
-        own = shaking_curves(member.mechanism, linkage, theta)
-        force = np.hypot(own.force_x, own.force_y).max()
-        torque = np.abs(cycle(member.mechanism, linkage, theta).torque).max()
+        alone = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
+        own = whole_curves(alone, linkage, theta)
+        force, torque = np.hypot(own.force_x, own.force_y).max(), np.abs(own.torque).max()
         sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place)])
     sizes[[_FORCE, _COUPLE]] **= 2
     return sizes

@@ -32,8 +32,18 @@ class ShakingCurves:
     reflected_inertia: Array
 
 
-def shaking_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> ShakingCurves:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad."""
+def shaking_curves(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    crank_angle: ArrayLike,
+    *,
+    speed: Array | None = None,
+    acceleration: Array | None = None,
+) -> ShakingCurves:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad.
+
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,); the mechanism's if None.
+    """
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     structure = load_structure(Mechanism())
@@ -42,6 +52,8 @@ def shaking_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLik
     block = np.empty((DESIGN, 1))
     derive(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
+    d = d if speed is None else d._replace(speed=speed)
+    d = d if acceleration is None else d._replace(acceleration=acceleration)
     sine, cosine = np.sin(theta), np.cos(theta)
     m = design_motion(sine, cosine, d)
     x, y, moment = (np.broadcast_to(part, theta.shape) for part in shaking(sine, cosine, m, d))

@@ -14,6 +14,7 @@ from .drive import Drive
 from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
+from .speed_profile import Profile
 from .varying import Varying, put, require_possible
 
 Branch = Literal["open", "crossed"]
@@ -97,6 +98,7 @@ class Mechanism:
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
+    speed_profile: how the speed goes over the crank angle, for `transient.uneven`; everything else has it constant.
     arrangement: identical cylinders on one crankshaft, for `cycle.several`; everything else is of one cylinder.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
@@ -117,6 +119,7 @@ class Mechanism:
     drive: Drive | None = None
     clearance: Clearance | None = None
     arrangement: Arrangement | None = None
+    speed_profile: Profile | None = None
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
@@ -128,6 +131,11 @@ class Mechanism:
         loads: object = self.loads
         if not isinstance(loads, Sequence) or not all(isinstance(load, Load) for load in loads):
             raise InputError(f"loads must be a tuple of loads; got {loads!r}; a job has them in its [[load]] tables")
+        if self.speed_profile is not None and self.acceleration:
+            raise InputError(
+                "a speed that repeats with every turn has no constant acceleration besides; got "
+                f"{self.acceleration:g} rad/s^2 with a profile; leave out one of the two"
+            )
         if self.varying:
             require_possible(self)
 

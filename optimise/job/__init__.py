@@ -23,6 +23,7 @@ from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
 from .schema import schema_of
+from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
 from .target_motion import points_file, with_points
 from .units import shown
@@ -56,7 +57,7 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
     Raises JobError for files that cannot be read.
     """
     with _named(path):
-        return with_points(read(Path(path)), Path(path).parent)
+        return with_speeds(with_points(read(Path(path)), Path(path).parent), Path(path).parent)
 
 
 @contextlib.contextmanager
@@ -69,10 +70,10 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
 
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:
-    """Return the files beside a job file that it needs: points of a target motion, modules of its own functions."""
+    """Return the files that a job file needs beside it: points of a motion or speed, modules."""
     data, folder = read(Path(path)), Path(path).parent
-    points = points_file(data)
-    return [*([folder / points] if points else []), *modules_beside(data, folder)]
+    points = [file for file in (points_file(data), speeds_file(data)) if file]
+    return [*(folder / file for file in points), *modules_beside(data, folder)]
 
 
 def parse_job(

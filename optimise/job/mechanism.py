@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
+from .speed_profile import SpeedProfilePart
 from .units import shown
 from .values import (
     Angle,
@@ -164,6 +165,10 @@ class MechanismPart(Part):
     acceleration: AngularAcceleration = optional(
         "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
     )
+    speed_profile: SpeedProfilePart | None = optional(
+        "how the speed goes over the crank angle, for analyse --show uneven_speed; quantities are at the mean speed",
+        {"cosines": [0.0, 0.05]},
+    )
     crank: AnyLink | None = optional("section or mass of the crank; massless if left out", {"mass": "0.2 kg"})
     rod: AnyLink | None = optional(
         "section or mass of the connecting rod; massless if left out",
@@ -197,6 +202,12 @@ class MechanismPart(Part):
                 "gravity_direction needs gravity; got a direction alone; "
                 'add gravity = "9.81 m/s^2" or leave out gravity_direction'
             )
+        return self
+
+    @model_validator(mode="after")
+    def _of_the_mean(self) -> MechanismPart:
+        if self.speed_profile is not None:
+            self.speed_profile.require_mean(self.speed)
         return self
 
     @property

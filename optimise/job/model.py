@@ -162,6 +162,7 @@ class Job(Part):
         own = self.mechanism
         parts: dict[str, Any] = {"crank": own.crank, "rod": own.rod, "counterweight": own.counterweight}
         parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": own.cylinders}
+        parts |= {"speed_profile": own.speed_profile}
         return Mechanism(
             speed=own.speed,
             acceleration=own.acceleration,

@@ -356,6 +356,7 @@ def tables_of(job: JobSource) -> Record:
     import tomllib
 
     from ...optimise.job.file import read
+    from ...optimise.job.speed_profile import with_speeds
     from ...optimise.job.target_motion import with_points
 
     if isinstance(job, Mapping):
@@ -365,4 +366,4 @@ def tables_of(job: JobSource) -> Record:
             return tomllib.loads(job)
         except ValueError as error:
             raise JobError(f"the text is no valid TOML: {error}; correct the line") from None
-    return with_points(read(Path(job)), Path(job).parent)
+    return with_speeds(with_points(read(Path(job)), Path(job).parent), Path(job).parent)

@@ -71,6 +71,8 @@ def _given(mechanism: Mechanism) -> list[str]:
     turning = "clockwise" if mechanism.speed < 0.0 else "counter-clockwise"
     speed = mechanism.speed * 30.0 / math.pi
     lines = [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
+    if mechanism.speed_profile is not None:
+        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities are at the mean speed")
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
     lines += [f"{name}: {_link(getattr(mechanism, name))}" for name in ("crank", "rod")]

@@ -17,7 +17,7 @@ export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(speed(form), requirements(form, offered(form, "motion")), byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })), more("Acceleration of the crank, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "branch"]))),
+    section("Motion", fields(speed(form), requirements(form, offered(form, "motion")), byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })), more("Acceleration of the crank, uneven speed, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),

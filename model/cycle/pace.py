@@ -1,0 +1,24 @@
+"""Speed and acceleration of a crank over its angle: constant, or along the profile of its machine."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..machine.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
+    """Return crank speed, rad/s, and acceleration, rad/s^2, at crank angles (n,), rad."""
+    profile, speed = mechanism.speed_profile, mechanism.speed
+    if profile is None:
+        return np.full(crank_angle.shape, speed), np.full(crank_angle.shape, mechanism.acceleration)
+    ratio = profile.ratio(crank_angle)
+    return speed * ratio, speed**2 * ratio * profile.slope(crank_angle)
+
+
+def pace_knots(mechanism: Mechanism) -> Array:
+    """Return the crank angles (k,), rad, at which the speed is not analytic."""
+    return np.array([] if mechanism.speed_profile is None else mechanism.speed_profile.knots, dtype=np.float64)

@@ -1,0 +1,175 @@
+"""A crank speed that repeats with every turn: the mechanism's speed times a smooth function of the crank angle.
+
+The speed of the mechanism is the mean over the crank angle. With w = speed p(theta) the crank's angular acceleration is
+w dw/d(theta) = speed^2 p p'.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import keep_tuples, require_all_finite
+from ..errors import InputError
+
+Array = NDArray[np.float64]
+
+_TURN = 2.0 * math.pi
+_MOST = 100  # harmonics
+_LEAST = 4  # points of a table
+_SAMPLES = 64  # of the highest harmonic's period
+_CLOSED = 1e-9  # rad
+
+
+@dataclass(frozen=True, kw_only=True)
+class Harmonics:
+    """A speed by harmonics: p = 1 + sum over k = 1, 2, ... of a_k cos(k theta) + b_k sin(k theta).
+
+    cosines, sines: a_k and b_k, shares of the mean.
+    """
+
+    cosines: tuple[float, ...] = ()
+    sines: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        keep_tuples(self, "cosines", "sines")
+        require_all_finite("harmonics of a speed", (*self.cosines, *self.sines))
+        if not 1 <= max(len(self.cosines), len(self.sines)) <= _MOST:
+            raise InputError(
+                f"a speed profile has 1 to {_MOST} harmonics; got {len(self.cosines)} cosines and {len(self.sines)} "
+                "sines; give some, or leave out the profile"
+            )
+        theta = np.linspace(0.0, _TURN, _SAMPLES * max(len(self.cosines), len(self.sines)), endpoint=False)
+        _require_positive(theta, self.ratio(theta))
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Crank angles at which the profile is not analytic: none."""
+        return ()
+
+    def ratio(self, theta: Array) -> Array:
+        """Return p at crank angles, rad, real or complex."""
+        found = np.ones_like(theta)
+        for k, (a, b) in enumerate(self._pairs, start=1):
+            found = found + a * np.cos(k * theta) + b * np.sin(k * theta)
+        return np.asarray(found)
+
+    def slope(self, theta: Array) -> Array:
+        """Return dp/d(theta)."""
+        found = np.zeros_like(theta)
+        for k, (a, b) in enumerate(self._pairs, start=1):
+            found = found + k * (b * np.cos(k * theta) - a * np.sin(k * theta))
+        return np.asarray(found)
+
+    @property
+    def _pairs(self) -> list[tuple[float, float]]:
+        count = max(len(self.cosines), len(self.sines))
+        cosines, sines = (values + (0.0,) * (count - len(values)) for values in (self.cosines, self.sines))
+        return list(zip(cosines, sines, strict=True))
+
+    @property
+    def text(self) -> str:
+        """The profile in a few words."""
+        return f"{max(len(self.cosines), len(self.sines))} harmonics of the crank angle"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedTable:
+    """p as the periodic cubic spline through speeds at crank angles, over its mean.
+
+    angles: increasing, rad, spanning less than a turn. speeds: of one sign, of any unit.
+    """
+
+    angles: tuple[float, ...]
+    speeds: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        keep_tuples(self, "angles", "speeds")
+        require_all_finite("a table of speeds", (*self.angles, *self.speeds), "throughout")
+        if len(self.angles) != len(self.speeds) or len(self.angles) < _LEAST:
+            raise InputError(
+                f"a table of speeds needs as many speeds as crank angles, {_LEAST} at least; got {len(self.angles)} "
+                f"crank angles and {len(self.speeds)} speeds; add what is missing"
+            )
+        for before, after in pairwise(self.angles):
+            if after <= before:
+                raise InputError(
+                    f"crank angles of a table of speeds must increase; got {math.degrees(after):.6g} deg after "
+                    f"{math.degrees(before):.6g} deg; sort the table"
+                )
+        self._require_open()
+        for angle, speed in zip(self.angles, self.speeds, strict=True):
+            if not speed * self.speeds[0] > 0.0:
+                raise InputError(
+                    "a speed over the crank angle must not be zero or change its sign, for the crank would never get "
+                    f"past; got {speed:.6g} rad/s at {math.degrees(angle):.6g} deg; correct it"
+                )
+        ends = np.concatenate([self._spline.derivative().roots(), self.angles])
+        _require_positive(ends, self.ratio(ends))
+
+    def _require_open(self) -> None:
+        """Refuse a table of a turn or more."""
+        span = self.angles[-1] - self.angles[0]
+        if span >= _TURN - _CLOSED:
+            step = self.speeds[-1] - self.speeds[0]
+            remedy = "leave out the last point, which repeats the first"
+            if span > _TURN + _CLOSED:
+                remedy = "give one turn"
+            elif step:
+                remedy = (
+                    f"its last point is the first one a turn later and differs by {step:.6g} rad/s, so that the "
+                    "profile does not close; correct one of the two and leave out the last"
+                )
+            raise InputError(
+                f"crank angles of a table of speeds must span less than 360 deg; got {math.degrees(span):.6g} deg; "
+                + remedy
+            )
+
+    @cached_property
+    def _spline(self) -> Any:
+        from scipy.interpolate import CubicSpline
+
+        closed = (*self.angles, self.angles[0] + _TURN), (*self.speeds, self.speeds[0])
+        return CubicSpline(*closed, bc_type="periodic")
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean speed over the crank angle."""
+        return float(self._spline.integrate(self.angles[0], self.angles[0] + _TURN)) / _TURN
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Crank angles at which the profile is not analytic."""
+        return self.angles
+
+    def ratio(self, theta: Array) -> Array:
+        """Return p at crank angles, rad."""
+        return np.asarray(self._spline(theta) / self.mean)
+
+    def slope(self, theta: Array) -> Array:
+        """Return dp/d(theta)."""
+        return np.asarray(self._spline(theta, 1) / self.mean)
+
+    @property
+    def text(self) -> str:
+        """The profile in a few words."""
+        return f"table of {len(self.angles)} crank angles"
+
+
+Profile = Harmonics | SpeedTable
+
+
+def _require_positive(theta: Array, ratio: Array) -> None:
+    least = int(np.argmin(ratio))
+    if not ratio[least] > 0.0:
+        raise InputError(
+            "a speed over the crank angle must not be zero or change its sign, for the crank would never get past; got "
+            f"{100.0 * ratio[least]:.4g} % of the mean at {math.degrees(theta[least]) % 360.0:.4g} deg; reduce the "
+            "harmonics, or add points to a table there"
+        )

@@ -1,0 +1,143 @@
+"""Torque, forces and shaking of a machine whose crank speed follows a profile over the crank angle.
+
+With w(theta) and alpha = w dw/d(theta) at every angle, the inverse dynamics of the cycle holds as it is:
+
+    T = w^2 J' / 2 + J alpha + V' - F x'.
+
+Over a turn the kinetic energy J w^2 / 2 comes back, so the work of the torque is that of loads and friction.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cycle.cycle import Cycle, breakpoints, cycle
+from ..cycle.pace import pace, pace_knots
+from ..cycle.shaking import shaking_curves
+from ..errors import InputError
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..machine.two_turns import TURN, cycle_turns
+from ..signals.panels import Extreme, panels_of
+
+Array = NDArray[np.float64]
+
+_PIECES = 12  # panels of a turn at least
+_SAMPLES = 360
+_SQUARES = ("pivot_force", "crank_pin_force", "slider_pin_force", "shaking_force")
+_SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration", "shaking_moment")
+
+
+@dataclass(frozen=True)
+class UnevenCurves:
+    """Crank speed, rad/s, and acceleration, rad/s^2, over the crank angle (n,), and the curves of the cycle there.
+
+    others: curves (n,) by name, SI: forces of the joints by their size, shaking force and moment, power.
+    """
+
+    speed: Array
+    acceleration: Array
+    curves: Cycle
+    others: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class UnevenCycle:
+    """Numbers over a turn, SI. period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over it.
+
+    peaks: greatest sizes by name. work: of the drive torque over a turn, J.
+    """
+
+    least_speed: Extreme
+    greatest_speed: Extreme
+    acceleration: Extreme
+    period: float
+    mean_speed: float
+    fluctuation: float
+    peaks: Mapping[str, Extreme]
+    mean_torque: float
+    rms_torque: float
+    work: float
+
+    @property
+    def mean_power(self) -> float:
+        """Mean power of the drive over time, W."""
+        return self.work / self.period
+
+
+def uneven_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> UnevenCurves:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad."""
+    speed, acceleration = pace(mechanism, crank_angle)
+    curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
+    shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
+    others = {
+        "pivot_force": np.hypot(curves.pivot_x, curves.pivot_y),
+        "crank_pin_force": np.hypot(curves.crank_pin_x, curves.crank_pin_y),
+        "slider_pin_force": np.hypot(curves.slider_pin_x, curves.slider_pin_y),
+        "shaking_force": np.hypot(shaken.force_x, shaken.force_y),
+        "torque": curves.torque,
+        "power": curves.torque * speed,
+        "guide_force": curves.guide,
+        "slider_speed": curves.slider_velocity,
+        "slider_acceleration": curves.slider_acceleration,
+        "shaking_moment": shaken.moment,
+    }
+    return UnevenCurves(speed, acceleration, curves, others)
+
+
+def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
+    """Return the numbers of one fully turning linkage over a turn; of a cycle of two turns, per turn.
+
+    Raises `InputError` for a machine at rest or under a constant acceleration, and where friction locks the linkage.
+    """
+    linkage = single(mechanism, linkage)
+    if not mechanism.speed or (mechanism.acceleration and mechanism.speed_profile is None):
+        raise InputError(
+            f"a turn that repeats needs a speed and no acceleration besides; got {mechanism.speed:g} rad/s and "
+            f"{mechanism.acceleration:g} rad/s^2"
+        )
+
+    def followed(theta: Array) -> Array:
+        found = uneven_curves(mechanism, linkage, theta)
+        rows = [found.speed, found.acceleration, 1.0 / np.abs(found.speed), *(found.others[name] for name in _SIZES)]
+        return np.stack([*rows, *(found.others[name] ** 2 for name in _SQUARES)])
+
+    turns = cycle_turns(mechanism)
+    cuts, knots = breakpoints(mechanism, linkage), pace_knots(mechanism)
+    start, end = cuts[0], cuts[0] + turns * TURN
+    at = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
+    ends = np.unique(np.concatenate([cuts, *at, np.linspace(start, end, 1 + turns * _PIECES)]))
+    sizes = np.abs(followed(np.linspace(start, end, _SAMPLES))).max(axis=1)
+    found = panels_of(followed, ends, np.where(sizes > 0.0, sizes, 1.0))
+    least, greatest = found.extremes(0)
+    period = TURN * found.mean(2)
+    peaks = {name: _size(found.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
+    for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
+        top = found.extremes(row)[1]
+        peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), top.angle % (turns * TURN))
+    way, torque = mechanism.direction, 3 + _SIZES.index("torque")
+    mean = found.mean(torque)
+    return UnevenCycle(
+        least_speed=Extreme(least.value, least.angle % TURN),
+        greatest_speed=Extreme(greatest.value, greatest.angle % TURN),
+        acceleration=_size(found.extremes(1), 1),
+        period=period,
+        mean_speed=way * TURN / period,
+        fluctuation=(greatest.value - least.value) * period / TURN,
+        peaks=peaks,
+        mean_torque=mean,
+        rms_torque=math.sqrt(found.mean_square(torque)),
+        work=way * TURN * mean,
+    )
+
+
+def _size(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
+    """Return the extreme of greatest size, as a size."""
+    top = max(extremes, key=lambda extreme: abs(extreme.value))
+    return Extreme(abs(top.value), top.angle % (turns * TURN))
