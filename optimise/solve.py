@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -14,7 +15,7 @@ from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best import Best, best_of
 from .feasibility.infeasibility import diagnose
-from .front.front import ParetoFront
+from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .front.stationarity import Array
 from .methods.auto.auto import deliver, searched_by
@@ -61,29 +62,68 @@ def solve(
     require_gradients(problem)
     require_ranking(problem)
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    evaluators = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
-    require_eliminated(problem, searched(evaluators))
     with ExitStack() as shown:
         if progress is True:
             progress = shown.enter_context(progress_bar())
             stages = stages or progress
         told = progress or None
-        heard = fronts is not None or told is not None
+        one = _One(checkpoints, engine, told, stages, fronts, bool(resume))
+        return _with_values(problem, one) if problem.discrete else one.solve(problem)
+
+
+@dataclass(frozen=True)
+class _One:
+    """How problems without discrete numbers are solved, one after the other for one with some."""
+
+    checkpoints: Checkpoints
+    engine: Engine | None
+    told: Callback | None
+    stages: Callback | None
+    fronts: Callable[[Array], None] | None
+    resumes: bool
+
+    def begun(self, problem: Problem) -> tuple[list[Evaluator], Run]:
+        """Return the evaluators of a problem and its run."""
+        evaluators = [
+            Evaluator(problem, sheet, self.checkpoints, self.engine) for sheet in once(problem, sheets(problem))
+        ]
+        require_eliminated(problem, searched(evaluators))
+        heard = self.fronts is not None or self.told is not None
 
         def with_front(entry: Progress) -> None:
-            if fronts is not None:
-                fronts(run.latest())
-            if told is not None:
-                told(entry)
+            if self.fronts is not None:
+                self.fronts(run.latest())
+            if self.told is not None:
+                self.told(entry)
 
-        run = Run(problem, 1, with_front if heard else None, checkpoints, stages=stages)
-        if resume:
+        run = Run(problem, 1, with_front if heard else None, self.checkpoints, stages=self.stages)
+        return evaluators, run
+
+    def solve(self, problem: Problem) -> ParetoFront:
+        """Return the front, or what was found of it."""
+        evaluators, run = self.begun(problem)
+        if self.resumes:
             run.stand(REPEATING, 0, 1, now=True)
         try:
-            with interrupted_by(checkpoints.interrupt) as interruption:
+            with interrupted_by(self.checkpoints.interrupt) as interruption:
                 return _searched(problem, evaluators, run)
         except Cancelled:
             return so_far(problem, evaluators, run, silent=interruption.killed)
+
+
+def _with_values(problem: Problem, one: _One) -> ParetoFront:
+    """Return the front of a problem with discrete numbers."""
+    from .discrete.front import discrete_front
+
+    evaluators, run = one.begun(problem)
+
+    def nothing(status: Status, message: str) -> ParetoFront:
+        return empty(problem, evaluators, run, status, message)
+
+    try:
+        return discrete_front(problem, one.solve, nothing, run.stage("judging combinations"))
+    except Cancelled:
+        return nothing("cancelled", "cancelled while combinations of discrete values were judged")
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:

@@ -45,7 +45,8 @@ def certify_designs(
     dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
     forces under friction, peaks that are not minimised.
     """
-    more = [*(item.name for item in problem.mechanism.varying), *problem.choices]
+    listed = (f"the values of {item.name}" for item in problem.discrete)
+    more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
     if more:
         raise InputError(
             f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "

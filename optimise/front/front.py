@@ -18,6 +18,7 @@ from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
 from ..problem.requirements import Objective
+from .answer import Answer
 from .constant import spread
 from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
@@ -53,6 +54,7 @@ class ParetoFront:
     free unknowns scaled to the unit box.
     hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
     history: rounds, with hypervolumes in the same box. versions: of this software and what computed the numbers.
+    discrete: how far the search among discrete values went; None where there are none.
     """
 
     problem: Problem
@@ -70,6 +72,7 @@ class ParetoFront:
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
     variants: tuple[int, ...] = ()
+    discrete: Answer | None = None
 
     @cached_property
     def designs(self) -> pd.DataFrame:

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 from ...model.errors import InputError, JobError
 from ..problem.problem import Problem
 from ..sizing.section_limits import Material, SectionLimits
+from .catalogue import catalogues, with_catalogues
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
@@ -29,7 +30,7 @@ from .target_motion import points_file, with_points
 from .units import shown
 from .varying import with_values
 
-__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job"]
+__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job", "with_files"]
 
 
 def load_job(
@@ -52,12 +53,17 @@ def load_job(
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return the unchecked tables of a job file, with the points of a file that it names in them.
+    """Return the unchecked tables of a job file, with points and options of files that it names in them.
 
     Raises JobError for files that cannot be read.
     """
     with _named(path):
-        return with_speeds(with_points(read(Path(path)), Path(path).parent), Path(path).parent)
+        return with_files(read(Path(path)), Path(path).parent)
+
+
+def with_files(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a job with the content of the files that it names, found in `folder`, in their place. Raises JobError."""
+    return with_catalogues(with_speeds(with_points(data, folder), folder), folder)
 
 
 @contextlib.contextmanager
@@ -70,10 +76,10 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
 
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:
-    """Return the files that a job file needs beside it: points of a motion or speed, modules."""
+    """Return the files beside a job file that it needs: points, speeds, catalogues, modules of its own functions."""
     data, folder = read(Path(path)), Path(path).parent
-    points = [file for file in (points_file(data), speeds_file(data)) if file]
-    return [*(folder / file for file in points), *modules_beside(data, folder)]
+    files = [*(file for file in (points_file(data), speeds_file(data)) if file), *catalogues(data)]
+    return [*(folder / file for file in dict.fromkeys(files)), *modules_beside(data, folder)]
 
 
 def parse_job(

@@ -15,7 +15,7 @@ _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
 def notes_of(data: Mapping[str, Any]) -> list[str]:
-    """Return notes on the tables of a valid job, each a sentence: numbers without a unit, masses without gravity."""
+    """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening."""
     plain: list[tuple[str | None, float, Kind]] = []
     job = job_with(declared(data, allowed=True)).model_validate(data, context=plain)
     told = [_told(*found) for found in dict.fromkeys(plain) if found[1]]
@@ -23,6 +23,12 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     if told:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
         notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
+    notes += [
+        f"{part.name}: {len(part.option)} of {part.rows} rows of the file are solved; one of these beats each of the "
+        "others in every limit, or equals it"
+        for part in job.choice
+        if part.rows is not None and part.rows > len(part.option)
+    ]
     machine = job.machine()
     moving = machine.crank, machine.rod
     if job.mechanism.gravity is None and (machine.slider_mass or any(getattr(link, "mass", 1.0) for link in moving)):

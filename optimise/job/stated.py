@@ -8,6 +8,7 @@ from pathlib import Path
 from ...model.errors import InputError, JobError
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
+from ..discrete.meetable import require_meetable
 from ..methods.registry import require_fit
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, merged
@@ -19,7 +20,7 @@ from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
 from .target_motion import require_target
-from .varying import ends_of, reach_of, variants_of, varying_machine
+from .varying import discrete_of, ends_of, reach_of, variants_of, varying_machine
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
@@ -52,11 +53,13 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         objectives=objectives,
         constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
+        discrete=discrete_of(job),
         costs=None if job.costs is None else job.costs.build(),
         settings=job.optimiser.build(),
         own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),
     )
     require_consistent(problem)
+    require_meetable(problem)
     require_fit(problem)
     return robustly(problem, job.robust)
 

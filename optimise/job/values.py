@@ -17,6 +17,7 @@ from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds
 from ...objectives.kinds import Kind
 from . import units
+from .grids import Grid, grid_schema, read_grid, says_values
 from .units import Sign, shown, to_si
 
 SHORTEST = 1e-9
@@ -86,8 +87,8 @@ class _Read:
         """Add numbers without a unit to the validation context if that is a list: name, number, kind."""
         found = self.read(value)
         if isinstance(info.context, list) and self.kind.unit:
-            given = value["choices"] if isinstance(value, Mapping) else value
-            for one in given if isinstance(given, list | tuple) else [given]:
+            given = list(value.values()) if isinstance(value, Mapping) else [value]
+            for one in [one for item in given for one in (item if isinstance(item, list | tuple) else [item])]:
                 if isinstance(one, int | float):
                     info.context.append((info.field_name, one, self.kind))
         return found
@@ -132,15 +133,17 @@ class Choices:
 
 @dataclass(frozen=True)
 class RangeOf(_Read):
-    """Marks a range of a length: [lower, upper], one value that fixes it, or { choices = [standard lengths] }."""
+    """Marks a range of a length: [lower, upper], one value, { choices = [...] }, or a table of values."""
 
     sign: Sign = "any"
     kind = kinds.LENGTH
 
-    def read(self, value: object) -> tuple[float, float] | Choices:
+    def read(self, value: object) -> tuple[float, float] | Choices | Grid:
         """Return lower and upper end, m, or what there is to choose from; raises InputError."""
-        if isinstance(value, Choices):
+        if isinstance(value, Choices | Grid):
             return value
+        if isinstance(value, Mapping) and says_values(value):
+            return read_grid(value, self._length)
         if isinstance(value, Mapping) and set(value) == {"choices"}:
             return self._choices(value["choices"])
         ends = value if isinstance(value, list | tuple) else (value, value)
@@ -179,7 +182,7 @@ class RangeOf(_Read):
             "required": ["choices"],
             "additionalProperties": False,
         }
-        return {"anyOf": [pair, *one, choices], "examples": [["20 mm", "200 mm"], "140 mm"]}
+        return {"anyOf": [pair, *one, choices, *grid_schema(one)], "examples": [["20 mm", "200 mm"], "140 mm"]}
 
 
 class ToleranceOf(_Read):
@@ -248,6 +251,6 @@ Volume = Annotated[float, Physical(kinds.VOLUME, "zero or more")]
 Number = Annotated[float, Physical(kinds.RATIO)]
 Fraction = Annotated[float, Physical(kinds.RATIO, "zero or more")]
 PositiveRatio = Annotated[float, Physical(kinds.RATIO, "positive")]
-PositiveRange = Annotated[tuple[float, float] | Choices, RangeOf("positive")]
-AnyRange = Annotated[tuple[float, float] | Choices, RangeOf()]
+PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
+AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

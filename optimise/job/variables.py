@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
+from .catalogue import MOST_OPTIONS
 from .file import DEEPEST
+from .grids import says_values
 from .quantities import ConstraintsPart
 from .units import shown
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
@@ -31,9 +33,9 @@ def _more(what: str, example: dict[str, Any]) -> Any:
 
 
 class VariablesPart(Part):
-    """Ranges of dimensions and other numbers: [lower, upper], or { choices = [...] }.
+    """Ranges of dimensions and other numbers: [lower, upper], or { choices = [...] }; one value fixes a dimension.
 
-    One value fixes a dimension.
+    Also their values, { min, max, step }, { min, max, series = "R20" } or { values = [...] }.
     """
 
     crank: PositiveRange = required("crank pivot to crank pin", ["20 mm", "200 mm"])
@@ -105,15 +107,34 @@ class ChoicePart(Part):
     name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
         "of the choice; the table of designs has it as choice_<name>", "rod section"
     )
-    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = required(
-        "what there is to choose from",
+    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = optional(
+        "what there is to choose from, unless a file says it",
         [
             {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
             {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
         ],
-        min_length=2,
-        max_length=100,
+        default=(),
+        max_length=MOST_OPTIONS,
     )
+    file: Annotated[str, Field(max_length=200)] | None = optional(
+        "instead of options: a CSV file beside the job file, a row an option, its units in the header", "gearmotors.csv"
+    )
+    rows: Annotated[int, Field(strict=True, ge=1)] | None = optional(
+        "rows of the file that the options were screened from", 5000
+    )
+
+    @model_validator(mode="after")
+    def _given(self) -> Self:
+        if self.file is not None:
+            raise InputError(
+                f"a file is read beside a job file only, and instead of options; got file {shown(self.file)}; "
+                "give the options, or the file alone in a job file"
+            )
+        if len(self.option) < (2 if self.rows is None else 1):
+            raise InputError(
+                f"must have two options or more, or a file; got {len(self.option)}; add [[choice.option]] tables"
+            )
+        return self
 
 
 def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
@@ -142,7 +163,7 @@ def _leaves(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of what is no table in tables within tables; { choices } counts as a value."""
     for key, value in table.items():
         path = f"{root}.{key}" if root else key
-        if isinstance(value, Mapping) and set(value) != {"choices"} and value:
+        if isinstance(value, Mapping) and set(value) != {"choices"} and value and not says_values(value):
             yield from _leaves(value, path)
         else:
             yield path, value

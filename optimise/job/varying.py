@@ -20,9 +20,11 @@ from ...model.linkage.linkage import SlowStroke
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
+from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
 from .formulas import DIMENSIONS, Formulas
+from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
 from .quantities import constraints_of, slow_stroke_of
@@ -85,8 +87,39 @@ def variants_of(job: Job, formulas: Formulas) -> tuple[tuple[str, ...], tuple[Va
     return tuple(name for name, _ in axes if name not in DIMENSIONS), variants
 
 
-def ends_of(given: tuple[float, float] | Choices) -> Range:
-    """Return the range of a dimension; of choices the one from the least to the greatest."""
+def discrete_of(job: Job) -> tuple[Discrete, ...]:
+    """Return the variables of a job that have some values only. Raises JobError, naming the path."""
+    found = []
+    for name in DIMENSIONS:
+        given = getattr(job.variables, name)
+        if isinstance(given, Grid):
+            for part in job.choice:
+                if any(name in option.paths for option in part.option):
+                    raise JobError(
+                        f"variables.{name}: options of the choice {shown(part.name)} set it too; got values for it; "
+                        "leave out one of the two"
+                    )
+            found.append(Discrete(name=name, values=given.values, rule=given.rule))
+    for path, given in job.variables.paths.items():
+        if says_values(given):
+            grid = _grid(job, f"variables.{path}", path, given)
+            found.append(Discrete(name=path, values=grid.values, rule=grid.rule))
+    return tuple(found)
+
+
+def _grid(job: Job, key: str, path: str, given: Mapping[str, Any]) -> Grid:
+    """Return the values of a number that varies, read by the rules of its own key."""
+    try:
+        return read_grid(given, lambda value: _number(with_values(job, {path: value}, key), path, key))
+    except InputError as error:
+        text = str(error)
+        raise JobError(text if text.startswith(key) else f"{key}: {text}") from None
+
+
+def ends_of(given: tuple[float, float] | Choices | Grid) -> Range:
+    """Return the range of a dimension; of choices and values the one from the least to the greatest."""
+    if isinstance(given, Grid):
+        return Range(lower=given.values[0], upper=given.values[-1])
     if isinstance(given, Choices):
         return Range(lower=min(given.choices), upper=max(given.choices))
     return Range(lower=given[0], upper=given[1])
@@ -171,16 +204,24 @@ def _single(name: str, option: _Option) -> tuple[str, ...]:
 
 def _length(name: str, value: Any) -> tuple[float, float] | Choices:
     try:
-        return RangeOf("any" if name == "offset" else "positive").read(value)
+        found = RangeOf("any" if name == "offset" else "positive").read(value)
+        if isinstance(found, Grid):
+            raise InputError(f"of an option is a value or a range; got {shown(value)}; say the values in [variables]")
+        return found
     except InputError as error:
         raise JobError(f"choice: {name} {error}") from None
 
 
 def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     """Return the varying number of a path."""
+    if says_values(given):
+        grid = _grid(job, key, path, given)
+        if len(grid.values) < 2:
+            raise JobError(f"{key}: must have two values or more; got one, {grid.rule}; give it in its own place alone")
+        given = [grid.values[0], grid.values[-1]]
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
-            f"{key}: must be a range [lower, upper] or {{ choices = [...] }}; got {shown(given)}; "
+            f"{key}: must be a range [lower, upper] {{ choices = [...] }} or values; got {shown(given)}; "
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]

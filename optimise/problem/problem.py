@@ -22,6 +22,7 @@ from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
 from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
+from .discrete import Discrete, require_known
 from .requirements import Constraint, Objective, Range, Word, merged
 
 if TYPE_CHECKING:
@@ -92,7 +93,8 @@ class Problem:
     chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and constraints
     may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
-    only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`.
+    only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`. discrete: which of a design's
+    numbers have one of some values only; their ranges are the hulls of these.
     """
 
     name: str
@@ -108,9 +110,11 @@ class Problem:
     choices: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
     slow_stroke: SlowStroke | None = None
+    discrete: tuple[Discrete, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants")
+        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "discrete")
+        require_known(self.discrete, ["crank", "rod", "offset", *(item.name for item in self.mechanism.varying)])
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel, BeforeValidator, Field
@@ -88,6 +88,11 @@ class FrontModel(BaseModel):
     )
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
     warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
+    discrete: dict[str, Any] | None = Field(
+        None,
+        description="how designs of discrete values were found, and the best of each objective with continuous ones",
+        examples=[{"how": "exact", "combinations": 9720, "judged": 9720, "values": {"crank": "multiples of 0.5 mm"}}],
+    )
 
 
 class OfDesign(BaseModel):

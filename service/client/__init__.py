@@ -352,12 +352,11 @@ def _given(**options: Any) -> Record:
 
 
 def tables_of(job: JobSource) -> Record:
-    """Return the tables of a job file, with the points of a target motion in them. Raises `JobError`."""
+    """Return the tables of a job file, with the content of files beside it in them. Raises `JobError`."""
     import tomllib
 
+    from ...optimise.job import with_files
     from ...optimise.job.file import read
-    from ...optimise.job.speed_profile import with_speeds
-    from ...optimise.job.target_motion import with_points
 
     if isinstance(job, Mapping):
         return dict(job)
@@ -366,4 +365,4 @@ def tables_of(job: JobSource) -> Record:
             return tomllib.loads(job)
         except ValueError as error:
             raise JobError(f"the text is no valid TOML: {error}; correct the line") from None
-    return with_speeds(with_points(read(Path(job)), Path(job).parent), Path(job).parent)
+    return with_files(read(Path(job)), Path(job).parent)

@@ -15,7 +15,8 @@ from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.registry import QUANTITIES
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.units import to_si
-from ...optimise.job.values import Choices, RangeOf
+from ...optimise.job.values import RangeOf
+from ...optimise.job.varying import ends_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.search.elimination import require_slow_side
@@ -94,8 +95,7 @@ def _ranges(part: object) -> dict[str, Range] | None:
             given = RangeOf("any" if name == "offset" else "positive").read(part.get(name))
         except InputError:
             return None
-        lower, upper = (given.choices[0], given.choices[-1]) if isinstance(given, Choices) else given
-        found[name] = Range(lower=lower, upper=upper)
+        found[name] = ends_of(given)
     return found
 
 

@@ -78,7 +78,8 @@ class Result:
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
     trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words. exact: the designs as
-    the search left them; None for a run read from its files, and from stores of early versions.
+    the search left them; None for a run read from its files, and from stores of early versions. discrete: how the
+    designs of discrete values were found, see `discrete_record`; None without such values.
     """
 
     run: str
@@ -95,6 +96,7 @@ class Result:
     knee: int | None
     trade_offs: list[str]
     warnings: tuple[str, ...] = ()
+    discrete: Mapping[str, Any] | None = None
     exact: Exact | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -104,7 +106,8 @@ class Result:
 
     def record(self) -> dict[str, Any]:
         """Return the result for JSON: finite numbers only, null for undefined values."""
-        fields = {name: finite(value) for name, value in vars(self).items() if name != "exact"}
+        left_out = ("exact",) if self.discrete else ("exact", "discrete")
+        fields = {name: finite(value) for name, value in vars(self).items() if name not in left_out}
         wanted = [wanted_record(wanted) for wanted in self.objectives]
         return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
 
@@ -142,8 +145,28 @@ def result_of(front: ParetoFront, run: str) -> Result:
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
         warnings=(*front_warnings(front), *idle_rules(front.problem)),
+        discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )
+
+
+def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
+    """Return how designs of discrete values were found, and the best of each objective with continuous ones."""
+    answer = front.discrete
+    if answer is None:
+        return None
+    best: dict[str, float] = {}
+    for wanted, value in zip(front.objectives, answer.continuous, strict=False):
+        of = front.problem.quantity(wanted.quantity)
+        found = -value if wanted.sense == "maximise" else value
+        best[f"off_target_{of.field}" if wanted.sense == "target" else of.field] = found * of.unit.factor
+    return {
+        "how": answer.how,
+        "combinations": answer.combinations,
+        "judged": answer.judged,
+        "values": dict(answer.rules),
+        "continuous_best": best,
+    }
 
 
 def rows_of(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:

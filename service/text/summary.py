@@ -38,6 +38,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "variables": [
             *(f"{name} {_lengths(problem, name)}" for name in UNKNOWNS),
             *(_varying(item) for item in problem.mechanism.varying),
+            *(f"{item.name} {item.rule}: {len(item.values)} values" for item in problem.discrete),
             *_choices(problem),
         ],
         "rules": [

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job import parse_job, with_files
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 from tests.packaging.feeder import numbers
@@ -189,17 +189,19 @@ def _tables(page: str) -> list[dict[str, Any]]:
     return [tomllib.loads(block) for block in re.findall(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)]
 
 
-def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str], root: Path) -> None:
+def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str], root: Path, tmp_path: Path) -> None:
     """Each alone added to the job of the README; of tables that both have, the keys of both count."""
     (whole,) = _tables(pages[root / "README.md"])
     parts = _tables(pages[root / "docs" / "jobs.md"])
     assert len(parts) >= 5
+    (table,) = re.findall(r"^```csv\n(name,.*?)^```$", pages[root / "docs" / "jobs.md"], re.MULTILINE | re.DOTALL)
+    (tmp_path / "gearmotors.csv").write_text(table)
     for part in [{}, *parts]:
         job = {**whole, **part}
         for name in part:
             if isinstance(whole.get(name), dict):
                 job[name] = {**whole[name], **part[name]}
-        assert parse_job(job).name == "Press feed"
+        assert parse_job(with_files(job, tmp_path)).name == "Press feed"
 
 
 def test_the_press_of_the_readme_presses_slowly(pages: dict[Path, str], root: Path) -> None:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.solve import solve
 from slidercrank.service.runs.result import Row, csv_text, finite, json_text, result_of, rows_from_csv
+from slidercrank.service.runs.stored_runs import result_from
 from tests.service import fronts
 
 DESIGN_KEYS = [
@@ -80,3 +84,29 @@ def test_csv_has_every_number_of_the_table() -> None:
     for name in front.designs.columns:
         kept = front.designs[name].tolist()
         assert [row[name] for row in back] == kept or np.isnan([*kept, *(row[name] for row in back)]).all()
+
+
+def test_the_record_says_how_designs_of_discrete_values_were_found() -> None:
+    problem = parse_job(
+        {
+            "name": "values",
+            "mechanism": {"speed": "240 rpm", "slider": {"mass": "2 kg"}},
+            "variables": {
+                "crank": {"min": "40 mm", "max": "60 mm", "step": "2 mm"},
+                "rod": {"min": "90 mm", "max": "250 mm", "series": "R10"},
+                "offset": "20 mm",
+            },
+            "objectives": {"peak_torque": "minimise", "transmission_angle": {"target": "60 deg"}},
+            "optimiser": {"method": "sobol", "evaluations": 64},
+        }
+    )
+    result = result_of(solve(problem), "run")
+    record = json.loads(json_text(result.record()))
+    found = record["discrete"]
+    assert (found["how"], found["combinations"], found["judged"]) == ("exact", 55, 55)
+    assert found["values"] == {"crank": "multiples of 2 mm", "rod": "R10 in mm"}
+    assert list(found["continuous_best"]) == ["peak_torque_Nm", "off_target_least_transmission_angle_deg"]
+    assert found["continuous_best"]["peak_torque_Nm"] <= min(row["peak_torque_Nm"] for row in result.designs)  # type: ignore[type-var]
+    again = result_from(record, result.designs, "run")
+    assert again.discrete == found
+    assert "discrete" not in replace(result, discrete=None).record()

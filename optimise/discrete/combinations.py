@@ -1,0 +1,232 @@
+"""Combinations of discrete values: how many there are, which keep every requirement, and which come nearest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...objectives.quantity import Array
+from ...objectives.robust.quantity import RobustQuantity
+from ..front.hypervolume import Stand, unheard
+from ..problem.problem import Problem, Variant
+from ..problem.requirements import Constraint, Range
+from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
+
+_AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two questions whether to end
+DIMENSIONS = ("crank", "rod", "offset")
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The values of a design's numbers in one variant of a problem.
+
+    part: the variant. values: of each number of a design (3 + v) its possible values, None where it is free in a range.
+    """
+
+    part: Problem
+    values: tuple[Array | None, ...]
+
+    @classmethod
+    def of(cls, part: Problem) -> Axes:
+        """Return the axes of a problem without choices; a fixed number has its one value."""
+        given = {item.name: item for item in part.discrete}
+        found: list[Array | None] = []
+        for name, ends in ranges_of(part).items():
+            if ends.fixed:
+                found.append(np.array([ends.lower]))
+            elif name in given:
+                side = part.slow_side() if name == "offset" else None
+                values = given[name].within(ends)
+                found.append(values if side is None else values[side * values > 0.0])
+            else:
+                found.append(None)
+        return cls(part, tuple(found))
+
+    @property
+    def whole(self) -> bool:
+        """Whether a combination is a design: nothing is left free."""
+        return all(values is not None for values in self.values)
+
+    @property
+    def count(self) -> int:
+        """How many combinations there are."""
+        return math.prod(len(values) for values in self.values if values is not None)
+
+    def designs(self, begin: int, end: int) -> Array:
+        """Return some of all combinations (n, 3 + v), the last number changing first; NaN where one is free."""
+        sizes = [1 if values is None else len(values) for values in self.values]
+        places = np.unravel_index(np.arange(begin, min(end, math.prod(sizes))), sizes)
+        columns = [
+            np.full(len(at), np.nan) if values is None else values[at]
+            for values, at in zip(self.values, places, strict=True)
+        ]
+        return np.stack(columns, axis=1)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Combinations that keep every requirement, and the nearest of those that do not.
+
+    part: the problem that the nearest answers. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged:
+    combinations looked at. nearest: the design (3 + v,) of least violation among those that turn fully, None without
+    one. missed: its greatest violation, relative.
+    """
+
+    part: Problem
+    dimensions: Array
+    values: Array
+    judged: int
+    nearest: Array | None
+    missed: float
+
+    @classmethod
+    def none(cls, part: Problem) -> Judged:
+        """Return no designs."""
+        width = 3 + len(part.mechanism.varying)
+        return cls(part, np.zeros((0, width)), np.zeros((0, len(part.objectives))), 0, None, np.inf)
+
+    def with_(self, other: Judged) -> Judged:
+        """Return both."""
+        nearer = other if other.missed < self.missed else self
+        return Judged(
+            nearer.part,
+            np.concatenate([self.dimensions, other.dimensions]),
+            np.concatenate([self.values, other.values]),
+            self.judged + other.judged,
+            nearer.nearest,
+            nearer.missed,
+        )
+
+
+def ranges_of(part: Problem) -> dict[str, Range]:
+    """Return the ranges of a design's numbers by name, in their order."""
+    lengths: dict[str, Range] = {name: getattr(part, name) for name in DIMENSIONS}
+    return lengths | {item.name: Range(lower=item.lower, upper=item.upper) for item in part.mechanism.varying}
+
+
+def robust(problem: Problem) -> bool:
+    """Return whether anything that is asked is robust, which takes a hundred times as long."""
+    names = {item.quantity for item in problem.objectives} | {item.quantity for item in problem.every_constraint}
+    return any(isinstance(problem.quantity(name), RobustQuantity) for name in names)
+
+
+def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) -> Judged:
+    """Return all combinations of a whole variant, judged. stand: asked after some thousands.
+
+    dimensions_only: judge by what needs no cycle, and compute no objectives.
+    """
+    found = Judged.none(axes.part)
+    step = _AT_ONCE_ROBUST if robust(axes.part) and not dimensions_only else _AT_ONCE
+    for begin in range(0, axes.count, step):
+        stand(begin, axes.count)
+        found = found.with_(judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only))
+    return found
+
+
+def judged(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
+    """Return which designs (n, 3 + v) keep every requirement, with their objectives."""
+    crank, rod, offset = designs.T[:3]
+    turning = designs[(crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod)]
+    constraints = constraints_of(part)
+    slow = [item for item in constraints if costly(part.quantity(item.quantity))]
+    worst = _violation(part, turning, [item for item in constraints if item not in slow])
+    kept = np.flatnonzero(worst <= FEASIBLE)
+    if slow and not dimensions_only:
+        worst[kept] = np.maximum(worst[kept], _violation(part, turning[kept], slow))
+        kept = kept[worst[kept] <= FEASIBLE]
+    values = np.zeros((len(kept), len(part.objectives)))
+    if len(kept) and not dimensions_only:
+        found = part.evaluate(turning[kept])
+        values = np.stack([minimised(of, found[:, j]) for j, of in enumerate(part.objectives)], axis=1)
+    had = np.isfinite(values).all(axis=1)
+    nearest = int(np.argmin(worst)) if len(worst) and np.isfinite(worst).any() else None
+    return Judged(
+        part,
+        turning[kept][had],
+        values[had],
+        len(designs),
+        None if nearest is None else turning[nearest],
+        np.inf if nearest is None else float(worst[nearest]),
+    )
+
+
+def _violation(part: Problem, designs: Array, constraints: Sequence[Constraint]) -> Array:
+    """Return the greatest relative violation (n,), zero where all hold."""
+    worst = np.zeros(len(designs))
+    if not (len(designs) and constraints):
+        return worst
+    held = part.evaluate(designs, [item.quantity for item in constraints])
+    for column, item in enumerate(constraints):
+        worst = np.maximum(worst, violated_by(item, held[:, column]))
+    return worst
+
+
+def neighbours(axes: Axes, designs: Array, most: int) -> Array:
+    """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest of each design first.
+
+    They are of a window as wide as `most` allows for each design, at least the values on either side.
+    """
+    if not len(designs):
+        return designs
+    free = sum(values is not None and len(values) > 1 for values in axes.values)
+    width = 2
+    while free and (width + 2) ** free * len(designs) <= most:
+        width += 2
+    found = [_around(axes.values, design, width) for design in designs]
+    ranks = np.concatenate([np.arange(len(part)) for part in found])
+    stacked = np.concatenate(found)[np.argsort(ranks, kind="stable")]
+    _, first = np.unique(np.nan_to_num(stacked, nan=0.0), axis=0, return_index=True)
+    return np.asarray(stacked[np.sort(first)][:most])
+
+
+def _around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
+    """Return the combinations of the values next to a design, the nearest in ranges first."""
+    ladders, ways = [], []
+    for values, value in zip(axes, design.tolist(), strict=True):
+        if values is None:
+            ladders.append(np.array([np.nan]))
+            ways.append(np.zeros(1))
+            continue
+        place = int(np.searchsorted(values, value))
+        near = values[max(0, place - width // 2) : place + width // 2]
+        near = near if len(near) else values[-1:]
+        ladders.append(near)
+        ways.append(np.abs(near - value) / max(float(np.ptp(near)), 1e-300))
+    grid = np.stack([each.ravel() for each in np.meshgrid(*ladders, indexing="ij")], axis=1)
+    way = sum(each.ravel() for each in np.meshgrid(*ways, indexing="ij"))
+    return np.asarray(grid[np.argsort(way, kind="stable")])
+
+
+def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Problem:
+    """Return the problem whose variants are combinations: of each variant's index, designs (3 + v,).
+
+    A number that is NaN stays free in its range.
+    """
+    variants = []
+    parts = problem.parts()
+    for index, design in chosen:
+        part = parts[index]
+        given = problem.variants[index] if problem.variants else None
+        ends = [
+            of if math.isnan(value) else Range(lower=value, upper=value)
+            for of, value in zip((part.crank, part.rod, part.offset), design[:3].tolist(), strict=True)
+        ]
+        varying = tuple(
+            item if math.isnan(value) else replace(item, lower=value, upper=value)
+            for item, value in zip(part.mechanism.varying, design[3:].tolist(), strict=True)
+        )
+        variants.append(
+            Variant(
+                labels=given.labels if given else (),
+                mechanism=replace(part.mechanism, varying=varying),
+                crank=ends[0],
+                rod=ends[1],
+                offset=ends[2],
+                limits=given.limits if given else (),
+                slow_stroke=given.slow_stroke if given else None,
+            )
+        )
+    return replace(problem, discrete=(), variants=tuple(variants))

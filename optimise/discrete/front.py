@@ -1,0 +1,144 @@
+"""The front of a problem whose numbers have some values only.
+
+The front without them comes first: it says what they cost. Where combinations are few enough, every one is judged: the
+answer is exact. With nothing else free a combination is a design; else what is free is searched and polished for each.
+Where they are too many, those next to the designs of the continuous front are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ...objectives.quantity import Array
+from ..front.answer import Answer
+from ..front.front import ParetoFront, Status
+from ..front.hypervolume import Stand, choose, nondominated
+from ..front.rounded import written
+from ..problem.problem import Problem
+from .combinations import Axes, Judged, every, judged, neighbours, robust, with_values
+from .words import columns_by_name, found_in_words, missed_in_words
+
+MOST, _MOST_ROBUST = 1_000_000, 1 << 13
+"""Combinations that are designs, all judged; robust quantities take a hundred times as long."""
+SOLVED = 64
+"""Combinations that leave something free, each searched: of few all, of more those next to the continuous front."""
+_SAME = 1e-9  # of the objectives' range: designs nearer than this are one
+Search = Callable[[Problem], ParetoFront]
+Chosen = list[tuple[int, Array]]
+
+
+def discrete_front(
+    problem: Problem, search: Search, nothing: Callable[[Status, str], ParetoFront], stand: Stand
+) -> ParetoFront:
+    """Return the front of a problem with discrete numbers.
+
+    search: solves a problem without. nothing: makes an empty front of a status and a message. stand: asked in between.
+    """
+    axes = [Axes.of(part) for part in problem.parts()]
+    whole, count = all(each.whole for each in axes), sum(each.count for each in axes)
+    most = (_MOST_ROBUST if robust(problem) else MOST) if whole else SOLVED
+    exact = count <= most
+    found: Judged | None = None
+    chosen: Chosen = []
+    if exact and whole:
+        chosen, found = _best(problem, axes, [every(each, stand) for each in axes])
+        if not chosen:
+            return nothing("infeasible", missed_in_words(problem, found))
+    continuous = search(replace(problem, discrete=()))
+    if continuous.status == "cancelled":
+        return nothing("cancelled", "cancelled before designs of the discrete values were looked at")
+    if not exact and not len(continuous):
+        return replace(continuous, problem=problem)
+    if not whole:
+        chosen = [(index, row) for index, each in enumerate(axes) for row in _rows(each, continuous, index, exact)]
+        chosen = _fewest(chosen)
+    elif not exact:
+        parts = [
+            judged(each.part, neighbours(each, _own(continuous, index), MOST // len(axes)))
+            for index, each in enumerate(axes)
+        ]
+        chosen, found = _best(problem, axes, parts)
+    if not chosen:
+        return nothing("infeasible", missed_in_words(problem, found or Judged.none(axes[0].part)))
+    answer = Answer(
+        exact=exact,
+        combinations=count,
+        judged=found.judged if found else len(chosen),
+        rules={item.name: item.rule for item in problem.discrete},
+        continuous=tuple(continuous.values.min(axis=0).tolist()) if len(continuous) else (),
+    )
+    return _told(problem, search(with_values(problem, chosen)), continuous, chosen, answer)
+
+
+def _best(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
+    """Return the designs to deliver: the non-dominated ones of all variants, at most as many as are asked for."""
+    together = parts[0]
+    for part in parts[1:]:
+        together = together.with_(part)
+    owner = np.concatenate([np.full(len(part.values), index) for index, part in enumerate(parts)])
+    values = together.values
+    if not len(values):
+        return [], together
+    rows = nondominated(values)
+    if values.shape[1] == 1:
+        rows = rows[:1]
+    else:
+        rows = rows[_apart(values[rows])]
+        best = tuple(dict.fromkeys(np.argmin(values[rows], axis=0).tolist()))
+        rows = rows[choose(values[rows], problem.settings.designs, always=best)]
+    return [(int(owner[row]), together.dimensions[row]) for row in rows], together
+
+
+def _apart(values: Array) -> Array:
+    """Return the rows of objectives (n, m) that differ from those before by more than rounding."""
+    size = np.maximum(_SAME * np.ptp(values, axis=0), 1e-300)
+    _, first = np.unique(np.round(values / size), axis=0, return_index=True)
+    return np.sort(first)
+
+
+def _own(front: ParetoFront, variant: int) -> Array:
+    """Return the designs of a variant, the best in an objective first."""
+    own = np.flatnonzero(np.array(front.variants) == variant) if front.variants else np.arange(len(front))
+    first = [row for row in front.extremes().values() if row in own]
+    order = [*dict.fromkeys(first), *(row for row in own.tolist() if row not in first)]
+    return front.dimensions[order]
+
+
+def _rows(axes: Axes, continuous: ParetoFront, index: int, exact: bool) -> Array:
+    return axes.designs(0, axes.count) if exact else neighbours(axes, _own(continuous, index), SOLVED)
+
+
+def _fewest(chosen: Chosen) -> Chosen:
+    """Return at most `SOLVED` combinations, of each variant the first ones."""
+    rank: dict[int, int] = {}
+    order = []
+    for place, (index, _) in enumerate(chosen):
+        rank[index] = rank.get(index, -1) + 1
+        order.append((rank[index], place))
+    return [chosen[place] for _, place in sorted(order)[:SOLVED]]
+
+
+def _told(problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, answer: Answer) -> ParetoFront:
+    """Return the front of combinations as one of the problem that states them."""
+    columns = dict(front.columns)
+    for place, (name, (column, factor)) in enumerate(columns_by_name(problem).items()):
+        if column in columns and any(item.name == name for item in problem.discrete):
+            columns[column] = np.array([written(value) for value in (front.dimensions[:, place] * factor).tolist()])
+    # A design of discrete values is one of the continuous problem too.
+    best = front.values.min(axis=0, initial=np.inf).tolist()
+    least = tuple(min(one, other) for one, other in zip(answer.continuous, best, strict=False))
+    answer = replace(answer, continuous=least)
+    found = replace(
+        front,
+        problem=problem,
+        columns=columns,
+        variants=tuple(chosen[row][0] for row in front.variants) if problem.variants else (),
+        evaluations=continuous.evaluations + front.evaluations + answer.judged,
+        discrete=answer,
+    )
+    return replace(
+        found, message=f"{found_in_words(found)}; {front.message}" if not len(found) else found_in_words(found)
+    )

@@ -1,0 +1,41 @@
+"""Requirements on the dimensions that no combination of discrete values meets, found before anything runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.errors import JobError
+from ..problem.problem import Problem
+from .combinations import DIMENSIONS, Axes, Judged, every
+from .words import missed_in_words
+
+MOST = 200_000
+"""Combinations that are looked at."""
+
+
+def require_meetable(problem: Problem) -> None:
+    """Raise JobError, with the nearest, if values of all three dimensions are given and none meets what they must.
+
+    Only what needs no cycle is looked at, and no more than `MOST` combinations; the rest is left to the search.
+    """
+    if not problem.discrete:
+        return
+    axes = [_of_dimensions(Axes.of(part)) for part in problem.parts()]
+    if not all(each.whole for each in axes) or sum(each.count for each in axes) > MOST:
+        return
+    found = Judged.none(axes[0].part)
+    for each in axes:
+        found = found.with_(every(each, dimensions_only=True))
+        if len(found.dimensions):
+            return
+    sizes = tuple(item for item in problem.discrete if item.name in DIMENSIONS)
+    if sizes:
+        raise JobError(f"variables.{sizes[0].name}: {missed_in_words(replace(problem, discrete=sizes), found)}")
+
+
+def _of_dimensions(axes: Axes) -> Axes:
+    """Return axes with one value of each other number: what is looked at depends on the dimensions alone."""
+    others = [np.array([item.lower]) for item in axes.part.mechanism.varying]
+    return Axes(axes.part, (*axes.values[:3], *others))

@@ -1,0 +1,79 @@
+"""The result of a search among discrete values, in words."""
+
+from __future__ import annotations
+
+from ...objectives.tables.varying_column import varying_column
+from ..front.front import ParetoFront
+from ..problem.problem import Problem
+from ..problem.violation import constraints_of, violated_by
+from .combinations import DIMENSIONS, Judged
+
+
+def columns_by_name(problem: Problem) -> dict[str, tuple[str, float]]:
+    """Return the column of each number of a design, with the factor from SI to its unit."""
+    more = {item.name: varying_column(item) for item in problem.mechanism.varying}
+    lengths = {name: (f"{name}_mm", 1e3) for name in DIMENSIONS}
+    return lengths | {name: (column, unit.factor) for name, (column, unit) in more.items()}
+
+
+def rules_in_words(problem: Problem) -> str:
+    """Return the discrete numbers with what they may be."""
+    return ", ".join(f"{item.name} ({item.rule})" for item in problem.discrete)
+
+
+def found_in_words(front: ParetoFront) -> str:
+    """Return how many designs were found among how many combinations, and the best with continuous values."""
+    answer, problem = front.discrete, front.problem
+    assert answer is not None
+    rules = rules_in_words(problem)
+    if not len(front):
+        return f"no design of {answer.judged} combinations of {rules} keeps every requirement"
+    count = f"{len(front)} design{'' if len(front) == 1 else 's'}"
+    if answer.exact:
+        text = f"{count}, exact: all {answer.combinations} combinations of {rules} judged"
+    else:
+        some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
+        text = f"{count}, {answer.how}: {some} judged"
+    told = []
+    for place, wanted in enumerate(front.objectives if answer.continuous else ()):
+        of = problem.quantity(wanted.quantity)
+        sign = -1.0 if wanted.sense == "maximise" else 1.0
+        here, there = (
+            sign * of.unit.factor * best for best in (front.values[:, place].min(), answer.continuous[place])
+        )
+        near = " from its target" if wanted.sense == "target" else ""
+        told.append(f"{of.title} {there:.6g} {of.unit.symbol}".rstrip() + f"{near} (here {here:.6g})")
+    return f"{text}; with continuous values the best would be {', '.join(told)}" if told else text
+
+
+def missed_in_words(problem: Problem, found: Judged) -> str:
+    """Return that no combination keeps every requirement, by how much the nearest misses, and a remedy."""
+    none = f"none of {found.judged} combinations of {rules_in_words(problem)}"
+    if found.nearest is None:
+        return f"{none} turns fully with every quantity that is asked; give smaller steps or wider ranges"
+    told_of = {*DIMENSIONS, *(item.name for item in problem.discrete)}
+    columns = columns_by_name(found.part).items()
+    sizes = ", ".join(
+        f"{name} {value * factor:.6g} {column.rpartition('_')[2]}"
+        for (name, (column, factor)), value in zip(columns, found.nearest.tolist(), strict=True)
+        if name in told_of
+    )
+    worst, told, remedy = 0.0, "", ""
+    for item in constraints_of(found.part):
+        of = found.part.quantity(item.quantity)
+        value = found.part.evaluate(found.nearest[None], [item.quantity])[:, 0]
+        here, short = float(value[0]), float(violated_by(item, value)[0])
+        asked = item.upper if item.upper is not None and here > item.upper else item.lower
+        if short > worst and asked is not None:
+            worst = short
+            shown, off = (
+                f"{size * of.unit.factor:.{digits}g} {of.unit.symbol}".rstrip() for size, digits in _both(here, asked)
+            )
+            told = f"{of.title} {shown}, {off} {'above' if here > asked else 'below'} what is asked"
+            remedy = "ask for a range instead of one value" if item.equality else "relax it"
+    remedies = f"{remedy}, or give smaller steps or other ranges"
+    return f"{none} keeps every requirement; the nearest, {sizes}, has {told}; {remedies}"
+
+
+def _both(here: float, asked: float) -> tuple[tuple[float, int], tuple[float, int]]:
+    return (here, 7), (abs(here - asked), 3)

@@ -1,0 +1,147 @@
+"""Values that a number may have: multiples of a step, preferred numbers, a list; as a job writes them.
+
+Preferred numbers are those of ISO 3:1973, the rounded values of its basic series R5, R10, R20 and R40, times powers of
+ten in the unit that `min` is written in.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from itertools import pairwise
+from typing import Any
+
+from ...model.errors import InputError
+from .units import shown
+
+KEYS = frozenset({"min", "max", "step", "series", "values"})
+"""Keys of a table that says the values of a variable."""
+MOST = 10_000
+"""Values of one variable."""
+_R40 = (
+    *("1", "1.06", "1.12", "1.18", "1.25", "1.32", "1.4", "1.5", "1.6", "1.7"),
+    *("1.8", "1.9", "2", "2.12", "2.24", "2.36", "2.5", "2.65", "2.8", "3"),
+    *("3.15", "3.35", "3.55", "3.75", "4", "4.25", "4.5", "4.75", "5", "5.3"),
+    *("5.6", "6", "6.3", "6.7", "7.1", "7.5", "8", "8.5", "9", "9.5"),
+)
+SERIES = {f"R{count}": tuple(map(Decimal, _R40[:: 40 // count])) for count in (5, 10, 20, 40)}
+"""Preferred numbers of a decade, by series."""
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*?)\s*")
+_ROOM = 1e-9  # relative: a multiple at the very end of a range counts
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The values, SI, ascending, and the rule that gives them, in words."""
+
+    values: tuple[float, ...]
+    rule: str
+
+
+def says_values(given: object) -> bool:
+    """Return whether a value of a job says which values a variable may have."""
+    return isinstance(given, Mapping) and bool(given) and set(given) <= KEYS
+
+
+def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
+    """Return the values that a table says. read: gives a value in SI, by the rules of its key. Raises `InputError`."""
+    words = [key for key in ("step", "series", "values") if key in given]
+    if len(words) != 1:
+        raise InputError(
+            f"must have one of step, series and values; got {' and '.join(words) or 'none'}; write it like "
+            '{ min = "20 mm", max = "60 mm", step = "0.5 mm" }'
+        )
+    if words == ["values"]:
+        return _listed(given, read)
+    for end in ("min", "max"):
+        if end not in given:
+            raise InputError(f"must have min and max beside {words[0]}; got no {end}; add it")
+    lower, upper = read(given["min"]), read(given["max"])
+    if lower > upper:
+        raise InputError(
+            f"must run from min to max; got {shown(given['min'])} to {shown(given['max'])}, an empty range; swap them"
+        )
+    room = _ROOM * max(abs(lower), abs(upper))
+    found = _multiples if words == ["step"] else _preferred
+    values, rule = found(given, read, lower - room, upper + room)
+    if not values:
+        raise InputError(
+            f"must have a value within {shown(given['min'])} to {shown(given['max'])}; none of {rule} is; widen the "
+            "range"
+        )
+    return Grid(tuple(values), rule)
+
+
+def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
+    if len(given) > 1:
+        raise InputError("a list of values has its own ends; got min or max too; leave them out")
+    values = given["values"]
+    if not isinstance(values, list | tuple) or len(values) < 2:
+        raise InputError(f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}')
+    if len(values) > MOST:
+        raise InputError(f"values are {MOST} at most; got {len(values)}; leave out some")
+    found = sorted(read(value) for value in values)
+    for one, other in pairwise(found):
+        if one == other:
+            raise InputError(f"values must differ; got {shown(values)}; leave out the second")
+    return Grid(tuple(found), f"one of {len(found)} values")
+
+
+def _multiples(
+    given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
+) -> tuple[list[float], str]:
+    step = read(given["step"])
+    if not step > 0.0:
+        raise InputError(f"step must be above zero; got {shown(given['step'])}; give its size")
+    if (upper - lower) / step > MOST:
+        raise InputError(
+            f"step must leave {MOST} values at most; got {shown(given['step'])}, {(upper - lower) / step:.4g} values; "
+            "give a greater one, or a range [lower, upper]"
+        )
+    exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
+    every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
+    return [value for value in every if lower <= value <= upper], f"multiples of {_text(given['step'])}"
+
+
+def _preferred(
+    given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
+) -> tuple[list[float], str]:
+    name = given["series"]
+    if name not in SERIES:
+        raise InputError(f"series must be one of {', '.join(SERIES)}; got {shown(name)}; choose one of these")
+    if not read(given["min"]) > 0.0:
+        raise InputError(
+            f"preferred numbers are above zero; got min {shown(given['min'])}; raise it, or give the values as a list"
+        )
+    number, unit = _parts(given["min"])
+    # The unit in SI, without the rounding of the division.
+    factor = Decimal(f"{read(given['min']) / float(number):.15g}")
+    first, last = (math.floor(math.log10(end / float(factor))) for end in (lower, upper))
+    every = (number.scaleb(k) * factor for k in range(first - 1, last + 2) for number in SERIES[name])
+    values = [float(value) for value in every if lower <= float(value) <= upper]
+    return values, f"{name} in {unit or 'SI'}"
+
+
+def _parts(given: object) -> tuple[Decimal, str]:
+    """Return number and unit of a value; a plain number has none."""
+    parts = _NUMBER.fullmatch(given) if isinstance(given, str) else None
+    return (Decimal(str(given)), "") if parts is None else (Decimal(parts[1]), parts[2])
+
+
+def _text(given: object) -> str:
+    return given.strip() if isinstance(given, str) else f"{given:g}" if isinstance(given, int | float) else shown(given)
+
+
+def grid_schema(one: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the JSON Schemas of the tables that say values. one: those of a value."""
+    value = {"anyOf": one}
+    ends = {"min": value, "max": value}
+    kinds: list[dict[str, Any]] = [{"step": value}, {"series": {"enum": list(SERIES)}}]
+    tables = [ends | kind for kind in kinds] + [{"values": {"type": "array", "items": value, "minItems": 2}}]
+    return [
+        {"type": "object", "properties": table, "required": list(table), "additionalProperties": False}
+        for table in tables
+    ]

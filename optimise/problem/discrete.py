@@ -1,0 +1,51 @@
+"""Numbers of a design that may have some values only: multiples of a step, preferred numbers, a list."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.checks import keep_tuples
+from ...model.errors import InputError
+from .requirements import Range
+
+SAME = 1e-12
+"""Relative: values nearer than this are one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Discrete:
+    """A number of a design that has one of some values.
+
+    name: crank, rod, offset, or a number of the machine that varies. values: ascending, SI. rule: in words, such as
+    "multiples of 0.5 mm". Raises `InputError` for values that are none, not finite, or not ascending.
+    """
+
+    name: str
+    values: tuple[float, ...]
+    rule: str
+
+    def __post_init__(self) -> None:
+        keep_tuples(self, "values")
+        rising = all(low < high for low, high in zip(self.values, self.values[1:], strict=False))
+        if not self.values or not all(map(math.isfinite, self.values)) or not rising:
+            raise InputError(f"the values of {self.name} must be finite and ascending, one at least; sort them")
+
+    def within(self, ends: Range) -> NDArray[np.float64]:
+        """Return the values of a range."""
+        room = SAME * max(abs(ends.lower), abs(ends.upper))
+        return np.array([value for value in self.values if ends.lower - room <= value <= ends.upper + room])
+
+
+def require_known(discrete: Sequence[Discrete], names: Sequence[str]) -> None:
+    """Raise `InputError` unless each is of a number of the design, and of another one."""
+    given = [item.name for item in discrete]
+    for name in given:
+        if name not in names:
+            raise InputError(f"values are for one of {', '.join(names)}; got {name!r}; let it vary too")
+        if given.count(name) > 1:
+            raise InputError(f"the values of {name} are given twice; keep one")

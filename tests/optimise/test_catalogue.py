@@ -1,0 +1,190 @@
+"""Catalogues as tables: the front of all rows from few of them, and wrong files in a sentence."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import JobError
+from slidercrank.optimise.job import files_beside, load_job, parse_job, read_job
+from slidercrank.optimise.job.catalogue import MOST_OPTIONS, options_of
+from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.solve import solve
+from tests.optimise.catalogues import distance
+
+JOB = """
+name = "geared"
+[mechanism]
+speed = "240 rpm"
+slider = { mass = "2 kg" }
+[[load]]
+force = "150 N"
+opposes = "motion"
+[variables]
+crank = { choices = ["40 mm", "50 mm", "60 mm"] }
+rod = "150 mm"
+offset = "20 mm"
+[[choice]]
+name = "gearmotor"
+file = "gearmotors.csv"
+[objectives]
+peak_torque = "minimise"
+stroke = "maximise"
+"""
+HEADER = "name,peak_torque max (N m),rms_torque max (N m),# price (EUR)"
+
+
+def catalogue(seed: int, rows: int, *, masses: bool = False) -> str:
+    """Return a catalogue of random limits, some equal; with masses, of a number that comes with a row too."""
+    random = np.random.default_rng([16, seed])
+    lines = [HEADER + (",mechanism.slider.mass (kg)" if masses else "")]
+    for row in range(rows):
+        torque = float(np.round(random.uniform(4.0, 14.0), 1))
+        more = f",{random.choice([1.5, 2.0])}" if masses else ""
+        lines.append(f"M {row},{torque},{torque * random.choice([0.5, 0.6]):.2f},{random.integers(10, 99)}{more}")
+    return "\n".join(lines) + "\n"
+
+
+def written(folder: Path, text: str) -> Path:
+    (folder / "gearmotors.csv").write_text(text)
+    (folder / "job.toml").write_text(JOB)
+    return folder / "job.toml"
+
+
+@pytest.mark.parametrize("masses", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_front_is_that_of_solving_every_row(seed: int, masses: bool, tmp_path: Path) -> None:
+    text = catalogue(seed, 60, masses=masses)
+    front = solve(load_job(written(tmp_path, text)))
+    rows = [line.split(",") for line in text.splitlines()[1:]]
+    every = [
+        {
+            "name": row[0],
+            "constraints": {"peak_torque": {"max": f"{row[1]} N m"}, "rms_torque": {"max": f"{row[2]} N m"}},
+        }
+        | ({"values": {"mechanism.slider.mass": f"{row[4]} kg"}} if masses else {})
+        for row in rows
+    ]
+    tables: dict[str, Any] = read_job(tmp_path / "job.toml")
+    tables["choice"] = [{"name": "gearmotor", "option": every}]
+    expected = solve(parse_job(tables))
+    assert len(front)
+    assert len(front) == len(expected)
+    assert distance(front.values, expected.values) <= 1e-9
+
+
+def test_no_row_that_is_left_is_beaten_and_every_other_one_is() -> None:
+    text = catalogue(7, 5000, masses=True)
+    options, rows = options_of(text, "file")
+    assert rows == 5000
+    table = {line.split(",")[0]: [float(x) for x in line.split(",")[1:]] for line in text.splitlines()[1:]}
+    left = [table[option["name"]] for option in options]
+
+    def beats(one: list[float], other: list[float]) -> bool:
+        return one[3] == other[3] and one[0] >= other[0] and one[1] >= other[1]
+
+    for row in table.values():
+        assert any(beats(one, row) for one in left)
+    assert not any(beats(one, other) for one in left for other in left if one is not other)
+    assert len(left) <= 20
+
+
+def test_least_values_are_looser_the_smaller_and_floors_are_not_compared() -> None:
+    found, _ = options_of("name,stroke min (mm)\na,90\nb,80\nc,80\n", "file")
+    assert [option["name"] for option in found] == ["b"]
+    # A greatest transmission angle moves the floor that is kept by default.
+    found, _ = options_of("name,transmission_angle max (deg)\na,8\nb,50\n", "file")
+    assert len(found) == 2
+    found, _ = options_of("name,stroke equals (mm)\na,80\nb,90\nc,90\n", "file")
+    assert [option["name"] for option in found] == ["a", "b"]
+
+
+@pytest.mark.parametrize("sign", [";", "\t"])
+def test_other_signs_between_cells_and_brackets_are_read(sign: str) -> None:
+    text = "\n".join(line.replace(",", sign) for line in catalogue(1, 9).splitlines())
+    assert options_of(text.replace("(N m)", "[N m]"), "file") == options_of(catalogue(1, 9), "file")
+
+
+def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) -> None:
+    job = written(tmp_path, catalogue(0, 60))
+    (note,) = [note for note in notes_of(read_job(job)) if "rows" in note]
+    assert re.fullmatch(r"gearmotor: \d of 60 rows of the file are solved; .*", note)
+    assert files_beside(job) == [tmp_path / "gearmotors.csv"]
+    one = load_job(written(tmp_path, f"{HEADER}\nA,10,5,1\n"))
+    assert [variant.labels for variant in one.variants] == [("A",)] * 3
+
+
+def test_a_file_has_no_place_in_tables_of_a_request() -> None:
+    tables = {"name": "motor", "file": "gearmotors.csv"}
+    with pytest.raises(JobError, match="a file is read beside a job file only"):
+        parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [tables]})
+    with pytest.raises(JobError, match="must have two options or more, or a file; got 0"):
+        parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [{"name": "motor"}]})
+
+
+ROW = "A,10,5,1"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "must begin with a line that names its columns; got an empty file; fill it"),
+        (HEADER, "must have a row below the names of its columns; got none; add it"),
+        (f"{HEADER}\n{ROW}\nB,,5,1", 'row 3, column "peak_torque max (N m)": must have a number; got an empty cell'),
+        (f"{HEADER}\n{ROW}\nB,=2*B2,5,1", 'must be a number; got the formula "=2*B2"; save values instead of formulas'),
+        (f"{HEADER}\n=A1,10,5,1", "row 2, column name: must be a name"),
+        (
+            f'{HEADER}\nA,"10,5",5,1',
+            'row 2, column "peak_torque max (N m)": must be a number; got "10,5"; write a decimal point',
+        ),
+        (f"{HEADER}\nA,10 N m,5,1", "write the number alone; its unit stands in the header"),
+        (f"{HEADER}\nA,nan,5,1", 'got "nan"'),
+        (f"{HEADER}\nA,1e999,5,1", 'got "1e999"'),
+        (f"{HEADER}\n{ROW}\n\nA,11,5,1", 'row 4, column name: names must differ; got "A" of row 2 again; rename one'),
+        (f"{HEADER}\nA,10,5", "row 2 must have 4 cells, as the first line; got 3"),
+        (
+            "name,peak_torque max (kg)\nA,1",
+            'column "peak_torque max (kg)": must have a unit of a torque; got "kg"; write it like (N m)',
+        ),
+        ("name,peak_torque max\nA,1", "must have the unit of a torque in brackets; got none"),
+        ("name,time_ratio max (mm)\nA,1", 'got "mm"; leave it out'),
+        ("name,peak_torque (N m)\nA,1", "a quantity needs min, max or equals"),
+        ("name,peak_torqe max (N m)\nA,1", "must name a quantity; got peak_torqe; did you mean peak_torque?"),
+        ("name,stroke max (mm),stroke max (m)\nA,1,1", "columns must differ"),
+        ("name,(mm)\nA,1", "must be a quantity with min, max or equals, or the path of a number"),
+        ("name,# price\nA,1", "must have a column of numbers beside the name"),
+        ("motor,stroke max (mm)\nA,1", 'must have the column name first; got "motor"'),
+        ('name,stroke max (mm)\n"A,1', "must be a line of CSV"),
+        ("name,stroke max (mm)\nA\0,1", "got a byte 0"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(JobError, match=re.escape(words)) as told:
+        load_job(written(tmp_path, text))
+    assert 'choice #1.file: "gearmotors.csv"' in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
+    job = written(tmp_path, "")
+    with (tmp_path / "gearmotors.csv").open("wb") as file:
+        file.truncate(50_000_000)
+    with pytest.raises(JobError, match="must have at most 10 MB; got 50 MB; keep the rows"):
+        load_job(job)
+    (tmp_path / "gearmotors.csv").write_bytes("näme".encode("latin-1"))
+    with pytest.raises(JobError, match="must be UTF-8 text"):
+        load_job(job)
+    (tmp_path / "gearmotors.csv").unlink()
+    with pytest.raises(JobError, match="must be a file; got none of that name; put it beside the job file"):
+        load_job(job)
+    for elsewhere in ("/etc/passwd", "../gearmotors.csv"):
+        job.write_text(JOB.replace("gearmotors.csv", elsewhere))
+        with pytest.raises(JobError, match="must lie beside the job file"):
+            load_job(job)
+    many = "\n".join(f"M {k},{k + 1},{1000 - k}" for k in range(MOST_OPTIONS + 1))
+    with pytest.raises(JobError, match="at most 200 rows that no other one beats in everything; got 201 of 201"):
+        options_of(f"name,peak_torque max (N m),rms_torque max (N m)\n{many}\n", "file")

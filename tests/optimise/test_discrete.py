@@ -1,0 +1,257 @@
+"""Variables of some values only: against enumeration that shares no search code, and what is told of the answer."""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError, JobError
+from slidercrank.optimise.discrete import front as discrete
+from slidercrank.optimise.discrete.combinations import Axes, neighbours
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.grids import SERIES
+from slidercrank.optimise.problem.discrete import Discrete
+from slidercrank.optimise.search.checkpoints import Record
+from slidercrank.optimise.solve import solve
+from tests.optimise.catalogues import brute_force, distance, random_job
+
+JOBS, AT_ONCE, FEW = 200, 40, 40
+QUICK = {"method": "sobol", "evaluations": 64, "designs": 1000, "seed": 1}
+"""Of the continuous front, which an exact answer does not follow from."""
+RANGES: dict[str, Any] = {
+    "crank": {"min": "40 mm", "max": "60 mm", "step": "0.5 mm"},
+    "rod": {"min": "90 mm", "max": "250 mm", "series": "R20"},
+    "offset": {"values": ["10 mm", "20 mm", "30 mm"]},
+}
+
+
+def job(variables: dict[str, Any] | None = None, **tables: Any) -> dict[str, Any]:
+    """Return a small job; variables: in place of those of `RANGES`; tables: in place of its own."""
+    found: dict[str, Any] = {
+        "name": "values",
+        "mechanism": {"speed": "240 rpm", "slider": {"mass": "2 kg"}},
+        "load": [{"force": "150 N", "opposes": "motion"}],
+        "variables": RANGES | (variables or {}),
+        "constraints": {"stroke": {"min": "90 mm", "max": "101 mm"}},
+        "objectives": {"peak_torque": "minimise", "time_ratio": "maximise"},
+        "optimiser": QUICK,
+    }
+    return found | tables
+
+
+def with_lists(given: dict[str, Any]) -> dict[str, Any]:
+    """Return a job whose choices between numbers are values of variables."""
+    found = copy.deepcopy(given)
+    for name, of in found["variables"].items():
+        if isinstance(of, dict):
+            found["variables"][name] = {"values": of["choices"]}
+    return found | {"optimiser": QUICK}
+
+
+@pytest.mark.parametrize(
+    "first", [pytest.param(n, marks=[] if n < FEW else [pytest.mark.slow]) for n in range(0, JOBS, AT_ONCE)]
+)
+def test_random_small_jobs_give_the_front_of_enumeration(first: int) -> None:
+    wrong = []
+    for seed in range(first, first + AT_ONCE):
+        given = random_job(seed)
+        front, expected = solve(parse_job(with_lists(given))), brute_force(parse_job(given))
+        assert front.discrete is not None
+        assert front.discrete.exact
+        if len(front) != len(expected) or distance(front.values, expected) > 1e-9:
+            wrong.append((seed, len(front), len(expected), distance(front.values, expected)))
+    assert wrong == []
+
+
+def test_what_is_left_free_is_polished_for_every_combination() -> None:
+    """The best of each combination, solved alone, is the best of all."""
+    cranks, rods = ["45 mm", "48 mm"], ["120 mm", "150 mm"]
+    variables: dict[str, Any] = {
+        "crank": {"values": cranks},
+        "rod": {"values": rods},
+        "offset": ["5 mm", "60 mm"],
+    }
+    wanted = {"objectives": {"peak_torque": "minimise"}, "optimiser": {"samples": 512}}
+    wanted |= {"constraints": {"time_ratio": {"min": 1.08}}}
+    front = solve(parse_job(job(variables, **wanted)))
+    alone = []
+    for crank in cranks:
+        for rod in rods:
+            one = solve(parse_job(job({"crank": crank, "rod": rod, "offset": variables["offset"]}, **wanted)))
+            alone += one.values[:, 0].tolist()
+    assert front.discrete is not None
+    assert (front.discrete.exact, front.discrete.combinations) == (True, 4)
+    assert front.values[0, 0] == pytest.approx(min(alone), rel=1e-9)
+    assert front.columns["status"][0] == "stationary"
+    assert front.discrete.continuous[0] <= front.values[0, 0] * (1.0 + 1e-9)
+
+
+def test_designs_have_the_values_as_they_are_written() -> None:
+    problem = parse_job(job())
+    front = solve(problem)
+    assert front.problem is problem
+    assert set(front.columns["crank_mm"]) <= {40.0 + 0.5 * k for k in range(41)}
+    assert set(front.columns["rod_mm"]) <= {90.0, *(float(10 * number) for number in SERIES["R20"])} | {
+        float(100 * number) for number in SERIES["R20"]
+    }
+    assert set(front.columns["offset_mm"]) <= {10.0, 20.0, 30.0}
+    assert front.part(0).discrete == problem.discrete
+    assert re.fullmatch(
+        r"\d+ designs, exact: all 1230 combinations of crank \(multiples of 0.5 mm\), rod \(R20 in mm\), "
+        r"offset \(one of 3 values\) judged; with continuous values the best would be "
+        r"(peak torque [\d.]+ N m|time ratio [\d.]+) \(here [\d.]+\), (peak torque|time ratio) [^;]*",
+        front.message,
+    )
+    assert front.rounded(0, 1e-3).met in (True, False)
+
+
+def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where the search may look at fewer, it says so; none of its designs beats one of the exact front."""
+    given = parse_job(job(optimiser={"designs": 20, "samples": 512}))
+    exact = solve(given)
+    monkeypatch.setattr(discrete, "MOST", 800)
+    near = solve(given)
+    assert near.discrete is not None
+    assert (near.discrete.exact, near.discrete.how) == (False, "neighbours of the continuous front")
+    assert re.search(r"neighbours of the continuous front: \d+ of 1230 combinations", near.message)
+    for values in near.values:
+        assert not ((values <= exact.values) & (values < exact.values - 1e-9)).all(axis=1).any()
+    assert distance(near.values[:1], exact.values[:1]) < 0.02
+
+
+def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
+    problem = parse_job(job({"offset": ["0 mm", "40 mm"]}))
+    found = neighbours(Axes.of(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
+    assert found[:, :2].tolist() == [[0.0505, 0.125], [0.05, 0.125], [0.0505, 0.112], [0.05, 0.112]]
+    assert np.isnan(found[:, 2]).all()
+
+
+@pytest.mark.parametrize("stop", [1, 3])
+def test_a_search_that_was_stopped_ends_with_the_same_designs(stop: int) -> None:
+    given = parse_job(job({"offset": ["5 mm", "40 mm"], "rod": {"values": ["140 mm", "150 mm"]}}))
+    given = replace(given, settings=replace(given.settings, method="auto", designs=8, samples=256, evaluations=None))
+    given = replace(given, discrete=(Discrete(name="crank", values=(0.046, 0.048), rule="two"), *given.discrete[1:]))
+    records: list[Record] = []
+    whole = solve(given, keep=records.append)
+    again = solve(given, resume=records[: len(records) * stop // 4])
+    assert again.dimensions.tobytes() == whole.dimensions.tobytes()
+    assert again.message == whole.message
+
+
+def test_a_cancelled_search_gives_no_designs_of_other_values() -> None:
+    front = solve(parse_job(job()), cancelled=lambda: True)
+    assert (front.status, len(front)) == ("cancelled", 0)
+
+
+def test_series_are_those_of_the_standard() -> None:
+    """ISO 3: preferred numbers are within -1.01 % and +1.26 % of the powers of the series."""
+    for name, numbers in SERIES.items():
+        count = int(name[1:])
+        assert len(numbers) == count
+        for place, number in enumerate(numbers):
+            assert -0.0102 <= float(number) / 10.0 ** (place / count) - 1.0 <= 0.0127
+    assert [float(x) for x in SERIES["R10"]] == [1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0]
+
+
+@pytest.mark.parametrize(
+    ("given", "values"),
+    [
+        ({"min": "4.5 mm", "max": "0.0112 m", "series": "R20"}, [4.5, 5.0, 5.6, 6.3, 7.1, 8.0, 9.0, 10.0, 11.2]),
+        ({"min": "1 in", "max": "2 in", "series": "R5"}, [25.4, 40.64]),
+        ({"min": "0.1 in", "max": "0.3 in", "step": "0.0625 in"}, [3.175, 4.7625, 6.35]),
+        ({"min": 0.02, "max": 0.03, "step": 0.005}, [20.0, 25.0, 30.0]),
+        ({"values": ["30 mm", "2 cm"]}, [20.0, 30.0]),
+        ({"min": "0.3 mm", "max": "0.9 mm", "step": "0.3 mm"}, [0.3, 0.6, 0.9]),
+    ],
+)
+def test_values_are_read_in_the_units_that_they_are_written_in(given: dict[str, Any], values: list[float]) -> None:
+    problem = parse_job(job({"offset": given}, constraints={}))
+    assert [1e3 * value for value in problem.discrete[-1].values] == pytest.approx(values, rel=1e-15)
+    assert (problem.offset.lower, problem.offset.upper) == (
+        problem.discrete[-1].values[0],
+        problem.discrete[-1].values[-1],
+    )
+
+
+def test_numbers_that_vary_have_values_too() -> None:
+    mass = {"min": "1 kg", "max": "2 kg", "step": "0.25 kg"}
+    problem = parse_job(job({"mechanism.slider.mass": mass, "offset": "10 mm"}))
+    front = solve(problem)
+    assert problem.discrete[-1].values == (1.0, 1.25, 1.5, 1.75, 2.0)
+    assert set(front.columns["slider_mass_kg"]) <= {1.0, 1.25, 1.5, 1.75, 2.0}
+    assert front.discrete is not None
+    assert front.discrete.exact
+
+
+def test_an_equality_that_no_combination_has_is_told_before_the_search_with_the_nearest() -> None:
+    with pytest.raises(JobError) as told:
+        parse_job(job(constraints={"stroke": {"equals": "100 mm"}}))
+    words = re.search(
+        r"the nearest, crank ([\d.]+) mm, rod ([\d.]+) mm, offset ([\d.]+) mm, has stroke ([\d.]+) mm", str(told.value)
+    )
+    assert words
+    r, l, e, said = map(float, words.groups())
+    stroke = math.sqrt((l + r) ** 2 - e * e) - math.sqrt((l - r) ** 2 - e * e)
+    assert said == pytest.approx(stroke, abs=1e-4)
+    best = min(
+        abs(s - 0.1)
+        for crank in np.arange(0.04, 0.0601, 0.0005)
+        for rod in [0.09, *(float(x) / 10.0 for x in SERIES["R20"]), *(float(x) / 100.0 for x in SERIES["R20"])]
+        if 0.0899 < rod < 0.2501
+        for offset in (0.01, 0.02, 0.03)
+        for s in [math.sqrt((rod + crank) ** 2 - offset**2) - math.sqrt(max((rod - crank) ** 2 - offset**2, 0.0))]
+        if (crank + offset) / rod <= math.cos(math.radians(10.0))
+    )
+    assert abs(stroke - 100.0) == pytest.approx(1e3 * best, abs=1e-6)
+    assert str(told.value).endswith("ask for a range instead of one value, or give smaller steps or other ranges")
+
+
+def test_requirements_over_the_cycle_that_no_combination_meets_are_told_with_the_nearest() -> None:
+    front = solve(parse_job(job(constraints={"peak_torque": {"max": "0.5 N m"}})))
+    assert (front.status, len(front)) == ("infeasible", 0)
+    assert re.search(r"has peak torque [\d.]+ N m, [\d.]+ N m above what is asked; relax it, or give", front.message)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"min": "20 mm", "max": "60 mm"}, "must have one of step, series and values; got none"),
+        ({"min": "20 mm", "step": "1 mm"}, "must have min and max beside step; got no max"),
+        ({"min": "60 mm", "max": "20 mm", "step": "1 mm"}, "must run from min to max"),
+        ({"min": "20 mm", "max": "60 mm", "step": "0 mm"}, "must be positive"),
+        ({"min": "20 mm", "max": "60 mm", "step": "-1 mm"}, "must be positive"),
+        ({"min": "20 mm", "max": "60 mm", "step": "1 nm"}, "got"),
+        ({"min": "20 mm", "max": "60 mm", "step": "70 mm"}, "none of multiples of 70 mm is; widen the range"),
+        ({"min": "20 mm", "max": "60 mm", "step": "1 kg"}, "kg"),
+        ({"min": "20 mm", "max": "60 mm", "series": "R7"}, 'series must be one of R5, R10, R20, R40; got "R7"'),
+        ({"min": "20.1 mm", "max": "22 mm", "series": "R5"}, "none of R5 in mm is; widen the range"),
+        ({"min": "20 mm", "max": "60 mm", "series": "R5", "step": "1 mm"}, "got step and series"),
+        ({"values": ["20 mm"]}, "must be a list of two or more"),
+        ({"values": ["20 mm", "2 cm"]}, "values must differ"),
+        ({"values": ["20 mm", "25 mm"], "min": "1 mm"}, "leave them out"),
+        ({"min": "20 mm", "max": "nan mm", "step": "1 mm"}, "finite"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(JobError, match=re.escape(words)) as told:
+        parse_job(job({"crank": given}))
+    assert str(told.value).startswith("variables.crank")
+    assert "\n" not in str(told.value)
+
+
+def test_offsets_from_zero_have_no_series_and_options_set_no_values() -> None:
+    with pytest.raises(JobError, match="preferred numbers are above zero"):
+        parse_job(job({"offset": {"min": "0 mm", "max": "20 mm", "series": "R5"}}))
+    option = [{"name": name, "values": {"crank": size}} for name, size in (("a", "50 mm"), ("b", "55 mm"))]
+    with pytest.raises(JobError, match="set it too"):
+        parse_job(job(choice=[{"name": "crank size", "option": option}]))
+    with pytest.raises(InputError, match="ascending"):
+        Discrete(name="crank", values=(0.2, 0.1), rule="")
