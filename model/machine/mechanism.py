@@ -30,6 +30,10 @@ class Tolerance:
     def __post_init__(self) -> None:
         require_numbers(self, "absolute", "fraction", what="the {} part of a tolerance", least=0.0)
 
+    def limit(self, length: float) -> float:
+        """Return how far a length, m, may be off, m."""
+        return self.absolute + self.fraction * abs(length)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Window:

@@ -31,7 +31,7 @@ def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return how far each source may be off, (8,), m; the crank angle in rad."""
     linkage, t = single(mechanism, linkage), mechanism.tolerances
     lengths = (
-        tolerance.absolute + tolerance.fraction * abs(float(length))
+        tolerance.limit(float(length))
         for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
     )
     gap = t.clearances

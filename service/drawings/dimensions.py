@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..designs.toleranced import toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
 
@@ -11,9 +12,12 @@ _ARROW = 1.2  # length over the height of the text; a sixth as wide to either si
 _GAP, _BEYOND = 0.4, 0.6  # of an extension line, before its point and beyond the dimension line, over that height
 
 
-def dimension(name: str, start: Point, end: Point, through: Point, angle: float, *, height: float) -> Dimension:
+def dimension(
+    name: str, start: Point, end: Point, through: Point, angle: float, *, height: float, tolerance: float = 0.0
+) -> Dimension:
     """Return the dimension of two points along `angle`, deg, its line through a point. height: of the text, mm.
 
+    tolerance: mm; the text has the digits that it makes sensible, seven without one.
     Where arrows and text do not fit between the points they come from outside, the text beyond the end.
     """
     turn = math.radians(angle)
@@ -23,7 +27,7 @@ def dimension(name: str, start: Point, end: Point, through: Point, angle: float,
         feet.reverse()
         start, end = end, start
     length = _dot(_less(feet[1], feet[0]), along)
-    text = f"{length:.7g}"
+    text = toleranced(length, tolerance) if tolerance else f"{length:.7g}"
     wide, arrow = WIDE * height * len(text), _ARROW * height
     inside = length > wide + 2.6 * arrow
     parts: list[Line | Wedge | Label] = []
@@ -45,7 +49,7 @@ def dimension(name: str, start: Point, end: Point, through: Point, angle: float,
         parts.append(Line(DIMENSIONS, _at(feet[0], along, -2.0 * arrow), _at(feet[1], along, 2.4 * arrow + wide)))
         middle = _at(feet[1], along, 2.2 * arrow + 0.5 * wide)
     parts.append(Label(DIMENSIONS, text, _at(middle, across, 0.4 * height), height, angle, "middle"))
-    return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts))
+    return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
 def _at(point: Point, unit: Point, length: float) -> Point:

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from ...model.extras import NamingExtra
+from ..designs.toleranced import decimals_of
 from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 
 if TYPE_CHECKING:
@@ -107,17 +108,29 @@ def _dimension(found: Document, space: BaseLayout, shape: Dimension, on: dict[st
     for part in shape.parts:
         _add(found, block, part)
     label = next(part for part in shape.parts if isinstance(part, Label))
-    made = space.add_linear_dim(
+    styled = space.add_linear_dim(
         base=shape.through,
         p1=shape.start,
         p2=shape.end,
         angle=shape.angle,
         dimstyle=_STYLE,
+        override=_deviations(shape),
         dxfattribs=on,
-    ).dimension
+    )
+    styled.commit()
+    made = styled.dimension
     made.dxf.geometry = block.name
     made.dxf.text_midpoint = label.at
     made.dxf.actual_measurement = shape.length
+
+
+def _deviations(shape: Dimension) -> dict[str, Any]:
+    """Return the settings by which CAD writes a tolerance as it is written here."""
+    if not shape.tolerance:
+        return {}
+    decimals = decimals_of(shape.tolerance)
+    equal = {"dimtol": 1, "dimtp": shape.tolerance, "dimtm": shape.tolerance, "dimtfac": 1.0}
+    return equal | {"dimdec": decimals, "dimtdec": decimals, "dimzin": 0}
 
 
 def _plain(text: str) -> str:

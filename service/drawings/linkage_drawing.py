@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import dimension
 from .parts import Look, in_words, look_of, moving, pins_at, scenery
@@ -34,7 +36,7 @@ def linkage_drawing(
         *moving(pin, slider, look),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(pin, slider, look, height=_TEXT * size),
+        *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), height=_TEXT * size),
     ]
     title = f"{name}, {design}" if design else name
     notes = _notes(linkage, crank_angle, look)
@@ -47,7 +49,9 @@ def linkage_drawing(
     return Drawing(on.LAYERS, tuple(shapes), size, title, notes)
 
 
-def _dimensions(pin: Point, slider: Point, look: Look, *, height: float) -> list[Shape]:
+def _dimensions(
+    pin: Point, slider: Point, look: Look, tolerances: Mapping[str, float], *, height: float
+) -> list[Shape]:
     """Return the dimension lines: of crank and rod beside them, of the offset at the left, of the stroke outside."""
     e, left = look.offset, look.extent[0]
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
@@ -55,25 +59,28 @@ def _dimensions(pin: Point, slider: Point, look: Look, *, height: float) -> list
     # Crank and rod on the outside of the bend between them.
     bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0
     y = side * (max(look.crank + 0.5 * look.crank_width, side * e + 0.72 * look.block) + 3.0 * height)
+    off = {name: tolerances.get(name, 0.0) for name in ("crank", "rod", "offset")}
     found: list[Shape] = [
-        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height),
-        _aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height),
+        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height, off["crank"]),
+        _aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, off["rod"]),
         dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
     ]
     if e:
         x = left - 3.0 * height
-        found.append(dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, height=height))
+        found.append(
+            dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, height=height, tolerance=off["offset"])
+        )
     return found
 
 
-def _aligned(name: str, start: Point, end: Point, away: float, height: float) -> Shape:
+def _aligned(name: str, start: Point, end: Point, away: float, height: float, tolerance: float) -> Shape:
     """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
     x, y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(x, y)
     through = (start[0] - away * y / length, start[1] + away * x / length)
     angle = math.degrees(math.atan2(y, x))
     angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
-    return dimension(name, start, end, through, angle, height=height)
+    return dimension(name, start, end, through, angle, height=height, tolerance=tolerance)
 
 
 def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:

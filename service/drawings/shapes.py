@@ -78,8 +78,8 @@ class Label:
 class Dimension:
     """The distance of two points along a direction, with what shows it.
 
-    name: of the length. angle: of the dimension line, deg. through: a point of that line. parts: its lines, arrows and
-    text; CAD draws them anew when a point is moved.
+    name: of the length. angle: of the dimension line, deg. through: a point of that line. tolerance: mm, 0 for none.
+    parts: its lines, arrows and text; CAD draws them anew when a point is moved.
     """
 
     layer: Layer
@@ -91,6 +91,7 @@ class Dimension:
     text: str
     height: float
     parts: tuple[Line | Wedge | Label, ...] = field(repr=False)
+    tolerance: float = 0.0
 
     @property
     def length(self) -> float:

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from ...model.errors import InputError
 from ...objectives.kinds import unit_text
-from ..designs.columns import Column, find_column
+from ..designs.columns import Column, find_column, key_in
+from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.linkage_drawing import linkage_drawing
 from ..figures.front import sheet_of
@@ -37,10 +38,11 @@ def design_section(subject: Subject) -> Section:
 def numbers_section(subject: Subject) -> Section:
     """Return every column of the design, rounded and as it is stored."""
     columns = _columns(subject)
+    lengths = _toleranced(subject)
     rows = tuple(
         (
             column.title,
-            "0" if column.key.startswith("slack_") and _active(subject, column) else rounded(subject.row[column.key]),
+            lengths.get(column.key, "0" if _at_bound(subject, column) else rounded(subject.row[column.key])),
             unit_text(column.unit),
             as_stored(subject.row[column.key]),
             column.key,
@@ -52,7 +54,9 @@ def numbers_section(subject: Subject) -> Section:
         "Every number of the design",
         (
             Paragraph(
-                "Objectives in bold. The fourth column is the number with every digit, the fifth its name.", "note"
+                "Objectives in bold. Dimensions have the digits of their tolerances. The fourth column is the number "
+                "with every digit, the fifth its name.",
+                "note",
             ),
             Table(
                 "",
@@ -65,6 +69,21 @@ def numbers_section(subject: Subject) -> Section:
             ),
         ),
     )
+
+
+def _toleranced(subject: Subject) -> dict[str, str]:
+    """Return the dimensions that have a tolerance, with the digits that it makes sensible, by their columns."""
+    found = {}
+    for name, tolerance in tolerances_of(subject.design.mechanism, subject.design.linkage).items():
+        key, factor = key_in(f"{name}_mm", subject.system)
+        value = subject.row.get(key)
+        if isinstance(value, float):
+            found[key] = toleranced(value, factor * tolerance).replace("-", "−")
+    return found
+
+
+def _at_bound(subject: Subject, column: Column) -> bool:
+    return column.key.startswith("slack_") and _active(subject, column)
 
 
 def _columns(subject: Subject) -> list[Column]:

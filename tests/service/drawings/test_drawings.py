@@ -23,7 +23,8 @@ from hypothesis import strategies as st
 
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.service.designs.toleranced import toleranced
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.layers import LAYERS
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
@@ -294,3 +295,36 @@ def test_the_layers_are_those_that_the_documentation_names(pytestconfig: pytest.
     for layer in LAYERS:
         assert named[layer.name] == str(found.layers.get(layer.name).dxf.linetype).upper(), layer.name
     assert {name for name in named if name.isupper() and "_" in name} <= {layer.name for layer in LAYERS}
+
+
+def test_dimensions_have_the_digits_of_their_tolerances() -> None:
+    linkage = Linkage(0.07333253, 0.25123456, -0.0400049)
+    tolerances = Tolerances(
+        crank=Tolerance(absolute=5e-5), rod=Tolerance(fraction=1e-3), offset=Tolerance(absolute=1e-4)
+    )
+    drawing = linkage_drawing(Mechanism(tolerances=tolerances), linkage, name="press")
+    found = {shape.name: shape for shape in drawing.shapes if isinstance(shape, Dimension)}
+    assert found["crank"].text == "73.33 ± 0.05"
+    assert found["rod"].text == "251.23 ± 0.25"
+    assert found["offset"].text == "40.0 ± 0.1"
+    assert "±" not in found["stroke"].text
+    assert found["crank"].length == pytest.approx(73.33253, rel=1e-9)
+    assert "crank 73.33253 mm" in drawing.notes[0]
+    read_back = read(drawing)
+    assert read_back.audit().errors == []
+    (crank,) = [
+        dim
+        for dim in read_back.modelspace()
+        if isinstance(dim, Measured) and dim.get_measurement() == pytest.approx(73.33253, rel=1e-6)
+    ]
+    style = crank.override()
+    assert (style.get("dimtol"), style.get("dimtp"), style.get("dimdec")) == (1, pytest.approx(0.05), 2)
+    for length, tolerance, words in (
+        (73.33253, 0.025, "73.333 ± 0.025"),
+        (-0.001, 0.1, "0.0 ± 0.1"),
+        (1234.56, 12.0, "1235 ± 12"),
+        (2.887, 0.0019685, "2.887 ± 0.002"),
+        (100.0, 10.0, "100 ± 10"),
+        (5.0, 1e-7, "5.0000000 ± 0.0000001"),
+    ):
+        assert toleranced(length, tolerance) == words

@@ -1,0 +1,32 @@
+"""Lengths with the digits that their tolerances make sensible: 73.33 ± 0.05 of 73.33253 mm."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from .columns import DIMENSIONS
+
+_DIGITS = 2
+"""Of a tolerance; more say nothing."""
+
+
+def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
+    """Return the tolerance of each dimension that has one, mm, shares of a length included."""
+    given = {name: getattr(mechanism.tolerances, name).limit(float(getattr(linkage, name))) for name in DIMENSIONS}
+    return {name: 1e3 * limit for name, limit in given.items() if limit > 0.0}
+
+
+def decimals_of(tolerance: float) -> int:
+    """Return the decimals of a tolerance of two digits at most: 2 of 0.05, 3 of 0.025, none of 12."""
+    exponent = Decimal(f"{tolerance:.{_DIGITS}g}").normalize().as_tuple().exponent
+    return max(0, -exponent) if isinstance(exponent, int) else 0
+
+
+def toleranced(length: float, tolerance: float) -> str:
+    """Return a length with as many decimals as its tolerance, and that."""
+    decimals = decimals_of(tolerance)
+    shown = f"{length:.{decimals}f}"
+    shown = shown if float(shown) else f"{0.0:.{decimals}f}"  # no minus before zero
+    return f"{shown} ± {Decimal(f'{tolerance:.{_DIGITS}g}').normalize():f}"
