@@ -8,6 +8,7 @@ from typing import Literal
 
 from ..model.cycle.gas_cycle import compressors, cylinders
 from ..model.machine.dissipation import crank_weighs, linkage_loaded, moves, pivot_loaded, works_over_a_turn
+from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 
 Without = Literal["undefined", "equal", "zero"]
@@ -110,3 +111,39 @@ COMPRESSOR = Need(
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
     without="undefined",
 )
+
+STRENGTH = Need(
+    lambda machine: machine.strength is not None,
+    "it comes from a material and pins; got none; add the table [sections] with its material and its pins",
+    without="undefined",
+)
+_BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'
+ROD_BAR = Need(
+    lambda machine: isinstance(machine.rod, Bar),
+    _BAR.replace("{}", "it is of a rod given by its section", 1).replace("{}", "rod", 1),
+    without="undefined",
+)
+CRANK_BAR = Need(
+    lambda machine: isinstance(machine.crank, Bar),
+    _BAR.replace("{}", "it is of a crank given by its section", 1).replace("{}", "crank", 1),
+    without="undefined",
+)
+A_BAR = Need(
+    lambda machine: isinstance(machine.rod, Bar) or isinstance(machine.crank, Bar),
+    _BAR.replace("{}", "it is of links given by their sections", 1).replace("{}", "rod", 1),
+    without="undefined",
+)
+
+
+def _weight(part: str) -> Need:
+    def weighs(machine: Mechanism) -> bool:
+        link = getattr(machine.fullest, part)
+        return isinstance(link, Bar) or link.mass > 0.0
+
+    return Need(
+        weighs,
+        f'it comes from the mass of the {part}; got none; add for example [mechanism] {part} = {{ mass = "0.5 kg" }}',
+    )
+
+
+CRANK_MASS, ROD_MASS = _weight("crank"), _weight("rod")

@@ -34,6 +34,7 @@ class Group(Enum):
     PROPORTIONS = "Transmission and proportions"
     DRIVE = "Drive"
     FORCES = "Forces"
+    STRENGTH = "Strength, mass and wear"
     ACCURACY = "Accuracy"
     FURTHER = "Further quantities"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 from ..checks import keep_tuples, require_all_finite, require_numbers
@@ -15,6 +16,7 @@ from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .speed_profile import Profile
+from .strength import Strength
 from .varying import Varying, put, require_possible
 
 Branch = Literal["open", "crossed"]
@@ -105,6 +107,7 @@ class Mechanism:
     speed_profile: how the speed goes over the crank angle, for `transient.uneven`; everything else has it constant.
     arrangement: identical cylinders on one crankshaft, for `cycle.several`; everything else is of one cylinder.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
+    strength: material and pins, for what judges the strength of bars; nothing else depends on it.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
     offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
     """
@@ -124,6 +127,7 @@ class Mechanism:
     clearance: Clearance | None = None
     arrangement: Arrangement | None = None
     speed_profile: Profile | None = None
+    strength: Strength | None = None
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
@@ -143,7 +147,7 @@ class Mechanism:
         if self.varying:
             require_possible(self)
 
-    @property
+    @cached_property
     def nominal(self) -> Mechanism:
         """The machine as it is given, with nothing varying."""
         return replace(self, varying=()) if self.varying else self
@@ -156,7 +160,7 @@ class Mechanism:
         """
         return -1.0 if self.fullest.speed < 0.0 else 1.0
 
-    @property
+    @cached_property
     def fullest(self) -> Mechanism:
         """The machine with every varying number at its end of greatest size: it has all that some design has."""
         return self.at([item.fullest for item in self.varying]) if self.varying else self

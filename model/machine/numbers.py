@@ -9,7 +9,9 @@ that into derivatives by the design's own numbers. With k = 0 all of it is the i
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
-from .raw import LOAD_SLOTS, Raw
+from .raw import LOAD_SLOTS, Raw, raw_vector
 
 Array = NDArray[np.float64]
 
@@ -54,6 +56,9 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
     if _name != "guide":
         _SLOTS[f"friction.{_name}.radius"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index, "m")
         _SLOTS[f"friction.{_name}.coefficient"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index + 1, "")
+PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
+"""Slots of the pins' diameters: behind all that kernels take, so that no kernel differentiates by them."""
+_SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
@@ -62,6 +67,7 @@ def unit_of(path: str) -> str:
     return _POLAR[path] if path in _POLAR else _slot_of(path)[1]
 
 
+@cache
 def _slot_of(path: str) -> tuple[int, str]:
     load = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
     if load is not None and load[2] in _LOAD:
@@ -116,7 +122,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bo
     return Numbers(columns, values, slopes)
 
 
-def number_of(mechanism: Mechanism, slot: Raw, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
+def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
     """Return one raw number (n,) of designs (n, 3 + k) and its derivatives (n, 3 + k).
 
     `otherwise`: unless designs set it.
@@ -126,6 +132,35 @@ def number_of(mechanism: Mechanism, slot: Raw, designs: Array, *, otherwise: flo
     if found.slopes is None or not len(place):
         return np.full(len(designs), otherwise), np.zeros(designs.shape)
     return found.values[:, place[0]], found.slopes[:, place[0]]
+
+
+def of_numbers(
+    mechanism: Mechanism, designs: Array, formula: Callable[[Callable[[int], Any]], Any], *, gradients: bool
+) -> tuple[Array, Array | None]:
+    """Return a formula of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k) by complex steps.
+
+    formula: of a function that gives the raw number of a slot (`Raw`, `PINS`), each (n,) or one for all designs. It is
+    smooth, and takes complex numbers too.
+    """
+    require_width(mechanism, designs)
+    base = raw_vector(mechanism.nominal)
+    pins = (
+        {} if mechanism.strength is None else {slot: getattr(mechanism.strength, name) for name, slot in PINS.items()}
+    )
+
+    def values(given: Any) -> Any:
+        found = _raw(mechanism, given)
+        return formula(lambda slot: found[slot] if slot in found else pins[slot] if slot in pins else base[slot])
+
+    plain = values(designs) + np.zeros(len(designs))
+    if not gradients:
+        return plain, None
+    slopes = np.empty(designs.shape)
+    for v in range(designs.shape[1]):
+        stepped = designs.astype(np.complex128)
+        stepped[:, v] += 1j * STEP
+        slopes[:, v] = np.imag(values(stepped)) / STEP
+    return plain, slopes
 
 
 def require_width(mechanism: Mechanism, designs: Array) -> None:

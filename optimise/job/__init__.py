@@ -16,8 +16,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
+from ...model.machine.strength import Material
 from ..problem.problem import Problem
-from ..sizing.section_limits import Material, SectionLimits
+from ..sizing.section_limits import SectionLimits
 from .catalogue import catalogues, with_catalogues
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain

@@ -153,7 +153,7 @@ class Job(Part):
         "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}
     )
     sections: SectionsPart | None = optional(
-        "material, pins and safety of crank and rod, for the sizing of their sections", SECTIONS
+        "material, pins and safety of crank and rod, for stress, safety and wear and the sizing of sections", SECTIONS
     )
     optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 
@@ -172,6 +172,7 @@ class Job(Part):
             tolerances=self.tolerances.build(),
             friction=self.friction.build(),
             branch=own.branch,
+            strength=None if self.sections is None else self.sections.strength(),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

@@ -1,10 +1,14 @@
-"""The table [sections] of a job file: material, pins and safety of the bars that `slidercrank sections` sizes."""
+"""The table [sections] of a job file: material, pins and safety of crank and rod as bars."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated
 
-from ..sizing.section_limits import Material, SectionLimits
+from pydantic import AfterValidator, Field
+
+from ...model.errors import InputError
+from ...model.machine.strength import Criterion, Material, Strength
+from ..sizing.section_limits import SectionLimits
 from .values import Checked, Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure, optional, required
 
 EXAMPLE = {
@@ -19,6 +23,15 @@ EXAMPLE = {
     "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
 }
 """The least that the table holds."""
+
+
+_OF_STRENGTH = ("criterion", "eye_concentration", "wear")
+
+
+def _raised(factor: float) -> float:
+    if factor < 1.0:
+        raise InputError(f"must be at least 1, the mean stress; got {factor:g}; a pin in an eye has about 2.5 to 4")
+    return factor
 
 
 class MaterialPart(Checked[Material]):
@@ -52,12 +65,26 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     static_safety: PositiveRatio = optional("against yield", 2.0, default=2.0)
     fatigue_safety: PositiveRatio = optional("against fatigue", 1.5, default=1.5)
     buckling_safety: PositiveRatio = optional("against Euler's load", 3.0, default=3.0)
-    criterion: Literal["goodman", "soderberg"] = optional(
-        "how mean stresses count in fatigue", "goodman", default="goodman"
+    criterion: Criterion = optional("how mean stresses count in fatigue", "goodman", default="goodman")
+    eye_concentration: Annotated[PositiveRatio, AfterValidator(_raised)] = optional(
+        "greatest over mean stress in the net section of an eye, for the stresses as quantities; a chart such as "
+        "Shigley's fig. A-15-12 has it",
+        2.5,
+        default=1.0,
+    )
+    wear: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = optional(
+        "depth worn off a bearing over pressure times sliding distance, 1/Pa (Archard)", 1e-15, default=0.0
     )
 
     def build(self) -> tuple[Material, SectionLimits]:
         """Return material and limits as the sizing has them."""
         own = dict(self)
-        material, pins = own.pop("material"), own.pop("pins")
-        return material.build(), SectionLimits(**dict(pins), **own)
+        for name in ("material", "pins", *_OF_STRENGTH):
+            own.pop(name)
+        return self.material.build(), SectionLimits(**dict(self.pins), criterion=self.criterion, **own)
+
+    def strength(self) -> Strength:
+        """Return material and pins as quantities have them."""
+        return Strength(
+            material=self.material.build(), **dict(self.pins), **{name: getattr(self, name) for name in _OF_STRENGTH}
+        )

@@ -21,7 +21,7 @@ from .quantities import ConstraintsPart
 from .units import shown
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
-ROOTS = ("mechanism", "load", "friction", "tolerances")
+ROOTS = ("mechanism", "load", "friction", "tolerances", "sections")
 """Tables whose numbers may vary."""
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
@@ -49,6 +49,7 @@ class VariablesPart(Part):
     load: Table = _more("a [[load]], after its place, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
     friction: Table = _more("[friction]", {"guide": [0.05, 0.15]})
     tolerances: Table = _more("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
+    sections: Table = _more("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})
 
     @model_validator(mode="before")
     @classmethod

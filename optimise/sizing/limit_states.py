@@ -43,7 +43,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ...model.machine.mechanism import Mechanism
-from .section_limits import Material, SectionLimits
+from ...model.machine.strength import Material
+from .section_limits import SectionLimits
 from .section_loads import JointLoads, Range, Whip
 
 AMPLIFICATION = "amplification"

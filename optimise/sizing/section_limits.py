@@ -1,9 +1,9 @@
-"""Material and limits of sections: strengths, safety factors, pins, sizes that can be made."""
+"""Limits of sections: safety factors, pins, sizes that can be made."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from ...model.errors import InputError
 
@@ -11,31 +11,6 @@ from ...model.errors import InputError
 def _require(what: str, name: str, value: float, least: float = 0.0) -> None:
     if not math.isfinite(value) or value <= least:
         raise InputError(f"{what} must have a {name} of more than {least:g} and finite; got {value:g}")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Material:
-    """Material of crank and rod, SI.
-
-    endurance: fully reversed strength of the finished part, all corrections and the stress raisers of the eyes in it
-    (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
-    """
-
-    density: float
-    elasticity: float
-    yield_strength: float
-    ultimate_strength: float
-    endurance: float
-    bearing_pressure: float
-
-    def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
-            _require("a material", name.replace("_", " "), getattr(self, name))
-        if not self.endurance <= self.yield_strength <= self.ultimate_strength:
-            raise InputError(
-                "a material needs endurance <= yield strength <= ultimate strength; got "
-                f"{self.endurance:g}, {self.yield_strength:g} and {self.ultimate_strength:g} Pa; check the three"
-            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +34,7 @@ class SectionLimits:
     def __post_init__(self) -> None:
         for name in ("crank_pivot", "crank_pin", "slider_pin"):
             _require("a pin", f"diameter ({name})", getattr(self, name))
-        for name in ("static_safety", "fatigue_safety", "buckling_safety"):
+        for name in (item.name for item in fields(self) if item.name.endswith("_safety")):
             if not 1.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} must be at least 1 and finite; got {getattr(self, name):g}")
         for name in ("width", "depth"):

@@ -25,9 +25,10 @@ from ...model.linkage.single import single
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.strength import Material
 from ..front.stationarity import Array
 from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_states, rod_loads, same
-from .section_limits import Material, SectionLimits
+from .section_limits import SectionLimits
 from .section_loads import Whip, joint_loads, whip_of
 
 _ITERATIONS = 60

@@ -20,7 +20,11 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.objectives.needs import COMPRESSOR, CYLINDER
+from slidercrank.model.machine.strength import Material, Strength
+from slidercrank.objectives.needs import A_BAR, COMPRESSOR, CRANK_BAR, CYLINDER, ROD_BAR
+from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
+from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
+from slidercrank.objectives.needs import STRENGTH as STRONG
 from slidercrank.objectives.quantity import Quantity
 
 Array = NDArray[np.float64]
@@ -113,8 +117,30 @@ CYLINDER_OF = {CYLINDER, COMPRESSOR}
 MACHINES = {"smooth": SMOOTH, "strokes": STROKES, "tables": TABLES}
 
 
+STRENGTH = Strength(
+    material=Material(
+        density=7850.0,
+        elasticity=207e9,
+        yield_strength=350e6,
+        ultimate_strength=520e6,
+        endurance=150e6,
+        bearing_pressure=20e6,
+    ),
+    crank_pivot=0.008,
+    crank_pin=0.007,
+    slider_pin=0.006,
+    eye_concentration=2.5,
+    wear=1e-15,
+)
+BARS_OF = {STRONG, ROD_BAR, CRANK_BAR, A_BAR, CRANK_WEIGHS, ROD_WEIGHS}
+
+
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
-    """Return a machine that has what a quantity is of: a compressor more where it asks for a cylinder."""
+    """Return a machine that has what a quantity is of: a compressor more for cylinders, bars for their strength."""
+    if BARS_OF & set(quantity.needs):
+        bar = Bar(width=0.03, depth=0.02, density=7800.0)
+        crank, rod = (link if isinstance(link, Bar) else bar for link in (machine.crank, machine.rod))
+        return replace(machine, strength=STRENGTH, crank=crank, rod=rod)
     return replace(machine, loads=(*machine.loads, AIR)) if CYLINDER_OF & set(quantity.needs) else machine
 
 

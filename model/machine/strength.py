@@ -1,0 +1,72 @@
+"""Material and pins of crank and rod: what their strength is judged by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ..checks import require_numbers
+from ..errors import InputError
+from .loads.load import require_word
+
+Criterion = Literal["goodman", "soderberg"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """Material of crank and rod, SI.
+
+    endurance: fully reversed strength of the finished part, all corrections and the stress raisers of the eyes in it
+    (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
+    """
+
+    density: float
+    elasticity: float
+    yield_strength: float
+    ultimate_strength: float
+    endurance: float
+    bearing_pressure: float
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            value = getattr(self, name)
+            if not math.isfinite(value) or value <= 0.0:
+                raise InputError(
+                    f"a material must have a {name.replace('_', ' ')} of more than 0 and finite; got {value:g}"
+                )
+        if not self.endurance <= self.yield_strength <= self.ultimate_strength:
+            raise InputError(
+                "a material needs endurance <= yield strength <= ultimate strength; got "
+                f"{self.endurance:g}, {self.yield_strength:g} and {self.ultimate_strength:g} Pa; check the three"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strength:
+    """Material of the bars of a machine, and its pins.
+
+    crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
+    net section of an eye. criterion: how mean stresses count in fatigue. wear: depth worn off over pressure and
+    sliding distance, 1/Pa (Archard); none if 0.
+    """
+
+    material: Material
+    crank_pivot: float
+    crank_pin: float
+    slider_pin: float
+    eye_concentration: float = 1.0
+    criterion: Criterion = "goodman"
+    wear: float = 0.0
+
+    def __post_init__(self) -> None:
+        names = ("crank_pivot", "crank_pin", "slider_pin")
+        require_numbers(self, *names, what="the diameter of the {}", above=0.0, unit="m")
+        require_numbers(self, "eye_concentration", what="{}", least=1.0)
+        require_numbers(self, "wear", what="the coefficient of {}", least=0.0)
+        require_word("criterion", self.criterion, Criterion)
+
+    @property
+    def steady(self) -> float:
+        """Strength that mean stresses count against: ultimate (Goodman) or yield (Soderberg), Pa."""
+        return self.material.ultimate_strength if self.criterion == "goodman" else self.material.yield_strength

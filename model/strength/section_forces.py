@@ -1,0 +1,105 @@
+"""Stress along crank and rod at one crank angle, from the joint forces and the links' own inertia and weight.
+
+A link is a round-ended `Bar`: width w in the plane, depth t, density rho. Sections are counted from the crank pin A, x
+along the unit vector to the other pin (slider pin of the rod, crank pivot of the crank), y across. What lies on the
+crank pin's side of a section, a half-disc beyond the pin included, accelerates (less gravity) by
+
+    a_t(x, y) = a_t0 - omega^2 x - alpha y,    a_n(x, y) = a_n0 + alpha x - omega^2 y
+
+and is held by the pin's force F, the couple C of the pin's friction, and the section. With m = rho t w, and for the
+half-disc m_c = pi rho t w^2 / 8, first moment s = rho t w^3 / 12, second moments each j = pi rho t w^4 / 128,
+d'Alembert's equations of that part give axial force (tension positive) and moment, exactly for a rigid bar:
+
+    N(x) = -F_t + a_t0 (m_c + m x) + omega^2 (s - m x^2 / 2)
+    M(x) = -C + F_n x - a_n0 (s + m_c x + m x^2 / 2) + alpha (2 j + 2 s x - m x^3 / 6)
+
+A moment is linear elastic bending (Shigley, "Mechanical Engineering Design", 9th ed., sec. 3-10): the stress at the
+faces is N / (w t) +- 6 M / (t w^2), two cubics along the bar.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from ..dynamics.rubbing import joint_forces
+from ..kernel.arithmetic import analytic, inverse, root
+from ..kinematics.position import Motion
+from ..machine.design import Design
+
+ROD, CRANK = 0, 1
+
+
+class Stress(NamedTuple):
+    """Stress along a bar, Pa, by the share xi = x / L of its length from the crank pin.
+
+    Axial n0 + n1 xi + n2 xi^2, and bending b0 + b1 xi + b2 xi^2 + b3 xi^3 at the face where it adds to tension.
+    """
+
+    n0: Any
+    n1: Any
+    n2: Any
+    b0: Any
+    b1: Any
+    b2: Any
+    b3: Any
+
+
+@analytic
+def stress_along(
+    part: Any,
+    sine: Any,
+    cosine: Any,
+    m: Motion,
+    d: Design,
+    load: Any,
+    sides: Any,
+    width: Any,
+    depth: Any,
+    density: Any,
+) -> Stress:
+    """Return the `Stress` of the rod (`ROD`) or the crank for a load on the slider (N, outward)."""
+    f = joint_forces(sine, cosine, m, d, load, sides)
+    w2 = d.speed * d.speed
+    pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - d.gravity_x
+    pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - d.gravity_y
+    couple = d.crank_pin_circle * sides.turn * root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+    if part == ROD:
+        length, per = d.l, inverse(d.l)
+        tx, ty = m.along * per, m.across * per
+        fx, fy = f.crank_pin_x, f.crank_pin_y
+        spin, turn = m.rod_1 * m.rod_1 * w2, m.rod_2 * w2 + m.rod_1 * d.acceleration
+    else:
+        length = 1.0 * d.r
+        tx, ty = -cosine + 0.0 * d.r, -sine + 0.0 * d.r
+        fx, fy, couple = -f.crank_pin_x, -f.crank_pin_y, -couple
+        spin, turn = w2 + 0.0 * d.r, d.acceleration + 0.0 * d.r
+    along, across = pin_x * tx + pin_y * ty, pin_y * tx - pin_x * ty
+    force_t, force_n = fx * tx + fy * ty, fy * tx - fx * ty
+    web = density * depth * width * length
+    cap = density * depth * width * width * (math.pi / 8.0)
+    first = density * depth * width * width * width * (1.0 / 12.0)
+    second = cap * width * width * (1.0 / 16.0)
+    of_force = inverse(width * depth)
+    of_moment = 6.0 * of_force * inverse(width)
+    return Stress(
+        (along * cap + spin * first - force_t) * of_force,
+        along * web * of_force,
+        -0.5 * spin * web * length * of_force,
+        (2.0 * turn * second - across * first - couple) * of_moment,
+        (force_n - across * cap + 2.0 * turn * first) * length * of_moment,
+        -0.5 * across * web * length * of_moment,
+        (-1.0 / 6.0) * turn * web * length * length * of_moment,
+    )
+
+
+@analytic
+def at_share(c: Stress, face: Any, xi: Any) -> Any:
+    """Return the stress at a share of the length. face: 1 or -1, or 0 for the axial stress alone."""
+    return c.n0 + xi * (c.n1 + xi * c.n2) + face * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))
+
+
+@analytic
+def slope_at_share(c: Stress, face: Any, xi: Any) -> Any:
+    """Return the derivative of `at_share` by the share."""
+    return c.n1 + 2.0 * xi * c.n2 + face * (c.b1 + xi * (2.0 * c.b2 + 3.0 * xi * c.b3))

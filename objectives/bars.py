@@ -1,0 +1,168 @@
+"""Pieces of quantities of crank and rod as bars: joined, times closed forms, inverted."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..model.machine.links import Bar
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import PINS, of_numbers
+from ..model.machine.raw import Raw
+from ..model.machine.strength import Strength
+from ..model.signals.peaks import KEPT, find_peaks
+from ..model.signals.signals import Signal
+from ..model.strength.section_forces import CRANK, ROD
+from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
+from .quantity import Array, Pieces, Quantity, Values
+
+Formula = Callable[[Callable[[int], Any]], Any]
+
+
+class Link(NamedTuple):
+    """A link among the numbers of a machine: its part, its length, width and depth, and its far pin."""
+
+    part: int
+    length: int
+    width: int
+    depth: int
+    far: str
+    held: float
+    """End condition C of buckling in the plane of motion."""
+
+
+LINKS = {
+    "rod": Link(ROD, Raw.ROD, Raw.ROD_WIDTH, Raw.ROD_WIDTH + 1, "slider_pin", 1.0),
+    "crank": Link(CRANK, Raw.CRANK, Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 1, "crank_pivot", 0.25),
+}
+NEAR = "crank_pin"
+"""The pin that both links have."""
+FORCE = {
+    "crank_pivot": Signal.PIVOT_FORCE,
+    "crank_pin": Signal.CRANK_PIN_FORCE,
+    "slider_pin": Signal.SLIDER_PIN_FORCE,
+}
+
+
+class Part(NamedTuple):
+    """Smooth pieces of n designs: values (n, k), gradients (n, k, 3 + v) if asked for, labels (n, k)."""
+
+    values: Array
+    gradients: Array | None
+    labels: Array
+
+    def times(self, factor: tuple[Array, Array | None]) -> Part:
+        """Return the pieces times a positive closed form (n,) with its gradients."""
+        values, slopes = factor
+        return self._with(values[:, None] * self.values, values[:, None], slopes, self.values)
+
+    def into(self, factor: tuple[Array, Array | None]) -> Part:
+        """Return a closed form (n,) over the pieces, highest first; +inf where they are absent, or not positive.
+
+        Of one that is negative the highest piece alone counts.
+        """
+        values, slopes = factor
+        there = self.values > 0.0
+        there[:, 1:] &= values[:, None] > 0.0
+        inverse = np.where(there, 1.0 / np.where(there, self.values, 1.0), 0.0)
+        found = np.where(there, values[:, None] * inverse, np.inf)
+        part = self._with(found, -values[:, None] * inverse**2, slopes, inverse)
+        return part
+
+    def _with(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
+        """Return values whose derivatives are `outer` by the pieces and `inner` by the factor."""
+        if self.gradients is None or slopes is None:
+            return Part(values, None, self.labels)
+        finite = np.isfinite(self.values) & np.isfinite(values)
+        outer, inner = np.where(finite, outer, 0.0), np.where(finite, inner, 0.0)
+        gradients = outer[:, :, None] * self.gradients + inner[:, :, None] * slopes[:, None, :]
+        return Part(values, gradients, self.labels)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfBars(Quantity):
+    """A quantity that is the greatest, or the least, of what several parts of crank and rod have."""
+
+    links: tuple[str, ...] = ("rod", "crank")
+    least: bool = False
+
+    @abstractmethod
+    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+        """Return the parts that count for designs (n, 3 + k). kept: pieces wanted of each."""
+
+    def bars(self, mechanism: Mechanism) -> list[str]:
+        """Return which of its links are bars."""
+        return [name for name in self.links if isinstance(getattr(mechanism, name), Bar)]
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); NaN without what it is of; see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            none = np.full(np.shape(dimensions), np.nan)
+            return Values(none[:, 0], none if gradients else None)
+        found = self._joined(mechanism, dimensions, 1, gradients)
+        first = (np.argmin if self.least else np.argmax)(found.values, axis=1)
+        rows = np.arange(len(first))
+        return Values(found.values[rows, first], None if found.gradients is None else found.gradients[rows, first])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the local peaks of every part; see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return super().pieces(mechanism, dimensions)
+        found = self._joined(mechanism, dimensions, KEPT, True)
+        assert found.gradients is not None
+        order = np.argsort(found.values if self.least else -found.values, axis=1, kind="stable")
+        return Pieces(found.values, found.gradients, found.labels, self.least).at(order)
+
+    def _joined(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Part:
+        parts = self.parts(mechanism, designs, kept, gradients)
+        return Part(
+            np.concatenate([part.values for part in parts], axis=1),
+            np.concatenate([part.gradients for part in parts if part.gradients is not None], axis=1)
+            if gradients
+            else None,
+            np.concatenate([part.labels + CLASSES * APART * n for n, part in enumerate(parts)], axis=1),
+        )
+
+
+def strength_of(mechanism: Mechanism) -> Strength:
+    """Return material and pins of a machine that has them."""
+    assert mechanism.strength is not None
+    return mechanism.strength
+
+
+def stress(
+    mechanism: Mechanism,
+    name: str,
+    designs: Array,
+    criteria: Sequence[tuple[float, float]],
+    kept: int,
+    gradients: bool,
+    *,
+    bending: bool = True,
+) -> Part:
+    """Return the greatest p sigma - q sigma of a link, for (p, q) of the criteria; see `stress_peaks`."""
+    found = stress_peaks(
+        mechanism, LINKS[name].part, designs, np.array(criteria), bending=bending, gradients=gradients, kept=kept
+    )
+    return Part(found.values, found.gradients, found.labels)
+
+
+def pin_force(mechanism: Mechanism, pin: str, designs: Array, kept: int, gradients: bool) -> Part:
+    """Return the greatest force of a pin over the cycle, N."""
+    found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)
+    return Part(found.values, found.gradients, np.nan_to_num(found.angles))
+
+
+def closed(mechanism: Mechanism, designs: Array, formula: Formula, gradients: bool) -> tuple[Array, Array | None]:
+    """Return a closed form of the machine's numbers, (n,), and its gradients; see `of_numbers`."""
+    return of_numbers(mechanism, designs, formula, gradients=gradients)
+
+
+def net_section(link: str, pin: str) -> Formula:
+    """Return the formula of the net section of a link's eye, (w - D) t, m^2."""
+    own = LINKS[link]
+    return lambda number: (number(own.width) - number(PINS[pin])) * number(own.depth)

@@ -1,0 +1,81 @@
+"""Masses of crank and rod, and of all that moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from ..model.machine.design import link_properties
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import of_numbers
+from ..model.machine.raw import Raw
+from .kinds import MASS
+from .needs import CRANK_MASS as CRANK_WEIGHS
+from .needs import MASSES
+from .needs import ROD_MASS as ROD_WEIGHS
+from .quantity import Array, Group, Quantity, Values
+
+Numbers = Callable[[int], Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mass(Quantity):
+    """A mass in closed form. of: gives it from the raw numbers of a machine."""
+
+    of: Callable[[Numbers], Any] = field(repr=False)
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        return Values(*of_numbers(mechanism, dimensions, self.of, gradients=gradients))
+
+
+def _crank(number: Numbers) -> Any:
+    return _link(number, number(Raw.CRANK), Raw.CRANK_WIDTH)
+
+
+def _rod(number: Numbers) -> Any:
+    return _link(number, number(Raw.ROD), Raw.ROD_WIDTH)
+
+
+def _link(number: Numbers, length: Any, first: int) -> Any:
+    return link_properties(length, *(number(first + slot) for slot in range(9)))[0]
+
+
+def _moving(number: Numbers) -> Any:
+    return _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
+
+
+_mass = partial(Mass, kind=MASS, group=Group.STRENGTH, section="22. Strength of crank and rod", plain=True)
+CRANK_MASS = _mass(
+    name="crank_mass",
+    title="crank mass",
+    of=_crank,
+    place=430,
+    sentence="The mass of the crank without its counterweight. That of a crank given by its section follows its size.",
+    formula="rho d (w r + pi w^2 / 4) of a bar",
+    picture="crank",
+    needs=(CRANK_WEIGHS,),
+)
+ROD_MASS = _mass(
+    name="rod_mass",
+    title="rod mass",
+    of=_rod,
+    place=432,
+    sentence="The mass of the connecting rod. That of a rod given by its section follows its size.",
+    formula="rho d (w l + pi w^2 / 4) of a bar",
+    picture="rod",
+    needs=(ROD_WEIGHS,),
+)
+MOVING_MASS = _mass(
+    name="moving_mass",
+    title="moving mass",
+    of=_moving,
+    place=434,
+    sentence="The mass of all that moves: crank, counterweight, rod and slider.",
+    advice="With sections as variables it trades against their safety, and it drives forces and torque.",
+    formula="m_crank + m_counterweight + m_rod + m_slider",
+    picture="inertia",
+    needs=(MASSES,),
+)

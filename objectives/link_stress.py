@@ -1,0 +1,118 @@
+"""Greatest stresses of crank and rod: axial force and bending along the bar, and the net sections of the eyes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from .bars import LINKS, NEAR, OfBars, Part, closed, net_section, pin_force, strength_of, stress
+from .kinds import PRESSURE, RATIO
+from .needs import A_BAR, CRANK_BAR, LOADED, ROD_BAR, STRENGTH
+from .quantity import Array, Group
+
+STATIC = ((1.0, 0.0), (0.0, 1.0))
+"""Greatest tension and greatest compression."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkStress(OfBars):
+    """The greatest stress along links and in the net sections of their eyes, or the yield strength over it."""
+
+    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+        """Return the stresses along the bars and in their eyes; see `OfBars`."""
+        strength = strength_of(mechanism)
+        own = strength.material.yield_strength
+        found = []
+        for name in self.bars(mechanism):
+            along = stress(mechanism, name, designs, STATIC, kept, gradients)
+            found.append(along.into(_constant(own, designs, gradients)) if self.least else along)
+            for pin in (NEAR, LINKS[name].far):
+                force = pin_force(mechanism, pin, designs, kept, gradients)
+                area = closed(mechanism, designs, net_section(name, pin), gradients)
+                if self.least:
+                    found.append(force.into(_scaled(area, own / strength.eye_concentration)))
+                else:
+                    found.append(_over(force, area, strength.eye_concentration))
+        return found
+
+
+def _constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+    return np.full(len(designs), value), np.zeros(designs.shape) if gradients else None
+
+
+def _scaled(factor: tuple[Array, Array | None], by: float) -> tuple[Array, Array | None]:
+    values, slopes = factor
+    return by * values, None if slopes is None else by * slopes
+
+
+def _over(force: Part, area: tuple[Array, Array | None], by: float) -> Part:
+    """Return force over area times a number; infinite where the pin is as wide as the eye."""
+    values, slopes = area
+    there = values > 0.0
+    safe = np.where(there, values, 1.0)
+    inverse = by / safe
+    found = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
+    filled = np.where(there[:, None] | ~np.isfinite(found.values), found.values, np.inf)
+    blank = None if found.gradients is None else np.where(there[:, None, None], found.gradients, 0.0)
+    return Part(filled, blank, found.labels)
+
+
+_SOURCE = "Shigley, Mechanical Engineering Design, 9th ed., sec. 3-10 and 3-13; section forces derived there"
+_stress = partial(
+    LinkStress,
+    kind=PRESSURE,
+    group=Group.STRENGTH,
+    section="22. Strength of crank and rod",
+    source=_SOURCE,
+    example="120 MPa",
+)
+ROD_STRESS = _stress(
+    name="rod_stress",
+    title="rod stress",
+    links=("rod",),
+    place=440,
+    sentence=(
+        "The greatest stress of the rod over a turn, of either sign: axial force and bending by inertia and weight "
+        "at every place, and the net section of both eyes."
+    ),
+    advice="A wider rod lowers it until its own inertia bends it more.",
+    formula="max of |N / (w d) +- 6 M / (d w^2)| and K F / ((w - D) d) over place and crank angle",
+    picture="rod",
+    needs=(STRENGTH, ROD_BAR, LOADED),
+)
+CRANK_STRESS = replace(
+    ROD_STRESS,
+    name="crank_stress",
+    title="crank stress",
+    links=("crank",),
+    place=442,
+    sentence=(
+        "The greatest stress of the crank over a turn, of either sign: axial force and bending by the crank pin's "
+        "force at every place, and the net section of both eyes."
+    ),
+    advice="It is that at the crank pivot where the torque is large.",
+    picture="crank",
+    needs=(STRENGTH, CRANK_BAR, LOADED),
+)
+STATIC_SAFETY = LinkStress(
+    name="static_safety",
+    title="static safety",
+    kind=RATIO,
+    least=True,
+    group=Group.STRENGTH,
+    place=444,
+    sentence="The yield strength over the greatest stress of the links that are given by their sections.",
+    advice="1.5 to 3 are usual, more where loads are not well known.",
+    formula="S_y / max(crank stress, rod stress)",
+    section="22. Strength of crank and rod",
+    source=_SOURCE,
+    picture="rod",
+    example=2.0,
+    better="high",
+    signed=True,
+    needs=(STRENGTH, A_BAR, LOADED),
+)

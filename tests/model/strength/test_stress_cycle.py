@@ -1,0 +1,56 @@
+"""Stress of crank and rod over place and cycle: against integrated section forces, dense samples, differences."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slidercrank.model.cycle.cycle import breakpoints
+from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.strength.section_forces import CRANK, ROD
+from slidercrank.model.strength.stress_cycle import stress_peaks
+from tests.model.cases import Array, random_designs
+from tests.model.strength.sections import linkage_with, random_bars, section_stress, stress_rows
+
+STATIC = np.array([[1.0, 0.0], [0.0, 1.0]])
+PARTS = {"rod": ROD, "crank": CRANK}
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_stress_is_that_of_what_lies_beyond_the_section(part: str) -> None:
+    random = np.random.default_rng(61)
+    for design in random_designs(40, seed=62, least_margin=3e-2):
+        machine = replace(random_bars(random), counterweight=Counterweight(mass=0.0, radius=0.0))
+        linkage = linkage_with(machine, design)
+        found = stress_peaks(machine, PARTS[part], design[None], STATIC)
+        cuts = breakpoints(machine, linkage)
+        for value, (share, face, up, down) in zip(found.values[0], found.places[0], strict=True):
+            if not np.isfinite(value):
+                continue
+            theta = np.array([up, down])
+            if np.abs(np.angle(np.exp(1j * (theta[:, None] - cuts)))).min() < 1e-6:
+                continue  # at a jump, on one side of it
+            tension, compression = section_stress(machine, part, linkage, theta, share, face)
+            assert np.abs(np.array([tension, -compression]) / value - 1.0).min() < 1e-8
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("pulls", [STATIC, np.array([[4.3e-9, 2.4e-9], [3.3e-9, 3.3e-9]])], ids=["static", "fatigue"])
+def test_no_place_or_crank_angle_is_worse_than_the_peak(part: str, pulls: Array) -> None:
+    random = np.random.default_rng(63)
+    shares = np.linspace(0.0, 1.0, 101)
+    for design in random_designs(20, seed=64, least_margin=3e-2):
+        machine = random_bars(random)
+        linkage = linkage_with(machine, design)
+        cuts = breakpoints(machine, linkage)
+        theta = np.concatenate([np.arange(1440) * (np.pi / 720.0), cuts - 1e-9, cuts + 1e-9])
+        axial, bending = stress_rows(machine, part, linkage, theta, shares)
+        worst = max(
+            (p * stress.max(axis=0) - q * stress.min(axis=0)).max()
+            for stress in (axial + bending, axial - bending)
+            for p, q in pulls
+        )
+        peak = stress_peaks(machine, PARTS[part], design[None], pulls).values[0, 0]
+        assert worst * (1.0 - 1e-7) <= peak <= worst * (1.0 + 1e-3)
